@@ -1,0 +1,151 @@
+//! Points in the cells of a uniform grid, for queries by radius.
+
+use crate::{Bounds, Domain, Vector};
+
+/// Point indices sorted by grid cell. On a torus the grid divides the period, and queries go around the back.
+#[derive(Clone, Debug)]
+pub struct GridIndex<const D: usize> {
+    origin: Vector<D>,
+    cell: Vector<D>,
+    cells: [usize; D],
+    period: Option<Vector<D>>,
+    /// Points of cell `c`: `order[starts[c]..starts[c + 1]]`.
+    starts: Vec<u32>,
+    order: Vec<u32>,
+    /// Positions in the order of `order`; wrapped on a torus.
+    points: Vec<Vector<D>>,
+}
+
+/// Most cells along all coordinates together: bounds memory for scattered points.
+const MOST_CELLS: f64 = 4_000_000.0;
+
+impl<const D: usize> GridIndex<D> {
+    /// Indexes `points` for queries of about `radius`; `domain` gives the period of a torus.
+    pub fn new(points: &[Vector<D>], radius: f64, domain: &Domain<D>) -> Self {
+        let period = domain.period();
+        let wrapped: Vec<_> = points.iter().map(|&p| domain.wrap(p)).collect();
+        let bounds = match period {
+            Some(_) => domain.bounds(),
+            None => Bounds::around(wrapped.iter().copied()),
+        };
+        let bounds = if bounds.is_empty() { Bounds::new(Vector::ZERO, Vector::ZERO) } else { bounds };
+        let size = bounds.size();
+        let most = (MOST_CELLS.min(4.0 * points.len() as f64 + 16.0)).powf(1.0 / D as f64);
+        let cells: [usize; D] =
+            std::array::from_fn(|k| ((size[k] / radius.max(f64::MIN_POSITIVE)).min(most) as usize).max(1));
+        let cell = Vector(std::array::from_fn(|k| (size[k] / cells[k] as f64).max(f64::MIN_POSITIVE)));
+        let mut index =
+            Self { origin: bounds.min, cell, cells, period, starts: Vec::new(), order: Vec::new(), points: Vec::new() };
+        index.sort(&wrapped);
+        index
+    }
+
+    fn sort(&mut self, points: &[Vector<D>]) {
+        let of: Vec<usize> = points.iter().map(|&p| self.cell_of(p)).collect();
+        self.starts = vec![0; self.cells.iter().product::<usize>() + 1];
+        for &c in &of {
+            self.starts[c + 1] += 1;
+        }
+        for c in 1..self.starts.len() {
+            self.starts[c] += self.starts[c - 1];
+        }
+        let mut next = self.starts.clone();
+        self.order = vec![0; points.len()];
+        self.points = vec![Vector::ZERO; points.len()];
+        for (i, &c) in of.iter().enumerate() {
+            let slot = next[c] as usize;
+            next[c] += 1;
+            self.order[slot] = i as u32;
+            self.points[slot] = points[i];
+        }
+    }
+
+    fn coordinate(&self, p: Vector<D>, k: usize) -> usize {
+        (((p[k] - self.origin[k]) / self.cell[k]).max(0.0) as usize).min(self.cells[k] - 1)
+    }
+
+    fn cell_of(&self, p: Vector<D>) -> usize {
+        (0..D).rev().fold(0, |c, k| c * self.cells[k] + self.coordinate(p, k))
+    }
+
+    /// Calls `visit(i, offset)` for each point within `radius` of `p`, with the offset from `p` to it by the shortest way.
+    /// Points come cell by cell, in a fixed order. On a torus a point comes once, even when the radius reaches around.
+    pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
+        let mut low = [0_isize; D];
+        let mut count = [0_usize; D];
+        for k in 0..D {
+            let at = |v: f64| ((v - self.origin[k]) / self.cell[k]).floor();
+            let (mut a, mut b) = (at(p[k] - radius), at(p[k] + radius));
+            if self.period.is_none() {
+                a = a.clamp(0.0, (self.cells[k] - 1) as f64);
+                b = b.clamp(0.0, (self.cells[k] - 1) as f64);
+            }
+            low[k] = a as isize;
+            count[k] = (((b - a) as usize).saturating_add(1)).min(self.cells[k]);
+        }
+        for step in 0..count.iter().product() {
+            let mut rest = step;
+            let (mut cell, mut stride) = (0, 1);
+            for k in 0..D {
+                let c = (low[k] + (rest % count[k]) as isize).rem_euclid(self.cells[k] as isize) as usize;
+                rest /= count[k];
+                cell += c * stride;
+                stride *= self.cells[k];
+            }
+            for slot in self.starts[cell] as usize..self.starts[cell + 1] as usize {
+                let offset = self.offset(p, self.points[slot]);
+                if offset.norm2() <= radius * radius {
+                    visit(self.order[slot] as usize, offset);
+                }
+            }
+        }
+    }
+
+    fn offset(&self, from: Vector<D>, to: Vector<D>) -> Vector<D> {
+        match self.period {
+            Some(period) => (to - from).zip(period, |d, l| d - l * (d / l).round()),
+            None => to - from,
+        }
+    }
+
+    /// The nearest point to `p` other than `except`, with its distance, no farther than `radius`.
+    pub fn nearest(&self, p: Vector<D>, radius: f64, except: Option<usize>) -> Option<(usize, f64)> {
+        let mut best: Option<(usize, f64)> = None;
+        self.within(p, radius, |i, offset| {
+            let d2 = offset.norm2();
+            if Some(i) != except && best.is_none_or(|(j, b)| d2 < b || (d2 == b && i < j)) {
+                best = Some((i, d2));
+            }
+        });
+        best.map(|(i, d2)| (i, d2.sqrt()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Stage, Stream};
+
+    fn check(domain: &Domain<2>, radius: f64) {
+        let mut s = Stream::new(3, Stage::Test, 0);
+        let points: Vec<_> = (0..400).map(|_| Vector::xy(s.range(0.0, 10.0), s.range(0.0, 10.0))).collect();
+        let index = GridIndex::new(&points, radius, domain);
+        for _ in 0..50 {
+            let p = Vector::xy(s.range(-2.0, 12.0), s.range(-2.0, 12.0));
+            let mut got = Vec::new();
+            index.within(p, radius, |i, _| got.push(i));
+            got.sort_unstable();
+            let want: Vec<_> = (0..400).filter(|&i| domain.offset(p, points[i]).norm() <= radius).collect();
+            assert_eq!(got, want);
+        }
+    }
+
+    #[test]
+    fn radius_queries_agree_with_brute_force() {
+        let bounds = Bounds::new(Vector::xy(0.0, 0.0), Vector::xy(10.0, 10.0));
+        for radius in [0.3, 1.7, 6.0] {
+            check(&Domain::Box(bounds), radius);
+            check(&Domain::Torus(bounds), radius);
+        }
+    }
+}

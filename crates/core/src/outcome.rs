@@ -1,0 +1,68 @@
+//! What a run gives back.
+
+use crate::{Similarity, Vector};
+
+/// One element of the output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placement<const D: usize> {
+    /// Index into [`crate::Exemplar::elements`]: which exemplar element is drawn here.
+    pub source: usize,
+    /// From exemplar coordinates to output coordinates.
+    pub transform: Similarity<D>,
+    /// Bending of the element, when it was asked for: `control[i].0` in exemplar coordinates goes to `control[i].1` in
+    /// output coordinates. Empty for a rigid element.
+    pub control: Vec<(Vector<D>, Vector<D>)>,
+    /// Index into [`crate::Request::frozen`] when this is an element that the user placed.
+    pub frozen: Option<usize>,
+}
+
+/// Mean energy after one step, for the trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnergyPoint {
+    /// Level, 0 = coarsest.
+    pub level: usize,
+    /// Iteration within the level.
+    pub iteration: usize,
+    /// Mean neighbourhood energy, in squared mean spacings.
+    pub energy: f64,
+    /// Number of elements.
+    pub elements: usize,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopReason {
+    /// All planned iterations were done, or nothing changed any more.
+    Finished,
+    /// The observer asked to stop.
+    Observer,
+}
+
+/// Trouble that does not prevent a result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// What was noticed.
+    pub message: String,
+    /// What to do about it.
+    pub advice: String,
+}
+
+impl Warning {
+    /// A warning from its two parts.
+    pub fn new(message: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self { message: message.into(), advice: advice.into() }
+    }
+}
+
+/// The result of a run.
+#[derive(Clone, Debug)]
+pub struct Outcome<const D: usize> {
+    /// The output elements, frozen ones included, in drawing order. On a torus each element appears once.
+    pub placements: Vec<Placement<D>>,
+    /// Mean energy after each iteration.
+    pub energy: Vec<EnergyPoint>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    /// Why the run ended.
+    pub stopped: StopReason,
+}

@@ -1,0 +1,46 @@
+//! What to make: domain, fields, frozen parts and seed of one run.
+
+use crate::{Domain, Fields, Outline, Placement};
+
+/// What happens where elements meet the border of the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Border {
+    /// Elements lie wholly inside.
+    Inside,
+    /// Elements with their centre inside stay whole and may reach over the border.
+    Cross,
+    /// Whatever reaches into the domain is used, to be cut at the border when it is drawn.
+    #[default]
+    Clip,
+}
+
+/// What to make from a prepared exemplar.
+#[derive(Clone, Debug)]
+pub struct Request<const D: usize> {
+    /// Where the output may lie.
+    pub domain: Domain<D>,
+    /// What happens at its border. Default: [`Border::Clip`].
+    pub border: Border,
+    /// How the pattern is turned, scaled and thinned.
+    pub fields: Fields<D>,
+    /// Elements that stay exactly where they are; the rest is fitted around them. Their `frozen` entry is ignored on input.
+    pub frozen: Vec<Placement<D>>,
+    /// Ink that is in the way but is no element of the exemplar, in output coordinates: nothing may overlap it.
+    pub obstacles: Vec<Outline<D>>,
+    /// Seed of all random choices. Default 0.
+    pub seed: u64,
+}
+
+impl<const D: usize> Request<D> {
+    /// Fills `domain` with everything else at its default.
+    pub fn new(domain: Domain<D>) -> Self {
+        Self {
+            domain,
+            border: Border::default(),
+            fields: Fields::default(),
+            frozen: Vec::new(),
+            obstacles: Vec::new(),
+            seed: 0,
+        }
+    }
+}

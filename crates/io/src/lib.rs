@@ -1,0 +1,3 @@
+//! Files to core types and back: SVG, PNG, CSV, JSON.
+
+pub mod svg;

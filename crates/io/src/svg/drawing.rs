@@ -1,0 +1,77 @@
+//! What an SVG file holds, understood.
+
+use arabesque_core::{Bounds, Exemplar, FlowStroke, Shape, Warning};
+
+/// Physical unit of a page.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unit {
+    /// CSS pixel, 96 an inch.
+    #[default]
+    Px,
+    /// Millimetre.
+    Mm,
+    /// Centimetre.
+    Cm,
+    /// Inch.
+    In,
+    /// Point, 72 an inch.
+    Pt,
+    /// Pica, 6 an inch.
+    Pc,
+    /// A quarter of a millimetre.
+    Q,
+}
+
+/// Size and coordinate system of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Page {
+    /// User coordinates that the page shows: the viewBox.
+    pub view: Bounds<2>,
+    /// Unit in which the page states its width and height.
+    pub unit: Unit,
+    /// How many of that unit one user unit is: 1.0 for a plain pixel page, 1.0 for `width="210mm" viewBox="0 0 210 297"`.
+    pub unit_per_user: f64,
+}
+
+/// The appearance of one element: markup that draws it in the coordinates of the exemplar.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fragment {
+    /// One SVG element, usually a `<g>`: transforms, inherited presentation attributes and style rules resolved into it;
+    /// references only to [`Drawing::definitions`].
+    pub markup: String,
+    /// Name of the layer it came from, for round trips.
+    pub layer: Option<String>,
+    /// Its own name: `inkscape:label`, else `id`.
+    pub label: Option<String>,
+}
+
+/// The other parts of a file that is a whole job: what layers labelled Domain, Avoid, Flow and Keep hold.
+#[derive(Clone, Debug, Default)]
+pub struct Job {
+    /// Where to fill.
+    pub domain: Option<Shape>,
+    /// Where not to fill.
+    pub avoid: Option<Shape>,
+    /// Which way the pattern flows.
+    pub flow: Vec<FlowStroke>,
+}
+
+/// An SVG exemplar: what it means and how it looks.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// Elements and classes.
+    pub exemplar: Exemplar<2>,
+    /// How element `i` of the exemplar looks.
+    pub fragments: Vec<Fragment>,
+    /// Markup that fills the frame behind everything, in exemplar coordinates: repeated over the output page as it is where it is a plain
+    /// colour. `None` without a background.
+    pub background: Option<String>,
+    /// Content of `<defs>` that the fragments refer to: gradients, clips, masks, patterns, filters, symbols.
+    pub definitions: String,
+    /// Size and units of the exemplar's page.
+    pub page: Page,
+    /// Layers beside the exemplar.
+    pub job: Job,
+    /// What was noticed while reading.
+    pub warnings: Vec<Warning>,
+}

@@ -1,0 +1,5 @@
+//! SVG: exemplars, jobs and results.
+
+mod drawing;
+
+pub use drawing::{Drawing, Fragment, Job, Page, Unit};

@@ -1,6 +1,6 @@
 //! What an SVG file holds, understood.
 
-use arabesque_core::{Bounds, Exemplar, FlowStroke, Shape, Warning};
+use arabesque_core::{Bounds, Exemplar, FlowStroke, Outline, Placement, Shape, Warning};
 
 /// Physical unit of a page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,6 +72,25 @@ pub struct Drawing {
     pub page: Page,
     /// Layers beside the exemplar.
     pub job: Job,
+    /// What was noticed while reading.
+    pub warnings: Vec<Warning>,
+}
+
+/// Elements that were placed already: a file for `--keep`.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// What matches an element of the exemplar; `frozen` is `None`. Coordinates of the kept file become output coordinates.
+    pub placements: Vec<Placement<2>>,
+    /// Ink of everything else, in the same coordinates.
+    pub obstacles: Vec<Outline<2>>,
+    /// Looks of placement `i`, to be drawn unchanged: markup in the coordinates of the kept file.
+    pub fragments: Vec<Fragment>,
+    /// Looks of obstacle `i`, in the same way.
+    pub obstacle_fragments: Vec<Fragment>,
+    /// Content of `<defs>` that both kinds of fragments refer to; its ids do not clash with those of the exemplar.
+    pub definitions: String,
+    /// Page of the kept file.
+    pub page: Page,
     /// What was noticed while reading.
     pub warnings: Vec<Warning>,
 }

@@ -1,0 +1,31 @@
+//! How an SVG file is to be read.
+
+use arabesque_core::Limits;
+
+/// What open strokes are taken for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Closed shapes, groups, `<use>` and filled pieces are elements, other strokes are curves; curves are an error that names them.
+    #[default]
+    Auto,
+    /// Every connected piece is one element; strokes that touch are one piece.
+    Elements,
+}
+
+/// How an SVG file is to be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadOptions {
+    /// Name of the file, for messages.
+    pub name: String,
+    /// What open strokes are taken for. Default: [`Method::Auto`].
+    pub method: Method,
+    /// Upper bounds. Default: [`Limits::default`].
+    pub limits: Limits,
+}
+
+impl ReadOptions {
+    /// Default options for the file called `name` in messages.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), method: Method::default(), limits: Limits::default() }
+    }
+}

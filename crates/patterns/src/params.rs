@@ -120,6 +120,7 @@ impl Params {
                 iterations: 10,
                 ..Self::default()
             }),
+            "noise" => Ok(Self { initialisation: Initialisation::WhiteNoise, ..Self::default() }),
             "tu2020" => Ok(Self { search: Search::PatchMatch, ..Self::default() }),
             _ => Err(Error::parameter("preset", name, "default, ma2011 or tu2020")),
         }

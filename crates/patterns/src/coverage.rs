@@ -1,0 +1,125 @@
+//! Which part of the output is laid out already.
+
+use arabesque_core::{Domain, Vector};
+
+/// What is known about a cell of the output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cell {
+    /// Nothing may lie here.
+    Outside,
+    /// Not laid out yet.
+    Open,
+    /// Laid out: what is not here is not meant to be here.
+    Covered,
+}
+
+/// A raster over the output.
+#[derive(Clone, Debug)]
+pub(crate) struct Coverage<const D: usize> {
+    origin: Vector<D>,
+    size: Vector<D>,
+    cells: [usize; D],
+    torus: bool,
+    state: Vec<Cell>,
+}
+
+impl<const D: usize> Coverage<D> {
+    /// Rasters the domain grown by `margin`, with cells of about `cell`.
+    pub(crate) fn new(domain: &Domain<D>, margin: f64, cell: f64) -> Self {
+        let torus = domain.period().is_some();
+        let bounds = if torus { domain.bounds() } else { domain.bounds().grown(margin) };
+        let extent = bounds.size();
+        let cells: [usize; D] = std::array::from_fn(|k| ((extent[k] / cell).ceil() as usize).clamp(1, 8192));
+        let size = Vector(std::array::from_fn(|k| extent[k] / cells[k] as f64));
+        let mut coverage = Self { origin: bounds.min, size, cells, torus, state: Vec::new() };
+        coverage.state = (0..cells.iter().product())
+            .map(|c| {
+                let inside = domain.signed_distance(coverage.centre(c)) >= -margin - 0.5 * size[0];
+                if inside { Cell::Open } else { Cell::Outside }
+            })
+            .collect();
+        coverage
+    }
+
+    /// Centre of cell `index`.
+    pub(crate) fn centre(&self, index: usize) -> Vector<D> {
+        let mut rest = index;
+        Vector(std::array::from_fn(|k| {
+            let i = rest % self.cells[k];
+            rest /= self.cells[k];
+            self.origin[k] + (i as f64 + 0.5) * self.size[k]
+        }))
+    }
+
+    /// State of the cell at `p`.
+    pub(crate) fn at(&self, p: Vector<D>) -> Cell {
+        let mut index = 0;
+        for k in (0..D).rev() {
+            let n = self.cells[k] as isize;
+            let i = ((p[k] - self.origin[k]) / self.size[k]).floor() as isize;
+            let i = if self.torus { i.rem_euclid(n) } else { i };
+            if !(0..n).contains(&i) {
+                return Cell::Outside;
+            }
+            index = index * self.cells[k] + i as usize;
+        }
+        self.state[index]
+    }
+
+    /// Calls `visit(index, offset)` for the cells whose centre lies within `radius` of `p`.
+    pub(crate) fn ball(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
+        let mut low = [0_isize; D];
+        let mut count = [0_usize; D];
+        for k in 0..D {
+            let at = |v: f64| ((v - self.origin[k]) / self.size[k]).floor() as isize;
+            let (mut a, mut b) = (at(p[k] - radius), at(p[k] + radius));
+            if !self.torus {
+                a = a.max(0);
+                b = b.min(self.cells[k] as isize - 1);
+            }
+            low[k] = a;
+            count[k] = ((b - a + 1).max(0) as usize).min(self.cells[k]);
+        }
+        for step in 0..count.iter().product() {
+            let (mut rest, mut index, mut stride) = (step, 0, 1);
+            let mut centre = Vector::ZERO;
+            for k in 0..D {
+                let i = low[k] + (rest % count[k]) as isize;
+                rest /= count[k];
+                centre[k] = self.origin[k] + (i as f64 + 0.5) * self.size[k];
+                index += i.rem_euclid(self.cells[k] as isize) as usize * stride;
+                stride *= self.cells[k];
+            }
+            let offset = centre - p;
+            if offset.norm2() <= radius * radius {
+                visit(index, offset);
+            }
+        }
+    }
+
+    /// Numbers of open and of all usable cells within `radius` of `p`.
+    pub(crate) fn open_within(&self, p: Vector<D>, radius: f64) -> (usize, usize) {
+        let (mut open, mut all) = (0, 0);
+        self.ball(p, radius, |index, _| {
+            open += usize::from(self.state[index] == Cell::Open);
+            all += usize::from(self.state[index] != Cell::Outside);
+        });
+        (open, all)
+    }
+
+    /// Marks open cells within `radius` of `p` as covered where `known(offset)` holds.
+    pub(crate) fn cover(&mut self, p: Vector<D>, radius: f64, known: impl Fn(Vector<D>) -> bool) {
+        let mut hit = Vec::new();
+        self.ball(p, radius, |index, offset| {
+            if self.state[index] == Cell::Open && known(offset) {
+                hit.push(index);
+            }
+        });
+        hit.into_iter().for_each(|index| self.state[index] = Cell::Covered);
+    }
+
+    /// The open cells, in order.
+    pub(crate) fn open(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.state.len()).filter(|&c| self.state[c] == Cell::Open)
+    }
+}

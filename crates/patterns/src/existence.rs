@@ -1,0 +1,200 @@
+//! Existence assignment: which elements should be there [Tu 2020 §4.3.4, appendix A].
+//!
+//! An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods miss an exemplar element, it is
+//! added. The samples of an element come and go together; frozen elements stay.
+
+use arabesque_core::{Matrix, Vector};
+
+use crate::{buckets::Buckets, canvas::Item, state::State};
+
+/// Confidence from which an element exists.
+const HALF: f64 = 0.5;
+
+/// Adding stops at this multiple of the target number of a class.
+const MOST: f64 = 1.03;
+
+/// How many elements were added and removed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Changes {
+    pub(crate) added: usize,
+    pub(crate) removed: usize,
+}
+
+/// Adds and removes elements by the votes of the last search. `targets[c]` is the number of elements of class `c` that the output should have:
+/// votes alone drift, since a poor neighbourhood loses elements before it can gain any. Removal stops at the share `floor` of the target.
+pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>, targets: &[f64], floor: f64) -> Changes {
+    let removed = remove(state, targets, floor);
+    let added = add(state, targets);
+    if removed + added > 0 {
+        state.reindex();
+    }
+    Changes { added, removed }
+}
+
+/// Living items of each class.
+fn class_counts<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
+    let mut counts = vec![0.0; state.library.classes()];
+    for live in state.items.iter().filter(|i| i.alive) {
+        counts[state.library.class[live.item.source as usize] as usize] += 1.0;
+    }
+    counts
+}
+
+fn remove<const D: usize>(state: &mut State<'_, D>, targets: &[f64], floor: f64) -> usize {
+    let confidence = confidences(state);
+    let mut counts = class_counts(state);
+    let mut doubted: Vec<u32> = (0..state.items.len() as u32)
+        .filter(|&i| {
+            let live = &state.items[i as usize];
+            live.alive && live.item.frozen.is_none() && confidence[i as usize] < HALF
+        })
+        .collect();
+    doubted.sort_by(|&a, &b| confidence[a as usize].total_cmp(&confidence[b as usize]).then(a.cmp(&b)));
+    let mut removed = 0;
+    for i in doubted {
+        let class = state.library.class[state.items[i as usize].item.source as usize] as usize;
+        if counts[class] <= floor * targets[class] {
+            continue;
+        }
+        counts[class] -= 1.0;
+        removed += 1;
+        state.items[i as usize].alive = false;
+    }
+    if removed > 0 {
+        announce_removed(state);
+    }
+    removed
+}
+
+/// Share of the overlapping neighbourhoods in which each item had a partner; 1 where none overlaps [Tu 2020 eq. 16].
+fn confidences<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
+    let mut votes = vec![(0_u32, 0_u32); state.items.len()];
+    for &s in &state.living {
+        let Some(matched) = &state.samples[s as usize].matched else { continue };
+        matched.members.iter().for_each(|&o| votes[state.samples[o as usize].item as usize].0 += 1);
+        matched.pairs.iter().for_each(|&(o, _)| votes[state.samples[o as usize].item as usize].1 += 1);
+    }
+    votes.into_iter().map(|(all, kept)| if all > 0 { f64::from(kept) / f64::from(all) } else { 1.0 }).collect()
+}
+
+/// Makes the neighbours of the dead search again.
+fn announce_removed<const D: usize>(state: &mut State<'_, D>) {
+    let dead: Vec<bool> = state.items.iter().map(|i| !i.alive).collect();
+    for k in 0..state.samples.len() {
+        let stale = state.samples[k]
+            .matched
+            .as_ref()
+            .is_some_and(|m| m.members.iter().any(|&o| dead[state.samples[o as usize].item as usize]));
+        if stale {
+            state.samples[k].dirty = true;
+        }
+    }
+}
+
+/// A place where elements are missed.
+struct Cluster<const D: usize> {
+    class: u32,
+    centre: Vector<D>,
+    /// Sum of offsets from `centre` of the candidates.
+    shift: Vector<D>,
+    votes: Vec<u32>,
+}
+
+fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
+    let clusters = clusters(state);
+    let mut counts = class_counts(state);
+    let mut accepted = Vec::new();
+    for cluster in &clusters {
+        let n = cluster.votes.len() as f64;
+        let position = cluster.centre + cluster.shift * (1.0 / n);
+        let class = cluster.class as usize;
+        // Fewer than there should be: half the votes will do when a fifth is wanting.
+        let share = ((counts[class] / targets[class].max(1.0) - 0.8) * 2.5 + 0.5).clamp(0.5, 1.0);
+        if n >= HALF * share * covering(state, position) {
+            accepted.push((n, position, source(state, &cluster.votes)));
+        }
+    }
+    // The surest first, so that of two that collide the better one stays.
+    accepted.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut placed: Vec<(Vector<D>, f64)> = Vec::new();
+    let mut added = 0;
+    for (_, position, source) in accepted {
+        let Some(source) = source else { continue };
+        let own = 0.5 * state.library.nearest[source as usize] * state.request.fields.frame(position).spacing_scale;
+        let class = state.library.class[source as usize] as usize;
+        if counts[class] >= MOST * targets[class] {
+            continue;
+        }
+        let free = state.extent.admits(source, position)
+            && placed.iter().all(|&(p, d)| state.domain().offset(p, position).norm() >= own.max(d))
+            && state.index.nearest(position, own, None).is_none();
+        if free {
+            state.push(Item { source, position, frozen: None }, Matrix::identity());
+            placed.push((position, own));
+            added += 1;
+            counts[class] += 1.0;
+        }
+    }
+    added
+}
+
+/// Candidates for new elements, grouped by class and place.
+fn clusters<const D: usize>(state: &State<'_, D>) -> Vec<Cluster<D>> {
+    let mut clusters: Vec<Cluster<D>> = Vec::new();
+    let reach = state.library.spacing * state.extent.largest_spacing_scale;
+    let mut buckets = Buckets::new(state.domain(), state.extent.margin, reach);
+    for &s in &state.living {
+        let sample = &state.samples[s as usize];
+        let Some(matched) = &sample.matched else { continue };
+        let frame = state.request.fields.frame(sample.position);
+        let origin = state.level.position[matched.input as usize];
+        for &i in matched.missing.iter().filter(|&&i| state.level.part[i as usize] == 0) {
+            let element = state.level.element[i as usize];
+            let place = sample.position + frame.to_output(state.library.centre[element as usize] - origin);
+            let place = state.domain().wrap(place);
+            let class = state.library.class[element as usize];
+            let near = 0.5 * state.library.outlier[class as usize] * frame.spacing_scale;
+            let mut best = (near, None);
+            buckets.near(place, near, |c| {
+                let cluster = &clusters[c as usize];
+                let distance = state.domain().offset(cluster.centre, place).norm();
+                if cluster.class == class && distance < best.0 {
+                    best = (distance, Some(c));
+                }
+            });
+            match best.1 {
+                Some(c) => {
+                    let cluster = &mut clusters[c as usize];
+                    cluster.shift += state.request.domain.offset(cluster.centre, place);
+                    cluster.votes.push(element);
+                }
+                None => {
+                    buckets.insert(clusters.len() as u32, place);
+                    clusters.push(Cluster { class, centre: place, shift: Vector::ZERO, votes: vec![element] });
+                }
+            }
+        }
+    }
+    clusters
+}
+
+/// Number of neighbourhoods that reach `p`, their rim not counted in full: a sample misses what is near more surely than what is far.
+fn covering<const D: usize>(state: &State<'_, D>, p: Vector<D>) -> f64 {
+    let radius = state.level.radius * state.request.fields.frame(p).spacing_scale;
+    let mut n = 0.0;
+    state.index.within(p, radius, |slot, _| {
+        let sample = &state.samples[state.living[slot] as usize];
+        n += f64::from(u8::from(sample.matched.is_some()));
+    });
+    n
+}
+
+/// The copyable element with the smallest sum of attribute distances to the votes.
+fn source<const D: usize>(state: &State<'_, D>, votes: &[u32]) -> Option<u32> {
+    let spread = |e: u32| -> f32 {
+        let feature = &state.library.feature[e as usize];
+        votes.iter().map(|&v| feature.distance2(&state.library.feature[v as usize])).sum()
+    };
+    let usable = votes.iter().copied().filter(|&e| state.library.copyable[e as usize]);
+    usable.map(|e| (spread(e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, e)| e)
+}

@@ -1,0 +1,85 @@
+//! Where an element may be put, given the domain and what happens at its border.
+
+use arabesque_core::{Border, Exemplar, Matrix, Outline, Request, ScalarField, Similarity, Vector};
+
+/// The domain together with its border rule.
+pub(crate) struct Extent<'a, const D: usize> {
+    request: &'a Request<D>,
+    exemplar: &'a Exemplar<D>,
+    radius: &'a [f64],
+    /// How far outside the domain centres may lie.
+    pub(crate) margin: f64,
+    /// Largest factor by which gaps between elements are wider than in the exemplar.
+    pub(crate) largest_spacing_scale: f64,
+    /// Smallest such factor.
+    pub(crate) smallest_spacing_scale: f64,
+}
+
+impl<'a, const D: usize> Extent<'a, D> {
+    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a [f64]) -> Self {
+        let largest = |field: &ScalarField<D>| field.range().1;
+        let scale = largest(&request.fields.scale);
+        let thin = request.fields.density.range().0.powf(-1.0 / D as f64);
+        let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
+        let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
+        let smallest_spacing_scale = request.fields.scale.range().0 * dense;
+        let margin = if request.border == Border::Clip { reach } else { 0.0 };
+        Self { request, exemplar, radius, margin, largest_spacing_scale: scale * thin, smallest_spacing_scale }
+    }
+
+    /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
+    pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
+        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let distance = self.request.domain.signed_distance(p);
+        match self.request.border {
+            Border::Cross => distance >= 0.0,
+            Border::Clip if distance >= 0.0 => true,
+            Border::Clip => {
+                distance >= -reach && self.outline_at(i, p).points().any(|q| self.request.domain.contains(q))
+            }
+            Border::Inside if distance >= reach => true,
+            Border::Inside => {
+                distance >= 0.0 && self.outline_at(i, p).points().all(|q| self.request.domain.contains(q))
+            }
+        }
+    }
+
+    /// Whether anything at all may have its centre at `p`: a quick test that ignores what would lie there.
+    pub(crate) fn may_hold(&self, p: Vector<D>) -> bool {
+        self.request.domain.signed_distance(p) >= -self.margin
+    }
+
+    /// The shortest way for element `i` at `p` to where its centre may lie; zero where it already does.
+    pub(crate) fn way_back(&self, i: u32, p: Vector<D>) -> Vector<D> {
+        let domain = &self.request.domain;
+        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let allowed = match self.request.border {
+            Border::Cross | Border::Inside => 0.0,
+            Border::Clip => -reach,
+        };
+        let distance = domain.signed_distance(p);
+        if distance >= allowed {
+            return Vector::ZERO;
+        }
+        let back = domain.offset(p, domain.nearest_inside(p));
+        back * ((allowed - distance) / back.norm().max(f64::MIN_POSITIVE))
+    }
+
+    /// The outline of element `i` with its centre at `p`.
+    fn outline_at(&self, i: u32, p: Vector<D>) -> Outline<D> {
+        let element = &self.exemplar.elements[i as usize];
+        element.outline.transformed(&self.placement(i, p))
+    }
+
+    /// How element `i` lies with its centre at `p`.
+    pub(crate) fn placement(&self, i: u32, p: Vector<D>) -> Similarity<D> {
+        self.turned(i, p, &Matrix::identity())
+    }
+
+    /// How element `i` lies with its centre at `p` and an extra turn.
+    pub(crate) fn turned(&self, i: u32, p: Vector<D>, turn: &Matrix<D>) -> Similarity<D> {
+        let frame = self.request.fields.frame(p);
+        let rotation = frame.rotation.compose(turn);
+        Similarity::about(self.exemplar.elements[i as usize].centre, p, rotation, frame.element_scale)
+    }
+}

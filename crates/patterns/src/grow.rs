@@ -1,0 +1,350 @@
+//! Patch copy: the first layout of the output [Tu 2020 §4.3.2].
+//!
+//! Sites cover the domain like tiles, nearest to the seed site first. At each site every exemplar patch is tried that puts one of its
+//! elements onto an element that is already there, so that the patch is in register with its surroundings. Its disagreement with them is
+//! the share of unmatched elements on both sides: output elements that the patch would not have there, and patch elements missing in the
+//! part that is already covered. The best patch fills what is still open.
+//!
+//! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do it.
+
+use arabesque_core::{Domain, Frame, Request, Stage, Stream, Vector};
+use rayon::prelude::*;
+
+use crate::{
+    canvas::{Canvas, Item},
+    coverage::{Cell, Coverage},
+    extent::Extent,
+    library::Library,
+};
+
+/// Knobs of the layout, fixed by measurement.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GrowParams {
+    /// Radius of a patch, exemplar units.
+    pub(crate) patch: f64,
+    /// Radius of the surroundings that a patch must agree with, exemplar units.
+    pub(crate) context: f64,
+    /// Cost of a patch that goes on copying where its neighbour stopped, per share of such elements.
+    pub(crate) repeat: f64,
+    /// Cost of a patch whose elements are used more often than others.
+    pub(crate) balance: f64,
+    /// Amplitude of the random part of the cost.
+    pub(crate) noise: f64,
+    /// Share of its nearest-neighbour distance that a new element keeps to what is there already, in the open part.
+    pub(crate) room_open: f64,
+    /// The same where a neighbouring patch has already been.
+    pub(crate) room_covered: f64,
+    /// Output elements that patches are registered on, for each site.
+    pub(crate) anchors: usize,
+}
+
+/// A patch that was chosen for a site.
+#[derive(Clone, Debug)]
+struct Patch<const D: usize> {
+    site: Vector<D>,
+    /// Exemplar point that lands on the site.
+    centre: Vector<D>,
+    /// Elements to add, with their places.
+    elements: Vec<(u32, Vector<D>)>,
+}
+
+/// Lays out the open part of `canvas`.
+pub(crate) struct Grower<'a, const D: usize> {
+    library: &'a Library<D>,
+    request: &'a Request<D>,
+    extent: &'a Extent<'a, D>,
+    params: GrowParams,
+    /// Times each exemplar element was used.
+    usage: Vec<u32>,
+}
+
+impl<'a, const D: usize> Grower<'a, D> {
+    pub(crate) fn new(
+        library: &'a Library<D>,
+        request: &'a Request<D>,
+        extent: &'a Extent<'a, D>,
+        params: GrowParams,
+    ) -> Self {
+        Self { library, request, extent, params, usage: vec![0; library.len()] }
+    }
+
+    /// Fills every open cell of `coverage` with elements on `canvas`.
+    pub(crate) fn fill(&mut self, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) {
+        for (round, sites) in self.rounds(coverage).into_iter().enumerate() {
+            let patches: Vec<_> = sites
+                .par_iter()
+                .enumerate()
+                .map(|(n, &site)| {
+                    let item = ((round as u64) << 32) | n as u64;
+                    self.best_patch(
+                        site,
+                        canvas,
+                        coverage,
+                        &mut Stream::new(self.request.seed, Stage::Initialise, item),
+                    )
+                })
+                .collect();
+            patches.into_iter().flatten().for_each(|patch| self.paste(&patch, canvas, coverage));
+        }
+    }
+
+    /// Sites in rounds: those of one round are too far apart to see one another.
+    fn rounds(&self, coverage: &Coverage<D>) -> Vec<Vec<Vector<D>>> {
+        let sites = site_order(coverage, &self.request.domain, self.params.patch * self.largest_scale());
+        let reach = (self.params.patch + self.params.context) * self.largest_scale();
+        let mut earlier = crate::buckets::Buckets::new(&self.request.domain, self.extent.margin, reach);
+        let mut round_of: Vec<usize> = Vec::with_capacity(sites.len());
+        let mut rounds: Vec<Vec<Vector<D>>> = Vec::new();
+        for (i, &site) in sites.iter().enumerate() {
+            let mut round = 0;
+            earlier.near(site, reach, |j| {
+                if self.request.domain.offset(site, sites[j as usize]).norm() <= reach {
+                    round = round.max(round_of[j as usize] + 1);
+                }
+            });
+            earlier.insert(i as u32, site);
+            round_of.push(round);
+            if rounds.len() == round {
+                rounds.push(Vec::new());
+            }
+            rounds[round].push(site);
+        }
+        rounds
+    }
+
+    fn largest_scale(&self) -> f64 {
+        self.extent.largest_spacing_scale
+    }
+
+    fn best_patch(
+        &self,
+        site: Vector<D>,
+        canvas: &Canvas<D>,
+        coverage: &Coverage<D>,
+        random: &mut Stream,
+    ) -> Option<Patch<D>> {
+        let frame = self.request.fields.frame(site);
+        let (open, _) = coverage.open_within(site, self.params.patch * frame.spacing_scale);
+        if open == 0 {
+            return None;
+        }
+        let view = View::new(self, site, frame, canvas, coverage);
+        let mut best: Option<(f64, Vector<D>)> = None;
+        for centre in view.candidates(self.params.anchors, random) {
+            let noise = self.params.noise * random.unit();
+            let limit = best.map_or(f64::INFINITY, |(cost, _)| cost);
+            let cost = view.cost(centre, limit - noise) + noise;
+            if cost < limit {
+                best = Some((cost, centre));
+            }
+        }
+        let (_, centre) = best?;
+        let centre = view.registered(centre);
+        Some(Patch { site, centre, elements: view.additions(centre) })
+    }
+
+    fn paste(&mut self, patch: &Patch<D>, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) {
+        let frame = self.request.fields.frame(patch.site);
+        for &(element, position) in &patch.elements {
+            canvas.push(Item { source: element, position, frozen: None });
+            self.usage[element as usize] += 1;
+        }
+        let radius = self.params.patch * frame.spacing_scale;
+        let window = self.library.window;
+        coverage.cover(patch.site, radius, |offset| window.contains(patch.centre + frame.to_exemplar(offset)));
+        // The cell of the site itself is always done, so that a patch from the rim of the exemplar makes progress too.
+        coverage.cover(patch.site, 0.3 * radius, |_| true);
+    }
+}
+
+/// Sites for patches of `radius`: a jitter-free grid over the open cells, from the seed outwards.
+fn site_order<const D: usize>(coverage: &Coverage<D>, domain: &Domain<D>, radius: f64) -> Vec<Vector<D>> {
+    // Balls of this radius on a square or cubic grid of this step leave no gap.
+    let step = 2.0 * radius / (D as f64).sqrt() * 0.95;
+    let mut open: Vec<Vector<D>> = coverage.open().map(|c| coverage.centre(c)).collect();
+    if open.is_empty() {
+        return open;
+    }
+    let middle = domain.bounds().centre();
+    let origin = middle;
+    let key = |p: &Vector<D>| -> [i64; D] { std::array::from_fn(|k| ((p[k] - origin[k]) / step).round() as i64) };
+    open.sort_by_cached_key(key);
+    open.dedup_by_key(|p| key(p));
+    // The node of the grid, unless it lies outside: then the open cell that stands for it.
+    let mut sites: Vec<Vector<D>> = open
+        .into_iter()
+        .map(|p| {
+            let node = Vector(std::array::from_fn(|k| origin[k] + key(&p)[k] as f64 * step));
+            if coverage.at(node) == Cell::Outside { p } else { node }
+        })
+        .collect();
+    sites.sort_by(|a, b| (*a - middle).norm2().total_cmp(&(*b - middle).norm2()));
+    sites
+}
+
+/// What is around one site.
+struct View<'a, const D: usize> {
+    grower: &'a Grower<'a, D>,
+    site: Vector<D>,
+    frame: Frame<D>,
+    coverage: &'a Coverage<D>,
+    /// Elements around: source, offset from the site in exemplar directions, weight; nearest first.
+    around: Vec<(u32, Vector<D>, f64)>,
+}
+
+impl<'a, const D: usize> View<'a, D> {
+    fn new(
+        grower: &'a Grower<'a, D>,
+        site: Vector<D>,
+        frame: Frame<D>,
+        canvas: &Canvas<D>,
+        coverage: &'a Coverage<D>,
+    ) -> Self {
+        let context = grower.params.context;
+        let mut around = Vec::new();
+        canvas.within(site, context * frame.spacing_scale, |i, offset| {
+            let offset = frame.to_exemplar(offset);
+            around.push((canvas.items[i].source, offset, fall_off(offset, context)));
+        });
+        around.sort_by(|a, b| a.1.norm2().total_cmp(&b.1.norm2()));
+        Self { grower, site, frame, coverage, around }
+    }
+
+    /// Exemplar points that could land on the site.
+    fn candidates(&self, anchors: usize, random: &mut Stream) -> Vec<Vector<D>> {
+        let library = self.grower.library;
+        let mut centres = Vec::new();
+        for &(source, offset, _) in self.around.iter().take(anchors) {
+            for &i in library.members(library.class[source as usize]) {
+                let centre = library.centre[i as usize] - offset;
+                if library.window.contains(centre) {
+                    centres.push(centre);
+                }
+            }
+        }
+        while centres.len() < 24 {
+            let (a, b) = (library.window.min, library.window.max);
+            centres.push(Vector(std::array::from_fn(|k| random.range(a[k], b[k]))));
+        }
+        centres
+    }
+
+    /// Disagreement of the patch around exemplar point `centre` with what is there, or anything above `limit` once it exceeds that.
+    fn cost(&self, centre: Vector<D>, limit: f64) -> f64 {
+        let (library, params) = (self.grower.library, self.grower.params);
+        let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
+        let (mut cost, mut weights, mut repeated) = (0.0, 1e-9, 0.0);
+        for &(source, offset, weight) in &self.around {
+            weights += weight;
+            let p = centre + offset;
+            if !library.window.contains(p) {
+                cost += 0.35 * weight;
+                continue;
+            }
+            let class = library.class[source as usize];
+            let alike = library.alike(class, p, &library.feature[source as usize]);
+            match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
+                Some((i, c)) => {
+                    taken.push(i);
+                    cost += weight * f64::from(c) / library.outlier[class as usize].powi(2);
+                    repeated += weight * f64::from(u8::from(i == source));
+                }
+                None => cost += weight,
+            }
+        }
+        let (missing, missing_weights, usage) = self.missing(centre, &taken);
+        let total = weights + missing_weights;
+        let known = library.window.signed_distance(centre).min(params.patch) / params.patch;
+        (cost + missing) / total
+            + params.repeat * repeated / weights
+            + params.balance * usage
+            + 0.3 * (1.0 - known)
+            + if limit.is_nan() { 0.0 } else { 0.0 }
+    }
+
+    /// Weight of the patch elements that should be there already and are not, weight of all that should, and mean relative use of the new ones.
+    fn missing(&self, centre: Vector<D>, taken: &[u32]) -> (f64, f64, f64) {
+        let (library, params) = (self.grower.library, self.grower.params);
+        let (mut missing, mut weights) = (0.0, 0.0);
+        let (mut used, mut fresh) = (0.0, 0.0);
+        library.within(centre, params.context, |i, offset| {
+            if taken.contains(&i) {
+                return;
+            }
+            let weight = fall_off(offset, params.context);
+            match self.coverage.at(self.site + self.frame.to_output(offset)) {
+                Cell::Covered => {
+                    missing += weight;
+                    weights += weight;
+                }
+                Cell::Open => {
+                    used += f64::from(self.grower.usage[i as usize]);
+                    fresh += 1.0;
+                }
+                Cell::Outside => {}
+            }
+        });
+        let mean = self.grower.usage.iter().map(|&u| f64::from(u)).sum::<f64>() / library.len() as f64;
+        let usage = if fresh > 0.0 { (used / fresh) / (mean + 1.0) } else { 0.0 };
+        (missing, weights, usage)
+    }
+
+    /// `centre` moved so that matched elements coincide as well as they can.
+    fn registered(&self, centre: Vector<D>) -> Vector<D> {
+        let library = self.grower.library;
+        let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
+        for &(source, offset, weight) in &self.around {
+            let class = library.class[source as usize];
+            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[source as usize])[0] {
+                shift += (library.centre[i as usize] - centre - offset) * weight;
+                weights += weight;
+            }
+        }
+        centre + shift * (1.0 / weights)
+    }
+
+    /// Patch elements for the open part, with their places.
+    fn additions(&self, centre: Vector<D>) -> Vec<(u32, Vector<D>)> {
+        let (library, params) = (self.grower.library, self.grower.params);
+        let mut taken = Vec::new();
+        for &(source, offset, _) in &self.around {
+            let class = library.class[source as usize];
+            let alike = library.alike(class, centre + offset, &library.feature[source as usize]);
+            taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
+        }
+        let mut found = Vec::new();
+        library.within(centre, params.patch, |i, offset| {
+            let p = self.site + self.frame.to_output(offset);
+            let wanted = library.copyable[i as usize] && !taken.contains(&i);
+            if wanted && self.has_room(i, p, offset) && self.grower.extent.admits(i, p) {
+                found.push((i, p));
+            }
+        });
+        found.sort_by_key(|&(i, _)| i);
+        found
+    }
+}
+
+impl<const D: usize> View<'_, D> {
+    /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on something, and into a
+    /// covered cell at the seam, where registration may have moved it across, only if there is a gap of its own size.
+    fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
+        let (library, params) = (self.grower.library, self.grower.params);
+        let own = library.nearest[i as usize];
+        let gap = self.around.iter().map(|(_, o, _)| (*o - offset).norm2()).fold(f64::INFINITY, f64::min).sqrt();
+        match self.coverage.at(p) {
+            Cell::Open => gap >= params.room_open * own,
+            Cell::Covered => {
+                let reach = 0.5 * own * self.frame.spacing_scale;
+                gap >= params.room_covered * own && self.coverage.open_within(p, reach).0 > 0
+            }
+            Cell::Outside => false,
+        }
+    }
+}
+
+/// Weight of an element at `offset` in surroundings of `radius`: 1 in the middle, 0.1 at the rim.
+fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f64 {
+    let x = (offset.norm2() / (radius * radius)).min(1.0);
+    0.1 + 0.9 * (1.0 - x) * (1.0 - x)
+}

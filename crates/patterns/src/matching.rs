@@ -1,0 +1,194 @@
+//! How alike two neighbourhoods are, and which samples correspond [Tu 2020 §4.2].
+//!
+//! The neighbourhood of an output sample is laid over the one of an exemplar sample, centres together, in the local frame. Pairs cost their
+//! squared distance in place and attributes. Robust matching assigns at the least total cost and lets a sample stay alone at the squared
+//! outlier distance; beyond the paper, exemplar samples inside the radius that find no partner cost the same, so that holes count as much
+//! as surplus elements. Hard matching pairs nearest first and charges nothing for what is missing [Ma 2011 §3.2].
+
+use arabesque_core::Vector;
+
+use crate::{
+    assignment::{Assignment, OUTLIER},
+    level::Level,
+    library::Library,
+    params::Matching,
+};
+
+/// A neighbour of an output sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<const D: usize> {
+    /// The neighbour.
+    pub(crate) sample: u32,
+    /// Its key.
+    pub(crate) key: u32,
+    /// Exemplar element that is drawn there now.
+    pub(crate) source: u32,
+    /// From the centre, in exemplar directions and units.
+    pub(crate) offset: Vector<D>,
+    /// Weight by distance.
+    pub(crate) weight: f32,
+    /// Whether it may be an outlier: frozen samples may not.
+    pub(crate) frozen: bool,
+}
+
+/// The neighbourhood of one output sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Surroundings<const D: usize> {
+    /// Exemplar element that is drawn at the centre now.
+    pub(crate) source: u32,
+    /// The neighbours.
+    pub(crate) rows: Vec<Row<D>>,
+}
+
+/// Partners under one exemplar sample.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Correspondence {
+    /// (row, exemplar sample), by row.
+    pub(crate) pairs: Vec<(u32, u32)>,
+    /// Exemplar samples within the radius that have no partner.
+    pub(crate) missing: Vec<u32>,
+}
+
+/// Compares neighbourhoods; keeps its buffers between calls.
+pub(crate) struct Matcher<'a, const D: usize> {
+    level: &'a Level<D>,
+    library: &'a Library<D>,
+    matching: Matching,
+    /// Cost of a missing sample relative to that of a surplus one.
+    missing: f32,
+    assignment: Assignment,
+    used: Vec<bool>,
+    matrix: Vec<f32>,
+}
+
+impl<'a, const D: usize> Matcher<'a, D> {
+    pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, missing: f32) -> Self {
+        Self {
+            level,
+            library,
+            matching,
+            missing,
+            assignment: Assignment::default(),
+            used: Vec::new(),
+            matrix: Vec::new(),
+        }
+    }
+
+    /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
+    /// `wanted(p)` tells whether something that lies at offset `p` could be in the output at all.
+    pub(crate) fn cost(
+        &mut self,
+        around: &Surroundings<D>,
+        i: u32,
+        limit: f32,
+        wanted: &dyn Fn(Vector<D>) -> bool,
+    ) -> f32 {
+        let centre = self.library.feature[around.source as usize]
+            .distance2(&self.library.feature[self.level.element[i as usize] as usize]);
+        let pairs = match self.matching {
+            Matching::Robust => self.robust(around, i, limit - centre),
+            Matching::Hard => self.hard(around, i),
+        };
+        let cost = centre + pairs;
+        if cost > limit || self.matching == Matching::Hard {
+            return cost;
+        }
+        cost + self.missing_cost(i, wanted)
+    }
+
+    fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
+        let (level, library) = (self.level, self.library);
+        let near = level.neighbours(i);
+        let origin = level.position[i as usize];
+        self.assignment.begin(near.len());
+        for row in &around.rows {
+            let outlier2 = level.outlier2[row.key as usize];
+            // Nobody knows what lies beyond the frame of the exemplar: half the price.
+            let seen = library.window.contains(origin + row.offset);
+            let alone = if seen { outlier2 } else { 0.5 * outlier2 };
+            self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
+            let feature = &library.feature[row.source as usize];
+            let offset = row.offset.0.map(|v| v as f32);
+            for column in level.neighbours_of_key(i, row.key) {
+                let other = &near[column];
+                let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
+                if d2 < outlier2 || row.frozen {
+                    let d2 = d2 + feature.distance2(&library.feature[level.element[other.sample as usize] as usize]);
+                    self.assignment.pair(column as u32, row.weight * d2);
+                }
+            }
+            if self.assignment.end_row() > limit {
+                return f32::INFINITY;
+            }
+        }
+        self.assignment.settle()
+    }
+
+    fn hard(&mut self, around: &Surroundings<D>, i: u32) -> f32 {
+        let (level, library) = (self.level, self.library);
+        let near = level.neighbours(i);
+        self.matrix.clear();
+        self.matrix.resize(around.rows.len() * near.len(), f32::INFINITY);
+        for (r, row) in around.rows.iter().enumerate() {
+            let feature = &library.feature[row.source as usize];
+            for column in level.neighbours_of_key(i, row.key) {
+                let other = &near[column];
+                let d2: f32 = (0..D).map(|k| (row.offset[k] as f32 - other.offset[k]).powi(2)).sum();
+                let d2 = d2 + feature.distance2(&library.feature[level.element[other.sample as usize] as usize]);
+                self.matrix[r * near.len() + column] = d2;
+            }
+        }
+        let total = self.assignment.greedy(around.rows.len(), near.len(), &self.matrix);
+        // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
+        let alone: f32 = (around.rows.iter().zip(self.assignment.column_of()))
+            .filter(|(_, column)| **column == OUTLIER)
+            .map(|(row, _)| 4.0 * level.outlier2[row.key as usize])
+            .sum();
+        total + alone
+    }
+
+    fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
+        let near = self.level.neighbours(i);
+        self.mark_used(near.len());
+        let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
+        let sum: f32 = absent
+            .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
+            .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize])
+            .sum();
+        self.missing * sum
+    }
+
+    fn mark_used(&mut self, columns: usize) {
+        self.used.clear();
+        self.used.resize(columns, false);
+        for &column in self.assignment.column_of() {
+            if column != OUTLIER {
+                self.used[column as usize] = true;
+            }
+        }
+    }
+
+    /// Partners under exemplar sample `i`.
+    pub(crate) fn correspondence(
+        &mut self,
+        around: &Surroundings<D>,
+        i: u32,
+        wanted: &dyn Fn(Vector<D>) -> bool,
+    ) -> Correspondence {
+        match self.matching {
+            Matching::Robust => self.robust(around, i, f32::INFINITY),
+            Matching::Hard => self.hard(around, i),
+        };
+        let near = self.level.neighbours(i);
+        let columns = self.assignment.column_of().iter().enumerate();
+        let pairs =
+            columns.filter(|(_, c)| **c != OUTLIER).map(|(r, &c)| (r as u32, near[c as usize].sample)).collect();
+        self.mark_used(near.len());
+        let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
+        let missing = absent
+            .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
+            .map(|(other, _)| other.sample)
+            .collect();
+        Correspondence { pairs, missing }
+    }
+}

@@ -1,0 +1,185 @@
+//! Search: the exemplar neighbourhood most like that of each output sample.
+//!
+//! Candidates come from the matches of the neighbours: where neighbour `o` was matched, the exemplar sample that then corresponded to this
+//! sample is a candidate, and so are the ones most similar to it (k-coherence [Ma 2011 §4.2]) or random ones around it (PatchMatch
+//! [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the result does not depend on the number of threads).
+//! Samples around which nothing changed keep their match.
+
+use arabesque_core::{Stage, Stream, Vector};
+use rayon::prelude::*;
+
+use crate::{
+    level::fall_off,
+    matching::{Matcher, Row, Surroundings},
+    params::{Matching, Search},
+    state::{Match, State},
+};
+
+/// How the search is done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SearchParams {
+    pub(crate) search: Search,
+    pub(crate) matching: Matching,
+    /// Cost of a missing sample relative to that of a surplus one.
+    pub(crate) missing: f32,
+    /// Members of a similarity set.
+    pub(crate) coherence: usize,
+    /// Random candidates a sample.
+    pub(crate) random: usize,
+    /// Distinguishes the random draws of this step from those of other steps.
+    pub(crate) step: u64,
+}
+
+/// Finds a match for every living sample. Returns how many samples were searched anew.
+pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchParams) -> usize {
+    let found: Vec<Option<Match>> = state
+        .living
+        .par_iter()
+        .map_init(
+            || Matcher::new(state.level, state.library, params.matching, params.missing),
+            |matcher, &s| search_one(state, s, params, matcher),
+        )
+        .collect();
+    let mut searched = 0;
+    for (k, found) in found.into_iter().enumerate() {
+        let s = state.living[k] as usize;
+        if let Some(found) = found {
+            state.samples[s].matched = Some(found);
+            searched += 1;
+        }
+    }
+    for sample in &mut state.samples {
+        sample.dirty = false;
+    }
+    searched
+}
+
+fn search_one<const D: usize>(
+    state: &State<'_, D>,
+    s: u32,
+    params: &SearchParams,
+    matcher: &mut Matcher<'_, D>,
+) -> Option<Match> {
+    let (around, dirty) = surroundings(state, s);
+    let old = state.samples[s as usize].matched.as_ref();
+    if !dirty && old.is_some_and(|m| m.members.len() == around.rows.len()) {
+        return None;
+    }
+    let position = state.samples[s as usize].position;
+    let frame = state.request.fields.frame(position);
+    let reach = (state.level.radius) * frame.spacing_scale;
+    let deep = state.domain().signed_distance(position) > reach;
+    let wanted = |offset: Vector<D>| deep || state.extent.may_hold(position + frame.to_output(offset));
+    let mut best = (f32::INFINITY, u32::MAX);
+    for i in candidates(state, s, &around, params) {
+        let cost = matcher.cost(&around, i, best.0, &wanted);
+        if cost < best.0 || (cost == best.0 && i < best.1) {
+            best = (cost, i);
+        }
+    }
+    let input = best.1;
+    let found = matcher.correspondence(&around, input, &wanted);
+    let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key as usize]).sum();
+    let own = state.level.outlier2[state.samples[s as usize].key as usize];
+    Some(Match {
+        input,
+        cost: best.0,
+        scale: scale + own,
+        pairs: found.pairs.iter().map(|&(row, i)| (around.rows[row as usize].sample, i)).collect(),
+        members: around.rows.iter().map(|r| r.sample).collect(),
+        missing: found.missing,
+    })
+}
+
+/// The neighbourhood of sample `s`, and whether anything in it changed.
+fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D>, bool) {
+    let sample = &state.samples[s as usize];
+    let frame = state.request.fields.frame(sample.position);
+    let radius = state.level.radius;
+    let mut dirty = sample.dirty;
+    let mut rows = Vec::with_capacity(sample.matched.as_ref().map_or(24, |m| m.members.len() + 4));
+    state.index.within(sample.position, radius * frame.spacing_scale, |slot, offset| {
+        let other = state.living[slot];
+        if other == s {
+            return;
+        }
+        let neighbour = &state.samples[other as usize];
+        let item = &state.items[neighbour.item as usize].item;
+        let offset = frame.to_exemplar(offset);
+        dirty |= neighbour.dirty;
+        rows.push(Row {
+            sample: other,
+            key: neighbour.key,
+            source: item.source,
+            offset,
+            weight: fall_off(offset, radius),
+            frozen: item.frozen.is_some(),
+        });
+    });
+    // Nearest first: the bound of the matcher then grows fastest.
+    rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
+    let source = state.items[sample.item as usize].item.source;
+    (Surroundings { source, rows }, dirty)
+}
+
+/// Exemplar samples to try for sample `s`, the likeliest first.
+fn candidates<const D: usize>(
+    state: &State<'_, D>,
+    s: u32,
+    around: &Surroundings<D>,
+    params: &SearchParams,
+) -> Vec<u32> {
+    let sample = &state.samples[s as usize];
+    let level = state.level;
+    let all = &level.of_key[sample.key as usize];
+    if params.search == Search::Exhaustive || all.len() <= 8 {
+        return all.clone();
+    }
+    let mut list = Vec::with_capacity(64);
+    let push = |list: &mut Vec<u32>, i: u32| {
+        if !list.contains(&i) {
+            list.push(i);
+        }
+    };
+    if let Some(m) = &sample.matched {
+        push(&mut list, m.input);
+    }
+    push(&mut list, level.first[around.source as usize] + sample.part);
+    let from_neighbours: Vec<u32> = around.rows.iter().filter_map(|row| implied(state, row.sample, s)).collect();
+    from_neighbours.iter().for_each(|&i| push(&mut list, i));
+    let seeds = list.len();
+    if params.search == Search::KCoherence && !level.alike.is_empty() {
+        for k in 0..seeds.min(6) {
+            let i = list[k];
+            level.alike[i as usize].iter().take(params.coherence).for_each(|&j| push(&mut list, j));
+        }
+    }
+    let mut random = Stream::new(state.request.seed ^ (params.step << 20), Stage::Search, u64::from(s));
+    for n in 0..params.random {
+        let seed = list[n % seeds];
+        push(&mut list, random_near(state, seed, all, n, &mut random));
+    }
+    list
+}
+
+/// The exemplar sample that `s` corresponds to when neighbour `o` lies where it was matched.
+fn implied<const D: usize>(state: &State<'_, D>, o: u32, s: u32) -> Option<u32> {
+    let matched = state.samples[o as usize].matched.as_ref()?;
+    matched.pairs.iter().find(|(sample, _)| *sample == s).map(|&(_, i)| i)
+}
+
+/// A random sample of the same key, in a window around `seed` that halves with each draw.
+fn random_near<const D: usize>(state: &State<'_, D>, seed: u32, all: &[u32], n: usize, random: &mut Stream) -> u32 {
+    let size = state.library.window.size().0.into_iter().fold(0.0, f64::max);
+    let window = size * 0.5_f64.powi((n % 4) as i32);
+    let centre = state.level.position[seed as usize];
+    let mut pick = all[random.below(all.len())];
+    // A few draws suffice: an empty window falls back to anywhere.
+    for _ in 0..4 {
+        if (state.level.position[pick as usize] - centre).norm() <= window {
+            break;
+        }
+        pick = all[random.below(all.len())];
+    }
+    pick
+}

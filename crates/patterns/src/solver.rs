@@ -1,0 +1,121 @@
+//! Least squares for positions: conjugate gradients on the graph of predictions.
+
+use arabesque_core::Vector;
+use rayon::prelude::*;
+
+/// `weight * |(x_to - x_from) - offset|^2` for a pair of unknowns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prediction<const D: usize> {
+    pub(crate) from: u32,
+    pub(crate) to: u32,
+    pub(crate) offset: Vector<D>,
+    pub(crate) weight: f64,
+}
+
+/// `weight * |x - target|^2` for one unknown.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull<const D: usize> {
+    pub(crate) target: Vector<D>,
+    pub(crate) weight: f64,
+}
+
+/// The normal equations of a sum of predictions and pulls: symmetric positive definite when every unknown has a pull of its own.
+///
+/// Unknowns are displacements from a start, so that positions on a torus need no common origin.
+pub(crate) struct NormalEquations<const D: usize> {
+    diagonal: Vec<f64>,
+    starts: Vec<u32>,
+    /// Other unknown and weight, row by row.
+    entries: Vec<(u32, f64)>,
+    right: Vec<Vector<D>>,
+    fixed: Vec<bool>,
+}
+
+/// Unknowns handled as one piece of parallel work; sums are taken piece by piece, so that they do not depend on the number of threads.
+const PIECE: usize = 4096;
+
+impl<const D: usize> NormalEquations<D> {
+    /// Equations for `n` displacements; `pulls[i]` belongs to unknown `i`, unknowns with `fixed[i]` stay at zero.
+    pub(crate) fn new(predictions: &[Prediction<D>], pulls: &[Pull<D>], fixed: Vec<bool>) -> Self {
+        let n = pulls.len();
+        let mut diagonal: Vec<f64> = pulls.iter().map(|p| p.weight).collect();
+        let mut right: Vec<_> = pulls.iter().map(|p| p.target * p.weight).collect();
+        let mut starts = vec![0_u32; n + 1];
+        for p in predictions {
+            starts[p.from as usize + 1] += 1;
+            starts[p.to as usize + 1] += 1;
+        }
+        for i in 1..=n {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![(0, 0.0); predictions.len() * 2];
+        for p in predictions {
+            for (a, b, sign) in [(p.from, p.to, -1.0), (p.to, p.from, 1.0)] {
+                let slot = &mut next[a as usize];
+                entries[*slot as usize] = (b, p.weight);
+                *slot += 1;
+                diagonal[a as usize] += p.weight;
+                right[a as usize] += p.offset * (sign * p.weight);
+            }
+        }
+        Self { diagonal, starts, entries, right, fixed }
+    }
+
+    fn row(&self, i: usize, x: &[Vector<D>]) -> Vector<D> {
+        if self.fixed[i] {
+            return Vector::ZERO;
+        }
+        let entries = &self.entries[self.starts[i] as usize..self.starts[i + 1] as usize];
+        entries.iter().fold(x[i] * self.diagonal[i], |sum, &(j, w)| sum - x[j as usize] * w)
+    }
+
+    fn residual(&self, x: &[Vector<D>]) -> Vec<Vector<D>> {
+        let one = |i: usize| if self.fixed[i] { Vector::ZERO } else { self.right[i] - self.row(i, x) };
+        (0..x.len()).into_par_iter().with_min_len(PIECE).map(one).collect()
+    }
+
+    /// Solves by conjugate gradients with the diagonal as preconditioner, from zero, until the residual is `tolerance` of the start or after
+    /// `most` steps. Never raises the sum of squares above its value at zero.
+    pub(crate) fn solve(&self, tolerance: f64, most: usize) -> Vec<Vector<D>> {
+        let n = self.right.len();
+        let mut x = vec![Vector::ZERO; n];
+        let mut r = self.residual(&x);
+        let mut z = self.preconditioned(&r);
+        let mut p = z.clone();
+        let mut rz = dot(&r, &z);
+        let stop = rz * tolerance * tolerance;
+        for _ in 0..most {
+            if rz <= stop || rz <= f64::MIN_POSITIVE {
+                break;
+            }
+            let q: Vec<_> = (0..n).into_par_iter().with_min_len(PIECE).map(|i| self.row(i, &p)).collect();
+            let alpha = rz / dot(&p, &q).max(f64::MIN_POSITIVE);
+            for i in 0..n {
+                x[i] += p[i] * alpha;
+                r[i] -= q[i] * alpha;
+            }
+            z = self.preconditioned(&r);
+            let next = dot(&r, &z);
+            let beta = next / rz;
+            rz = next;
+            for i in 0..n {
+                p[i] = z[i] + p[i] * beta;
+            }
+        }
+        x
+    }
+
+    fn preconditioned(&self, r: &[Vector<D>]) -> Vec<Vector<D>> {
+        r.iter().zip(&self.diagonal).map(|(&v, &d)| v * (1.0 / d.max(f64::MIN_POSITIVE))).collect()
+    }
+}
+
+fn dot<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
+    let pieces: Vec<f64> = a
+        .par_chunks(PIECE)
+        .zip(b.par_chunks(PIECE))
+        .map(|(a, b)| a.iter().zip(b).map(|(p, q)| p.dot(*q)).sum())
+        .collect();
+    pieces.into_iter().sum()
+}

@@ -3,7 +3,13 @@
 mod drawing;
 mod options;
 mod read;
+mod write;
+mod write_background;
+mod write_cut;
+mod write_flat;
+mod write_pieces;
 
 pub use drawing::{Drawing, Fragment, Job, Page, Placed, Unit};
 pub use options::{Method, ReadOptions};
 pub use read::{read_exemplar, read_flow, read_placed, read_shape};
+pub use write::{Bend, NAMESPACE, Sheet, Style, Written, recipe_of, write_svg};

@@ -1,0 +1,397 @@
+//! Writing results as SVG.
+//!
+//! The page keeps the units of the exemplar, layers carry Inkscape's labels, each exemplar element that is used stands once in `<defs>` and
+//! is placed by `<use>`; or every element is written out in place ([`Style::Expanded`]). The recipe travels in `<metadata>`.
+
+use std::{collections::BTreeSet, fmt::Write as _};
+
+use arabesque_core::{Border, Bounds, Domain, Outline, Placement, Result, Vector, Warning};
+
+use super::{
+    Drawing, Page, Placed, Unit,
+    write_background::background,
+    write_flat::{Flattener, Warp},
+};
+use crate::number::Decimals;
+
+/// Namespace of the elements and attributes that only arabesque understands.
+pub const NAMESPACE: &str = "urn:arabesque:1";
+
+/// How placed elements are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Style {
+    /// Each exemplar element once in `<defs>`, placed by `<use>`.
+    #[default]
+    Linked,
+    /// Every element written out in page coordinates, for cutters and plotters.
+    Expanded,
+}
+
+/// Bends deformed elements: `(placement, point of the exemplar) -> point of the output`.
+pub type Bend<'a> = dyn Fn(usize, Vector<2>) -> Vector<2> + 'a;
+
+/// Everything that one SVG file is made of.
+pub struct Sheet<'a> {
+    /// How the elements look.
+    pub drawing: &'a Drawing,
+    /// Where they lie.
+    pub placements: &'a [Placement<2>],
+    /// The looks of frozen placements and of what else is kept.
+    pub kept: Option<&'a Placed>,
+    /// Page of the result.
+    pub page: Page,
+    /// The filled domain, in page coordinates.
+    pub domain: &'a Domain<2>,
+    /// The outline of the domain where it is a shape.
+    pub shape: Option<&'a Outline<2>>,
+    /// Whether elements are cut at the border.
+    pub border: Border,
+    /// How deformed placements are bent; without it they are drawn rigid.
+    pub bend: Option<&'a Bend<'a>>,
+    /// Linked or expanded.
+    pub style: Style,
+    /// The recipe, as TOML.
+    pub recipe: Option<&'a str>,
+}
+
+/// An SVG text and what could not be written as asked.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The file.
+    pub text: String,
+    /// Elements that stayed links or were clipped instead of cut.
+    pub warnings: Vec<Warning>,
+}
+
+/// Writes a result.
+///
+/// # Errors
+/// [`arabesque_core::Error::Input`] when the markup of an element cannot be taken apart for expanding or bending.
+pub fn write_svg(sheet: &Sheet<'_>) -> Result<Written> {
+    let extent = sheet.page.view.size();
+    let mut writer = Writer {
+        sheet,
+        decimals: Decimals::for_extent(extent[0].max(extent[1])),
+        prefix: free_prefix(sheet),
+        out: String::new(),
+        warnings: Vec::new(),
+    };
+    writer.document()?;
+    Ok(Written { text: writer.out, warnings: writer.warnings })
+}
+
+/// The recipe in an SVG text that [`write_svg`] wrote.
+pub fn recipe_of(text: &str) -> Option<String> {
+    let document = roxmltree::Document::parse(text).ok()?;
+    let node = document.descendants().find(|n| n.has_tag_name((NAMESPACE, "recipe")))?;
+    Some(node.children().filter_map(|n| n.text()).collect())
+}
+
+struct Writer<'a> {
+    sheet: &'a Sheet<'a>,
+    decimals: Decimals,
+    prefix: String,
+    out: String,
+    warnings: Vec<Warning>,
+}
+
+impl<'a> Writer<'a> {
+    fn document(&mut self) -> Result<()> {
+        self.root();
+        self.metadata();
+        self.definitions();
+        self.background()?;
+        self.elements()?;
+        self.obstacles();
+        self.out.push_str("</svg>\n");
+        Ok(())
+    }
+
+    fn root(&mut self) {
+        let (view, size) = (self.sheet.page.view, self.sheet.page.view.size());
+        let d = self.decimals;
+        let per_user = self.sheet.page.unit_per_user;
+        let unit = unit_name(self.sheet.page.unit);
+        let lengths = Decimals::for_extent(size[0].max(size[1]) * per_user);
+        let _ = write!(
+            self.out,
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" \
+             xmlns:xlink=\"http://www.w3.org/1999/xlink\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
+             xmlns:arabesque=\"{NAMESPACE}\" version=\"1.1\" width=\"{}{unit}\" height=\"{}{unit}\" viewBox=\"{} {} {} {}\">\n",
+            lengths.format(size[0] * per_user),
+            lengths.format(size[1] * per_user),
+            d.format(view.min[0]),
+            d.format(view.min[1]),
+            d.format(size[0]),
+            d.format(size[1]),
+        );
+    }
+
+    fn metadata(&mut self) {
+        if let Some(recipe) = self.sheet.recipe {
+            // "]]>" would end the section: it is cut in two.
+            let safe = recipe.replace("]]>", "]]]]><![CDATA[>");
+            let _ =
+                write!(self.out, "<metadata>\n<arabesque:recipe><![CDATA[{safe}]]></arabesque:recipe>\n</metadata>\n");
+        }
+    }
+
+    fn definitions(&mut self) {
+        self.out.push_str("<defs>\n");
+        for text in
+            [Some(&self.sheet.drawing.definitions), self.sheet.kept.map(|k| &k.definitions)].into_iter().flatten()
+        {
+            if !text.trim().is_empty() {
+                self.out.push_str(text.trim_end());
+                self.out.push('\n');
+            }
+        }
+        if let Some(shape) = self.sheet.shape {
+            let _ = writeln!(
+                self.out,
+                "<clipPath id=\"{}-domain\"><path d=\"{}\" clip-rule=\"evenodd\"/></clipPath>",
+                self.prefix,
+                outline_data(shape, self.decimals)
+            );
+        }
+        if self.sheet.style == Style::Linked {
+            for source in self.linked_sources() {
+                let markup = &self.sheet.drawing.fragments[source].markup;
+                let _ = writeln!(self.out, "<g id=\"{}-element-{source}\">{markup}</g>", self.prefix);
+            }
+        }
+        self.out.push_str("</defs>\n");
+    }
+
+    /// The exemplar elements that are placed by `<use>`, each once.
+    fn linked_sources(&self) -> BTreeSet<usize> {
+        let own = self.sheet.placements.iter().filter(|p| !self.is_bent(p) && self.kept_markup(p).is_none());
+        own.map(|p| p.source).collect()
+    }
+
+    fn background(&mut self) -> Result<()> {
+        let Some(markup) = &self.sheet.drawing.background else { return Ok(()) };
+        let _ = write!(
+            self.out,
+            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Background\" id=\"{}-background\">\n{}\n</g>\n",
+            self.prefix,
+            background(markup, self.sheet, &self.prefix, self.decimals)?
+        );
+        Ok(())
+    }
+
+    fn elements(&mut self) -> Result<()> {
+        let _ = write!(
+            self.out,
+            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\" id=\"{}-output\"",
+            self.prefix
+        );
+        if self.clips_by_reference() {
+            let _ = write!(self.out, " clip-path=\"url(#{}-domain)\"", self.prefix);
+        }
+        self.out.push_str(">\n");
+        let cut = self.cut_outline();
+        let flattener = Flattener::new(self.sheet.drawing, cut.as_ref(), self.decimals);
+        let mut clipped = 0;
+        for (index, placement) in self.sheet.placements.iter().enumerate() {
+            for (copy, shift) in self.copies(placement).into_iter().enumerate() {
+                let id = if copy == 0 {
+                    format!("{}-{index}", self.prefix)
+                } else {
+                    format!("{}-{index}-{copy}", self.prefix)
+                };
+                clipped += self.element(&flattener, index, &id, shift)?;
+            }
+        }
+        self.out.push_str("</g>\n");
+        if clipped > 0 {
+            self.warnings.push(Warning::new(
+                format!("{clipped} pieces (pictures, text, linked parts, or pieces with gradients, clips or filters) were not flattened"),
+                "convert them to plain paths in the exemplar where the receiving machine needs that",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Writes one copy of one placement; returns how many of its pieces could not be flattened.
+    fn element(&mut self, flattener: &Flattener<'_>, index: usize, id: &str, shift: Vector<2>) -> Result<usize> {
+        let placement = &self.sheet.placements[index];
+        let exemplar = &self.sheet.drawing.exemplar;
+        let class = escape(&exemplar.classes[exemplar.elements[placement.source].class].name);
+        let data = format!("data-arabesque-source=\"{}\" data-arabesque-class=\"{class}\"", placement.source);
+        if let Some(markup) = self.kept_markup(placement) {
+            let _ = writeln!(
+                self.out,
+                "<g id=\"{id}\" {data} data-arabesque-kept=\"true\"{}>{markup}</g>",
+                self.shifted(shift)
+            );
+            return Ok(0);
+        }
+        let bent = self.is_bent(placement);
+        if self.sheet.style == Style::Linked && !bent {
+            let matrix = matrix(placement, shift, self.decimals);
+            let _ = writeln!(
+                self.out,
+                "<use id=\"{id}\" href=\"#{}-element-{}\" transform=\"{matrix}\" {data}/>",
+                self.prefix, placement.source
+            );
+            return Ok(0);
+        }
+        let bend = |p: Vector<2>| match self.sheet.bend {
+            Some(bend) => bend(index, p) + shift,
+            None => placement.transform.apply(p) + shift,
+        };
+        let mut moved = placement.transform;
+        moved.translation += shift;
+        let warp = if bent { Warp::Bent(&bend, moved) } else { Warp::Rigid(moved) };
+        let flat = flattener.element(placement.source, &warp, self.sheet.style)?;
+        if !flat.markup.is_empty() {
+            let _ = writeln!(self.out, "<g id=\"{id}\" {data}>{}</g>", flat.markup);
+        }
+        Ok(flat.kept_whole)
+    }
+
+    fn shifted(&self, shift: Vector<2>) -> String {
+        if shift == Vector::ZERO {
+            return String::new();
+        }
+        format!(" transform=\"translate({} {})\"", self.decimals.format(shift[0]), self.decimals.format(shift[1]))
+    }
+
+    /// What the user placed beside elements of the exemplar.
+    fn obstacles(&mut self) {
+        let Some(kept) = self.sheet.kept.filter(|k| !k.obstacle_fragments.is_empty()) else { return };
+        let _ =
+            writeln!(self.out, "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept\" id=\"{}-kept\">", self.prefix);
+        for fragment in &kept.obstacle_fragments {
+            self.out.push_str(&fragment.markup);
+            self.out.push('\n');
+        }
+        self.out.push_str("</g>\n");
+    }
+
+    fn is_bent(&self, placement: &Placement<2>) -> bool {
+        self.sheet.bend.is_some() && !placement.control.is_empty()
+    }
+
+    fn kept_markup(&self, placement: &Placement<2>) -> Option<&'a str> {
+        let fragment = self.sheet.kept?.fragments.get(placement.frozen?)?;
+        Some(&fragment.markup)
+    }
+
+    fn clips_by_reference(&self) -> bool {
+        self.sheet.border == Border::Clip && self.sheet.shape.is_some() && self.sheet.style == Style::Linked
+    }
+
+    /// What expanded elements are cut with: nothing on a torus, whose copies must stay whole to meet across the seam.
+    fn cut_outline(&self) -> Option<Outline<2>> {
+        if self.sheet.border != Border::Clip || self.sheet.style == Style::Linked {
+            return None;
+        }
+        match (self.sheet.shape, self.sheet.domain) {
+            (Some(shape), _) => Some(shape.clone()),
+            (None, Domain::Box(b)) => Some(rectangle(b)),
+            (None, _) => None,
+        }
+    }
+
+    /// The shifts under which a placement is seen: one, or on a torus one for every tile that it reaches into.
+    fn copies(&self, placement: &Placement<2>) -> Vec<Vector<2>> {
+        let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
+        let outline = &self.sheet.drawing.exemplar.elements[placement.source].outline;
+        let bounds = Bounds::around(outline.points().map(|p| placement.transform.apply(p)));
+        if bounds.is_empty() {
+            return vec![Vector::ZERO];
+        }
+        let size = tile.size();
+        let range = |k: usize| {
+            let first = ((tile.min[k] - bounds.max[k]) / size[k]).ceil() as i64;
+            let last = ((tile.max[k] - bounds.min[k]) / size[k]).floor() as i64;
+            first..=last
+        };
+        let mut shifts: Vec<_> = range(1).flat_map(|y| range(0).map(move |x| (x, y))).collect();
+        shifts.sort_by_key(|&(x, y)| (x != 0 || y != 0, y, x));
+        shifts.into_iter().map(|(x, y)| Vector::xy(x as f64 * size[0], y as f64 * size[1])).collect()
+    }
+}
+
+/// A prefix for new ids that no id of the exemplar starts with.
+fn free_prefix(sheet: &Sheet<'_>) -> String {
+    let kept = sheet.kept.into_iter().flat_map(|k| {
+        k.fragments.iter().chain(&k.obstacle_fragments).map(|f| &f.markup).chain(std::iter::once(&k.definitions))
+    });
+    let texts: Vec<&String> = sheet
+        .drawing
+        .fragments
+        .iter()
+        .map(|f| &f.markup)
+        .chain(std::iter::once(&sheet.drawing.definitions))
+        .chain(&sheet.drawing.background)
+        .chain(kept)
+        .collect();
+    let taken = |prefix: &str| texts.iter().any(|t| t.contains(&format!("\"{prefix}-")));
+    let candidates = std::iter::once("arabesque".to_owned()).chain((2..).map(|n| format!("arabesque{n}")));
+    candidates.into_iter().find(|p| !taken(p)).unwrap_or_else(|| "arabesque".to_owned())
+}
+
+fn matrix(placement: &Placement<2>, shift: Vector<2>, d: Decimals) -> String {
+    let t = &placement.transform;
+    let (r, s) = (t.rotation.0, t.scale);
+    let at = t.translation + shift;
+    let (e, f) = (d.format(at[0]), d.format(at[1]));
+    let linear = [r[0][0], r[1][0], r[0][1], r[1][1]].map(|v| d.plus(3).format(v * s));
+    if linear == ["1", "0", "0", "1"] {
+        return format!("translate({e} {f})");
+    }
+    format!("matrix({} {e} {f})", linear.join(" "))
+}
+
+/// The outline of a box.
+pub(super) fn rectangle(b: &Bounds<2>) -> Outline<2> {
+    let (a, c) = (b.min, b.max);
+    Outline { rings: vec![vec![a, Vector::xy(c[0], a[1]), c, Vector::xy(a[0], c[1])]] }
+}
+
+/// Path data of an outline.
+pub(super) fn outline_data(outline: &Outline<2>, d: Decimals) -> String {
+    let mut data = String::new();
+    for ring in &outline.rings {
+        for (k, p) in ring.iter().enumerate() {
+            let _ = write!(data, "{}{} {}", if k == 0 { "M" } else { "L" }, d.format(p[0]), d.format(p[1]));
+        }
+        data.push('Z');
+    }
+    data
+}
+
+/// The unit as SVG writes it.
+fn unit_name(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Px => "",
+        Unit::Mm => "mm",
+        Unit::Cm => "cm",
+        Unit::In => "in",
+        Unit::Pt => "pt",
+        Unit::Pc => "pc",
+        Unit::Q => "Q",
+    }
+}
+
+/// Text as an attribute value.
+pub(super) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\n' | '\r' | '\t' => {
+                let _ = write!(out, "&#{};", u32::from(c));
+            }
+            c if c < ' ' || c == '\u{FFFE}' || c == '\u{FFFF}' => out.push('\u{FFFD}'),
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -16,7 +16,7 @@ use crate::{
     level::Level,
     library::Library,
     noise,
-    params::{Existence, Initialisation, Matching, Params},
+    params::{Attributes, Existence, Initialisation, Matching, Params},
     positions,
     samples::ElementSamples,
     search::{self, SearchParams},
@@ -46,13 +46,13 @@ impl<const D: usize> Prepared<D> {
     /// # Errors
     /// When a parameter is out of range or contradicts the exemplar.
     pub fn new(exemplar: &Exemplar<D>, params: &Params) -> Result<Self> {
+        params.check()?;
         let library = Library::new(exemplar);
         let samples = ElementSamples::new(exemplar, params.samples);
-        let counts = [env("N0", 20.0), env("N1", 14.0), env("N2", 10.0)];
         let levels = (0..params.levels)
             .map(|l| {
                 let detail = if params.levels == 1 { 1.0 } else { l as f64 / (params.levels - 1) as f64 };
-                let count = counts[(l + 3 - params.levels.min(3)).min(2)];
+                let count = params.coarse_neighbours * (params.fine_neighbours / params.coarse_neighbours).powf(detail);
                 let radius = params.radius.unwrap_or_else(|| library.radius_for(count));
                 let slack = match params.matching {
                     Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max),
@@ -88,7 +88,7 @@ impl<const D: usize> Prepared<D> {
     fn initialise(&self, request: &Request<D>, extent: &Extent<'_, D>) -> Items<D> {
         let library = &self.library;
         let side = library.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
-        let patch = library.radius_for(env("PATCH", 14.0)).min(env("SIDE", 0.22) * side);
+        let patch = library.radius_for(self.params.patch).min(self.params.patch_share * side);
         let mut canvas = Canvas::new(&request.domain, extent.margin, 0.7 * patch * extent.largest_spacing_scale);
         if self.params.initialisation == Initialisation::WhiteNoise {
             noise::scatter(library, request, extent, &mut canvas);
@@ -98,8 +98,8 @@ impl<const D: usize> Prepared<D> {
             let params = GrowParams {
                 patch,
                 context: patch * env("CTX", 1.5),
-                repeat: env("REPEAT", 0.6),
-                balance: env("BALANCE", 0.1),
+                repeat: self.params.novelty,
+                balance: self.params.balance,
                 noise: env("NOISE", 0.02),
                 room_open: env("ROPEN", 0.5),
                 room_covered: env("RCOV", 0.75),
@@ -128,8 +128,8 @@ impl<const D: usize> Prepared<D> {
             let search = SearchParams {
                 search: params.search,
                 matching: params.matching,
-                missing: env("MISS", 1.0) as f32,
-                coherence: 4,
+                missing: params.missing as f32,
+                coherence: params.coherence,
                 random: if iteration == 0 { 8 } else { 2 },
                 step,
             };
@@ -150,7 +150,10 @@ impl<const D: usize> Prepared<D> {
 
     /// One assignment step. Returns whether anything changed.
     fn assign(&self, state: &mut State<'_, D>, targets: &[f64], floor: f64) -> bool {
-        let changed = attributes::assign(state);
+        let changed = match self.params.attributes {
+            Attributes::Selected => attributes::assign(state),
+            Attributes::Kept => 0,
+        };
         let position = positions::assign(state);
         let changes = match self.params.existence {
             Existence::Voted => existence::assign(state, targets, floor),

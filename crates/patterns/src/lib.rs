@@ -23,4 +23,4 @@ mod state;
 mod targets;
 
 pub use engine::Prepared;
-pub use params::{Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search};
+pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search};

@@ -2,6 +2,8 @@
 
 use arabesque_core::{Bounds, Outline, Similarity, Vector};
 
+use super::edges::{Edge, EdgeBands};
+
 /// Coordinates closer than this share of the figures' extent may touch or cross; only the area of the overlap decides.
 const CONTACT: f64 = 1e-11;
 
@@ -9,6 +11,7 @@ const CONTACT: f64 = 1e-11;
 #[derive(Clone, Debug)]
 pub(crate) struct Figure {
     outline: Outline<2>,
+    edges: EdgeBands,
     hull: Vec<Vector<2>>,
     bounds: Bounds<2>,
     /// Centre of the element; the radius is measured from it.
@@ -30,12 +33,11 @@ enum Meeting {
     Overlapping,
 }
 
-type Edge = (Vector<2>, Vector<2>);
-
 impl Figure {
     pub(crate) fn new(outline: Outline<2>, centre: Vector<2>) -> Self {
         let radius = outline.radius(centre);
-        Self { hull: convex_hull(outline.points()), bounds: outline.bounds(), area: outline.area(), centre, radius, outline }
+        let (edges, hull) = (EdgeBands::new(&outline), convex_hull(outline.points()));
+        Self { edges, hull, bounds: outline.bounds(), area: outline.area(), centre, radius, outline }
     }
 
     /// Whether there is no ink at all: a point.
@@ -43,18 +45,25 @@ impl Figure {
         self.outline.rings.is_empty()
     }
 
-    pub(crate) fn outline(&self) -> &Outline<2> {
-        &self.outline
+    /// The edges after `place`.
+    pub(crate) fn placed_edges(&self, place: &Similarity<2>) -> impl Iterator<Item = Edge> {
+        self.outline.rings.iter().flat_map(move |ring| {
+            let last = ring.last().map(|&p| place.apply(p));
+            ring.iter().scan(last, move |before, &p| {
+                let p = place.apply(p);
+                before.replace(p).map(|a| (a, p))
+            })
+        })
     }
 
-    /// Smallest box around the figure after `transform`.
-    pub(crate) fn bounds_after(&self, transform: &Similarity<2>) -> Bounds<2> {
-        Bounds::around(self.hull.iter().map(|&p| transform.apply(p)))
+    /// Smallest box around the figure after `place`.
+    pub(crate) fn placed_bounds(&self, place: &Similarity<2>) -> Bounds<2> {
+        Bounds::around(self.hull.iter().map(|&p| place.apply(p)))
     }
 
-    /// The convex hull, in a fixed turning sense.
-    pub(crate) fn hull(&self) -> &[Vector<2>] {
-        &self.hull
+    /// How much work the outline makes: the larger of two figures should be asked about the other.
+    pub(crate) fn complexity(&self) -> usize {
+        self.edges.len()
     }
 
     /// Whether the two inks certainly share area, where `place` carries the other figure into this one's coordinates.
@@ -91,30 +100,30 @@ impl Figure {
         if !self.bounds.intersects(&bounds) || separated(&self.hull, &hull, place.apply(other.centre) - self.centre) {
             return Meeting::Apart;
         }
-        let moved = other.outline.transformed(place);
         let eps = CONTACT * (self.bounds.size().norm2() + bounds.size().norm2());
-        let window = Bounds::new(self.bounds.min.zip(bounds.min, f64::max), self.bounds.max.zip(bounds.max, f64::min));
-        let mine: Vec<Edge> = self.outline.edges().filter(|e| touches(&window, e)).collect();
         let mut meeting = Meeting::Apart;
-        for edge in moved.edges().filter(|e| touches(&window, e)) {
-            for other in &mine {
-                match crossing(edge, *other, eps) {
+        for edge in other.placed_edges(place).filter(|edge| touches(&self.bounds, edge)) {
+            for mine in self.edges.between(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1])) {
+                match crossing(edge, *mine, eps) {
                     Meeting::Overlapping => return Meeting::Overlapping,
                     Meeting::Touching => meeting = Meeting::Touching,
                     Meeting::Apart => {}
                 }
             }
         }
-        if meeting == Meeting::Apart && (holds_a_ring(&self.outline, &moved) || holds_a_ring(&moved, &self.outline)) {
+        if meeting == Meeting::Apart && self.contains_or_is_contained(other, place) {
             return Meeting::Overlapping;
         }
         meeting
     }
-}
 
-/// Whether `outline` covers the start of a ring of `other`; decides containment where no edges meet.
-fn holds_a_ring(outline: &Outline<2>, other: &Outline<2>) -> bool {
-    other.rings.iter().filter_map(|ring| ring.first()).any(|&p| outline.contains(p))
+    /// Whether one figure holds a ring of the other; settles everything where no edges meet.
+    fn contains_or_is_contained(&self, other: &Self, place: &Similarity<2>) -> bool {
+        let starts = |figure: &Self| figure.outline.rings.iter().filter_map(|ring| ring.first().copied()).collect();
+        let (mine, others): (Vec<_>, Vec<_>) = (starts(self), starts(other));
+        let back = place.inverse();
+        others.iter().any(|&p| self.edges.covers(place.apply(p))) || mine.iter().any(|&p| other.edges.covers(back.apply(p)))
+    }
 }
 
 /// Whether the projections on `axis` do not overlap.
@@ -158,7 +167,7 @@ fn distance2((a, b): Edge, p: Vector<2>) -> f64 {
     (a + along * t - p).norm2()
 }
 
-/// Corners of the convex hull, by the monotone chain [Andrew 1979].
+/// Corners of the convex hull, by the monotone chain of their order from left to right.
 fn convex_hull(points: impl Iterator<Item = Vector<2>>) -> Vec<Vector<2>> {
     let mut sorted: Vec<_> = points.collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));

@@ -278,3 +278,20 @@ fn the_pictures_of_the_documentation_are_small_and_shown() {
         assert!(texts.contains(&*name), "{name}: no document shows it");
     }
 }
+
+#[test]
+fn the_readme_opens_with_a_picture_and_a_command() {
+    let readme = read(&root().join("README.md"));
+    let line = |start: &str| readme.lines().position(|l| l.starts_with(start)).map_or(usize::MAX, |k| k + 1);
+    assert!(line("![") <= 12, "the first picture is at line {}", line("!["));
+    assert!(line("cargo run") <= 30, "the first command is at line {}", line("cargo run"));
+}
+
+#[test]
+fn every_example_is_shown() {
+    let texts: String = ["README.md", "docs/gallery.md"].iter().map(|name| read(&root().join(name))).collect();
+    for path in files(&root().join("examples"), &[""]) {
+        let name = format!("examples/{}", path.file_name().unwrap().to_string_lossy());
+        assert!(texts.contains(&name), "{name} is in no command of README.md and docs/gallery.md");
+    }
+}

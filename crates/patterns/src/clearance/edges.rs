@@ -55,8 +55,9 @@ impl EdgeBands {
 
     /// Whether `p` is covered: an odd number of edges to its right.
     pub(crate) fn covers(&self, p: Vector<2>) -> bool {
-        let to_the_right =
-            |(a, b): &&Edge| (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+        let to_the_right = |(a, b): &&Edge| {
+            (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        };
         let (band, _) = self.range(p[1], p[1]);
         self.edges[self.starts[band]..self.starts[band + 1]].iter().filter(to_the_right).count() % 2 == 1
     }

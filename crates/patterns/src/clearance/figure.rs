@@ -45,6 +45,16 @@ impl Figure {
         self.outline.rings.is_empty()
     }
 
+    /// The ink.
+    pub(crate) fn outline(&self) -> &Outline<2> {
+        &self.outline
+    }
+
+    /// Whether there is ink at `p`.
+    pub(crate) fn covers(&self, p: Vector<2>) -> bool {
+        self.edges.covers(p)
+    }
+
     /// The edges after `place`.
     pub(crate) fn placed_edges(&self, place: &Similarity<2>) -> impl Iterator<Item = Edge> {
         self.outline.rings.iter().flat_map(move |ring| {
@@ -122,7 +132,8 @@ impl Figure {
         let starts = |figure: &Self| figure.outline.rings.iter().filter_map(|ring| ring.first().copied()).collect();
         let (mine, others): (Vec<_>, Vec<_>) = (starts(self), starts(other));
         let back = place.inverse();
-        others.iter().any(|&p| self.edges.covers(place.apply(p))) || mine.iter().any(|&p| other.edges.covers(back.apply(p)))
+        others.iter().any(|&p| self.edges.covers(place.apply(p)))
+            || mine.iter().any(|&p| other.edges.covers(back.apply(p)))
     }
 }
 

@@ -82,7 +82,8 @@ impl<'a> Scene<'a> {
     /// `shared` figures have the indices from 0, `own` ones follow.
     pub(crate) fn new(domain: &'a Domain<2>, shared: &'a [Figure], own: Vec<Figure>, bodies: Vec<Body>) -> Self {
         let origin = bodies.iter().map(|b| b.centre).collect();
-        let mut scene = Self { domain, shared, own, layer_of: vec![0; bodies.len()], bodies, layers: Vec::new(), origin };
+        let mut scene =
+            Self { domain, shared, own, layer_of: vec![0; bodies.len()], bodies, layers: Vec::new(), origin };
         scene.build_layers();
         scene
     }
@@ -115,8 +116,7 @@ impl<'a> Scene<'a> {
         self.origin[i]
     }
 
-    /// Calls `visit(j)` for every other body that could meet one of `radius` that started as body `i`, when each of the two may
-    /// have moved by `slack` since. Ascending layers, from that of body `i` on when `upwards`.
+    /// Calls `visit(j)` for every body of some layers that started within `reach` and its own layer's largest radius of the start of body `i`.
     fn near(&self, i: usize, reach: f64, layers: std::ops::Range<usize>, mut visit: impl FnMut(usize)) {
         for layer in &self.layers[layers] {
             layer.grid.within(self.origin[i], reach + layer.largest, |slot, _| visit(layer.members[slot]));
@@ -164,6 +164,13 @@ impl<'a> Scene<'a> {
         let sum: f64 = self.images(a, b).filter(|o| !itself || o.norm2() > 0.0).map(area).sum();
         // An image to the left and one to the right are the same meeting of a body with itself.
         if itself { 0.5 * sum } else { sum }
+    }
+
+    /// Smallest distance between the inks of two bodies of a scene that is no torus.
+    pub(crate) fn gap(&self, i: usize, j: usize) -> f64 {
+        let (a, b) = (&self.bodies[i], &self.bodies[j]);
+        let place = a.place.inverse().after(&b.place);
+        self.figure(a.figure).gap(self.figure(b.figure), &place) * a.place.scale
     }
 
     /// Whether two bodies share area, however little, or touch so closely that they may.

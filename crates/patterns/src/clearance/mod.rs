@@ -1,0 +1,86 @@
+//! The last word on the output: no element overlaps another, or anything in the way, more than the exemplar shows, and none
+//! breaks the rule of the border.
+//!
+//! Checked on the real outlines. What is wrong is mended with the smallest change that works: a shift, then a smaller element of
+//! the same class, then removal. In space, and for points, there is nothing to check.
+
+mod edges;
+mod figure;
+mod ground;
+mod limits;
+mod relax;
+mod repair;
+mod scene;
+#[cfg(test)]
+mod tests;
+
+use std::any::Any;
+
+use arabesque_core::{Domain, Exemplar, Placement, Request, Warning};
+
+pub(crate) use limits::ExemplarClearance;
+use scene::Scene;
+
+/// What a repair did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Summary {
+    /// Pairs that overlapped more than they may.
+    pub(crate) pairs: usize,
+    /// Elements that broke the rule of the border.
+    pub(crate) outside: usize,
+    /// Elements that were shifted.
+    pub(crate) moved: usize,
+    /// Elements that gave way to a smaller one of their class.
+    pub(crate) exchanged: usize,
+    /// Elements that were taken out.
+    pub(crate) removed: usize,
+}
+
+impl Summary {
+    /// What the user should know: `None` when shifts were enough.
+    pub(crate) fn warning(&self) -> Option<Warning> {
+        if self.removed + self.exchanged == 0 {
+            return None;
+        }
+        let Self { pairs, outside, removed, exchanged, .. } = self;
+        let message = format!(
+            "{pairs} pairs of elements overlapped more than in the exemplar and {outside} elements reached out of the domain; \
+             {exchanged} were exchanged for smaller ones and {removed} left out"
+        );
+        Some(Warning::new(message, "lower the density, or leave more room around kept elements and obstacles"))
+    }
+}
+
+/// Measures the exemplar. `None` where overlaps have no meaning: in space, and for points.
+pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<ExemplarClearance> {
+    (exemplar as &dyn Any).downcast_ref().and_then(ExemplarClearance::new)
+}
+
+/// Mends overlaps and border violations in `placements`; those with a `frozen` entry stay untouched. Order is kept.
+///
+/// `clearance` is [`measure`]d from the exemplar of the placements.
+pub(crate) fn repair<const D: usize>(
+    clearance: Option<&ExemplarClearance>,
+    request: &Request<D>,
+    placements: &mut Vec<Placement<D>>,
+) -> Summary {
+    let request = (request as &dyn Any).downcast_ref::<Request<2>>();
+    let placements = (placements as &mut dyn Any).downcast_mut::<Vec<Placement<2>>>();
+    match (clearance, request, placements) {
+        (Some(clearance), Some(request), Some(placements)) => repair::repair(clearance, request, placements),
+        _ => Summary::default(),
+    }
+}
+
+/// Common area of all pairs of elements as a share of the area of all elements; 0 for points.
+///
+/// `placements` refer to the elements of `exemplar`; on a torus every element counts once, with the images of the others.
+pub fn overlap_ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], domain: &Domain<2>) -> f64 {
+    let Some(clearance) = ExemplarClearance::new(exemplar) else {
+        return 0.0;
+    };
+    let (own, bodies) = clearance.bodies(placements);
+    let scene = Scene::new(domain, &clearance.figures, own, bodies);
+    let common: f64 = scene.overlaps().iter().map(|overlap| overlap.area).sum();
+    common / limits::ink(&scene).max(f64::MIN_POSITIVE)
+}

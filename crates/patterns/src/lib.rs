@@ -4,7 +4,9 @@ mod assignment;
 mod attributes;
 mod buckets;
 mod canvas;
+mod clearance;
 mod coverage;
+mod deform;
 mod engine;
 mod existence;
 mod extent;
@@ -22,5 +24,7 @@ mod solver;
 mod state;
 mod targets;
 
+pub use clearance::overlap_ratio;
+pub use deform::warp;
 pub use engine::Prepared;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search};

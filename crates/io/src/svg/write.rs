@@ -365,7 +365,7 @@ pub(super) fn outline_data(outline: &Outline<2>, d: Decimals) -> String {
 }
 
 /// The unit as SVG writes it.
-fn unit_name(unit: Unit) -> &'static str {
+pub(super) fn unit_name(unit: Unit) -> &'static str {
     match unit {
         Unit::Px => "",
         Unit::Mm => "mm",

@@ -1,0 +1,130 @@
+//! Results, and the files they are written as.
+
+use arabesque_core::{Error, Limits, Observer, Outcome, Result, Warning};
+use arabesque_io::{
+    csv, json,
+    png::{Plate, Resolution, write_png},
+    svg::{Sheet, Style, Written, write_svg},
+};
+
+use crate::{Format, OutputOptions, Prepared, Recipe, size::unit_name};
+
+/// The result of one run.
+#[derive(Clone, Debug)]
+pub struct Artwork<'a> {
+    prepared: &'a Prepared,
+    /// Placements, energy trace, warnings, and why the run ended.
+    pub outcome: Outcome<2>,
+    /// Seed of the run.
+    pub seed: u64,
+}
+
+/// A file, complete.
+#[derive(Clone, Debug)]
+pub struct Encoded {
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// What could not be written as asked.
+    pub warnings: Vec<Warning>,
+}
+
+impl Prepared {
+    /// Runs with the given seed. Any number of runs may be made from one preparation.
+    ///
+    /// # Errors
+    /// [`Error::NoResult`] when nothing can be placed, [`Error::Limit`] when a limit is reached.
+    pub fn run(&self, seed: u64, observer: &mut dyn Observer<2>) -> Result<Artwork<'_>> {
+        let mut request = self.request.clone();
+        request.seed = seed;
+        let mut outcome = self.engine.run(&request, observer)?;
+        if outcome.placements.is_empty() {
+            return Err(Error::no_result(
+                "no element fits the domain under the given constraints",
+                "make the domain larger or the avoided shapes smaller, or let elements cross the border with --border cross or clip",
+            ));
+        }
+        outcome.warnings.splice(0..0, self.warnings.iter().cloned());
+        Ok(Artwork { prepared: self, outcome, seed })
+    }
+}
+
+impl Artwork<'_> {
+    /// The recipe of this very result, as its file carries it.
+    ///
+    /// # Errors
+    /// As [`Recipe::to_toml`].
+    pub fn recipe(&self, output: &OutputOptions) -> Result<String> {
+        let output = OutputOptions { path: None, ..output.clone() };
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Recipe { seed: self.seed, arabesque: version, output, ..self.prepared.recipe.clone() }.to_toml()
+    }
+
+    /// The file in the format that `output` asks for; SVG where it does not say.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a picture with too many pixels, [`Error::Input`] when markup of the exemplar cannot be taken apart.
+    pub fn encode(&self, output: &OutputOptions) -> Result<Encoded> {
+        let format = output.format.unwrap_or(Format::Svg);
+        let recipe = self.recipe(&OutputOptions { format: Some(format), ..output.clone() })?;
+        let carried = (!output.bare).then_some(recipe.as_str());
+        let exemplar = &self.prepared.drawing.exemplar;
+        let size = self.prepared.page.view.size();
+        let plain = |text: String| Encoded { bytes: text.into_bytes(), warnings: Vec::new() };
+        match format {
+            Format::Svg => {
+                let written = self.svg(output, carried)?;
+                Ok(Encoded { bytes: written.text.into_bytes(), warnings: written.warnings })
+            }
+            Format::Png => {
+                let written = self.svg(&OutputOptions { expand: false, ..output.clone() }, None)?;
+                let plate =
+                    Plate { svg: &written.text, units: size.0, resolution: resolution(output)?, recipe: carried };
+                Ok(Encoded { bytes: write_png(&plate, &Limits::default())?, warnings: written.warnings })
+            }
+            Format::Json => {
+                let page = &self.prepared.page;
+                let unit = (!self.prepared.is_points).then_some((unit_name(page.unit), page.unit_per_user));
+                let frame = json::Frame { view: page.view, unit, recipe: carried };
+                json::write_json(exemplar, &self.outcome, &frame).map(plain)
+            }
+            Format::Csv => {
+                Ok(plain(csv::write_points(exemplar, &self.outcome.placements, size[0].max(size[1]), carried)))
+            }
+            Format::Toml => Ok(plain(recipe)),
+        }
+    }
+
+    fn svg(&self, output: &OutputOptions, recipe: Option<&str>) -> Result<Written> {
+        let prepared = self.prepared;
+        let placements = &self.outcome.placements;
+        let bend = |k: usize, p| arabesque_patterns::warp(&placements[k].control, p);
+        write_svg(&Sheet {
+            drawing: &prepared.drawing,
+            placements,
+            kept: prepared.kept.as_ref(),
+            page: prepared.page,
+            domain: &prepared.request.domain,
+            shape: prepared.shape.as_ref(),
+            border: prepared.request.border,
+            bend: Some(&bend),
+            style: if output.expand { Style::Expanded } else { Style::Linked },
+            recipe,
+        })
+    }
+}
+
+fn resolution(output: &OutputOptions) -> Result<Resolution> {
+    let (name, value, resolution) = match (output.dpi, output.pixels_per_unit) {
+        (None, None) => return Ok(Resolution::default()),
+        (Some(_), Some(_)) => {
+            return Err(Error::parameter("dpi", "given with pixels-per-unit", "only one of the two"));
+        }
+        (Some(dpi), None) => ("dpi", dpi, Resolution::PerInch(dpi)),
+        (None, Some(n)) => ("pixels-per-unit", n, Resolution::PerUnit(n)),
+    };
+    if value.is_finite() && value > 0.0 {
+        Ok(resolution)
+    } else {
+        Err(Error::parameter(name, value, "a positive number"))
+    }
+}

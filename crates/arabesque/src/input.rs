@@ -1,0 +1,187 @@
+//! Files that a recipe refers to, with their content where it is small.
+
+use std::path::Path;
+
+use arabesque_core::{Error, Limits, Result};
+use arabesque_io::file;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Content up to this size travels inside the recipe. In bytes.
+pub const EMBEDDED_BYTES: usize = 1 << 20;
+
+/// A file that a run reads.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Input {
+    /// Where it was: relative to the file that holds the recipe, or to the working folder.
+    pub path: String,
+    /// The one item of the file that counts, by its id.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
+    /// Fingerprint of the content (FNV-1a, 128 bits): a changed file is noticed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hash: Option<String>,
+    /// How `content` is written; plain text when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub encoding: Option<Encoding>,
+    /// The content itself; when absent the file is read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub content: Option<String>,
+}
+
+/// How content is written in a recipe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Encoding {
+    /// RFC 4648 base 64.
+    Base64,
+}
+
+impl Input {
+    /// The file at `path`.
+    pub fn file(path: impl Into<String>) -> Self {
+        Self { path: path.into(), ..Self::default() }
+    }
+
+    /// A shape as `FILE.svg` or `FILE.svg#id`.
+    pub fn shape(text: &str) -> Self {
+        match text.rsplit_once('#') {
+            Some((path, id)) if !path.is_empty() && !id.is_empty() => {
+                Self { path: path.to_owned(), id: Some(id.to_owned()), ..Self::default() }
+            }
+            _ => Self::file(text),
+        }
+    }
+
+    /// The content: from the recipe itself, or from the file, looked for beside `base` first.
+    ///
+    /// # Errors
+    /// As [`file::read_bytes`]; [`Error::Input`] when the content is not the one that the fingerprint was taken of.
+    pub fn read(&self, base: Option<&Path>, limits: &Limits) -> Result<Vec<u8>> {
+        let bytes = match (&self.content, self.encoding) {
+            (Some(text), None) => text.clone().into_bytes(),
+            (Some(text), Some(Encoding::Base64)) => {
+                decode(text).ok_or_else(|| Error::input(self.name(), "broken base 64", "give the path alone"))?
+            }
+            (None, _) => file::read_bytes(&self.resolved(base), limits)?,
+        };
+        match &self.hash {
+            Some(hash) if *hash != fingerprint(&bytes) => Err(Error::input(
+                self.name(),
+                "the file has changed since the recipe was written",
+                "restore it, or remove the line `hash` from the recipe",
+            )),
+            _ => Ok(bytes),
+        }
+    }
+
+    fn resolved(&self, base: Option<&Path>) -> String {
+        let beside = base.map(|b| b.join(&self.path)).filter(|p| self.path != file::STANDARD && p.exists());
+        beside.map_or_else(|| self.path.clone(), |p| p.to_string_lossy().into_owned())
+    }
+
+    /// The name for messages.
+    pub fn name(&self) -> &str {
+        if self.path == file::STANDARD { "standard input" } else { &self.path }
+    }
+
+    /// This input with its content in it, if that is small or cannot be read twice, and with its fingerprint.
+    #[must_use]
+    pub fn carrying(&self, bytes: &[u8]) -> Self {
+        let mut kept = Self { hash: Some(fingerprint(bytes)), content: None, encoding: None, ..self.clone() };
+        if bytes.len() > EMBEDDED_BYTES && self.path != file::STANDARD {
+            return kept;
+        }
+        match std::str::from_utf8(bytes) {
+            Ok(text) if text.chars().all(is_plain) => kept.content = Some(text.to_owned()),
+            _ => {
+                kept.content = Some(encode(bytes));
+                kept.encoding = Some(Encoding::Base64);
+            }
+        }
+        kept
+    }
+}
+
+/// Whether a character comes back unchanged from TOML, XML and comment lines alike.
+fn is_plain(c: char) -> bool {
+    c == '\n'
+        || c == '\t'
+        || (!c.is_control() && !matches!(c, '\u{2028}' | '\u{2029}' | '\u{FFFE}' | '\u{FFFF}' | '\u{FEFF}'))
+}
+
+/// FNV-1a over the bytes: it tells files apart, it does not protect against forgery.
+pub(crate) fn fingerprint(bytes: &[u8]) -> String {
+    let start: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+    let hash =
+        bytes.iter().fold(start, |h, &b| (h ^ u128::from(b)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013B));
+    format!("{hash:032x}")
+}
+
+const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+fn encode(bytes: &[u8]) -> String {
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let word = chunk.iter().fold(0_u32, |w, &b| w << 8 | u32::from(b)) << (8 * (3 - chunk.len()));
+        for k in 0..4 {
+            let sextet = (word >> (18 - 6 * k)) & 63;
+            out.push(if k <= chunk.len() { char::from(ALPHABET[sextet as usize]) } else { '=' });
+        }
+    }
+    out
+}
+
+fn decode(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut word, mut bits) = (0_u32, 0);
+    for b in text.bytes().filter(|b| !b.is_ascii_whitespace() && *b != b'=') {
+        let sextet = ALPHABET.iter().position(|&a| a == b)? as u32;
+        (word, bits) = (word << 6 | sextet, bits + 6);
+        if bits >= 8 {
+            bits -= 8;
+            out.push((word >> bits) as u8);
+            word &= (1 << bits) - 1;
+        }
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base_64_round_trip() {
+        assert_eq!(encode(b"Man"), "TWFu");
+        assert_eq!(encode(b"Ma"), "TWE=");
+        for n in 0..70_u8 {
+            let bytes: Vec<u8> = (0..n).map(|k| k.wrapping_mul(37)).collect();
+            assert_eq!(decode(&encode(&bytes)).unwrap(), bytes);
+        }
+        assert!(decode("a?b").is_none());
+    }
+
+    #[test]
+    fn content_travels_and_changes_are_noticed() {
+        for bytes in [&b"plain\ntext"[..], b"carriage\r\nreturn", &[0, 255, 7]] {
+            let input = Input::file("nowhere.svg").carrying(bytes);
+            assert_eq!(input.read(None, &Limits::default()).unwrap(), bytes);
+        }
+        let mut input = Input::file("nowhere.svg").carrying(b"one");
+        input.content = Some("two".into());
+        assert!(input.read(None, &Limits::default()).unwrap_err().to_string().contains("has changed"));
+    }
+
+    #[test]
+    fn large_content_stays_outside() {
+        assert!(Input::file("x").carrying(&vec![b'a'; EMBEDDED_BYTES + 1]).content.is_none());
+    }
+
+    #[test]
+    fn shapes_have_ids() {
+        assert_eq!(Input::shape("a.svg#heart").id.as_deref(), Some("heart"));
+        assert_eq!(Input::shape("a.svg").id, None);
+    }
+}

@@ -1,0 +1,364 @@
+//! From a recipe to a prepared run: every file is read, every unit resolved, nothing is synthesised yet.
+
+use std::path::Path;
+
+use arabesque_core::{
+    Border, Bounds, Domain, Error, Fields, Limits, Matrix, OrientationField, Outline, Placement, Request, Result,
+    ScalarField, Shape, Vector, Warning,
+};
+use arabesque_io::{
+    file,
+    picture::Picture,
+    png,
+    svg::{self, Drawing, Page, Placed, ReadOptions},
+};
+use arabesque_patterns::{Params, Prepared as Engine};
+
+use crate::{FieldSource, Input, Recipe, Size, Subject, recipe::FieldFile, size::pixels_per_user, subject::dots};
+
+/// Nodes along the longer side of a direction field that comes from strokes.
+const STROKE_NODES: usize = 128;
+/// Values of black and white in a picture of scale.
+const SCALE_RANGE: [f64; 2] = [0.5, 2.0];
+/// Values of black and white in a picture of density.
+const DENSITY_RANGE: [f64; 2] = [0.2, 1.0];
+/// Smallest and largest factor that a field may hold.
+const FACTORS: [f64; 2] = [0.01, 100.0];
+
+/// A run, ready to be started with any seed.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The recipe, with small inputs inside it.
+    pub(crate) recipe: Recipe,
+    /// The exemplar as it is drawn.
+    pub(crate) drawing: Drawing,
+    /// Whether the exemplar was a file of points.
+    pub(crate) is_points: bool,
+    pub(crate) engine: Engine<2>,
+    pub(crate) request: Request<2>,
+    pub(crate) page: Page,
+    /// Outline of the domain where it is a shape.
+    pub(crate) shape: Option<Outline<2>>,
+    pub(crate) kept: Option<Placed>,
+    /// What was noticed while reading.
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl Recipe {
+    /// Reads everything that the recipe refers to, beside `base` first, and analyses the exemplar.
+    ///
+    /// # Errors
+    /// Whatever the files or the parameters are wrong with; the message names the file or the parameter.
+    pub fn prepare(&self, base: Option<&Path>) -> Result<Prepared> {
+        Preparation { recipe: self.clone(), base, limits: Limits::default(), warnings: Vec::new() }.finish()
+    }
+
+    /// The parameters of the engine that the recipe stands for.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown preset or name, or a value out of range.
+    pub fn params(&self) -> Result<Params> {
+        let mut params = Params::preset(&self.preset)?;
+        for (name, value) in &self.set {
+            params.set(name, value)?;
+        }
+        let shortcuts = [
+            ("radius", self.radius.map(|v| v.to_string())),
+            ("levels", self.levels.map(|v| v.to_string())),
+            ("iterations", self.iterations.map(|v| v.to_string())),
+        ];
+        for (name, value) in shortcuts {
+            if let Some(value) = value {
+                params.set(name, &value)?;
+            }
+        }
+        Ok(params)
+    }
+}
+
+/// A domain with the page that shows it.
+struct Place {
+    domain: Domain<2>,
+    shape: Option<Outline<2>>,
+    page: Page,
+}
+
+struct Preparation<'a> {
+    recipe: Recipe,
+    base: Option<&'a Path>,
+    limits: Limits,
+    warnings: Vec<Warning>,
+}
+
+impl Preparation<'_> {
+    fn finish(mut self) -> Result<Prepared> {
+        // What is wrong on the command line is told before what is wrong in a file.
+        let params = self.recipe.params()?;
+        let sizes = [&self.recipe.size, &self.recipe.tile].map(|s| s.as_deref().map(str::parse::<Size>));
+        for size in sizes.into_iter().flatten() {
+            size?;
+        }
+        let bytes = self.recipe.exemplar.read(self.base, &self.limits)?;
+        let subject = Subject::read(&self.recipe.exemplar, &bytes, self.recipe.method, &self.limits)?;
+        self.recipe.exemplar = self.recipe.exemplar.carrying(&bytes);
+        let (mut drawing, points) = match subject {
+            Subject::Drawing(drawing) => (*drawing, None),
+            Subject::Points(exemplar) => (dots(&exemplar), Some(exemplar)),
+            Subject::Space(_) => {
+                return Err(Error::Unsupported {
+                    what: format!("{}: filling space with points", self.recipe.exemplar.name()),
+                    advice: "give points without a z column".into(),
+                });
+            }
+        };
+        self.warnings.append(&mut drawing.warnings);
+        let place = self.place(&drawing, points.is_some())?;
+        let exemplar = points.as_ref().unwrap_or(&drawing.exemplar);
+        self.check_room(exemplar, &place.domain)?;
+        let mut request = Request::new(place.domain);
+        request.border = self.recipe.border.into();
+        request.fields = self.fields(&drawing, &request.domain.bounds())?;
+        request.obstacles = self.avoided(&drawing, &request.domain)?;
+        let kept = self.kept(&drawing, points.is_some())?;
+        if let Some(kept) = &kept {
+            request.frozen.clone_from(&kept.placements);
+            request.obstacles.extend(kept.obstacles.iter().cloned());
+        }
+        Ok(Prepared {
+            engine: Engine::new(exemplar, &params)?,
+            is_points: points.is_some(),
+            recipe: self.recipe,
+            drawing,
+            request,
+            page: place.page,
+            shape: place.shape,
+            kept,
+            warnings: self.warnings,
+        })
+    }
+
+    fn place(&mut self, drawing: &Drawing, is_points: bool) -> Result<Place> {
+        let recipe = &self.recipe;
+        let given = [recipe.size.is_some(), recipe.tile.is_some(), recipe.domain.is_some()];
+        if given.iter().filter(|g| **g).count() > 1 {
+            return Err(Error::parameter("domain", "more than one", "only one of size, tile and domain"));
+        }
+        if let Some(text) = recipe.size.as_ref().or(recipe.tile.as_ref()) {
+            let size: Size = text.parse()?;
+            if is_points && size.unit.is_some() {
+                return Err(Error::parameter("size", text, "plain numbers, because points have no unit of length"));
+            }
+            let (_, page) = size.on(&drawing.page);
+            let domain = if recipe.tile.is_some() { Domain::Torus(page.view) } else { Domain::Box(page.view) };
+            return Ok(Place { domain, shape: None, page });
+        }
+        if let Some(input) = recipe.domain.clone() {
+            let (shape, page) = self.shape(&input, drawing, is_points)?;
+            self.recipe.domain = Some(self.embedded(&input)?);
+            return Ok(shaped(shape, page));
+        }
+        match &drawing.job.domain {
+            Some(shape) => Ok(shaped(shape.clone(), drawing.page)),
+            None => Err(Error::parameter(
+                "domain",
+                "none",
+                "--size WxH, --tile WxH or --domain SHAPE.svg, or an exemplar with a layer Domain",
+            )),
+        }
+    }
+
+    fn embedded(&self, input: &Input) -> Result<Input> {
+        Ok(input.carrying(&input.read(self.base, &self.limits)?))
+    }
+
+    fn options(&self, input: &Input) -> ReadOptions {
+        ReadOptions { limits: self.limits, ..ReadOptions::new(input.name()) }
+    }
+
+    fn text(&self, input: &Input) -> Result<String> {
+        file::decode_text(input.name(), &input.read(self.base, &self.limits)?)
+    }
+
+    /// A shape of another file in the units of the exemplar, and its page in the same units.
+    fn shape(&self, input: &Input, drawing: &Drawing, is_points: bool) -> Result<(Shape, Page)> {
+        let (shape, page) = svg::read_shape(&self.text(input)?, input.id.as_deref(), &self.options(input))?;
+        let factor = if is_points { 1.0 } else { pixels_per_user(&page) / pixels_per_user(&drawing.page) };
+        if !(factor.is_finite() && factor > 0.0) {
+            return Err(Error::input(input.name(), "a page without size", "give the page a width and a height"));
+        }
+        if factor == 1.0 {
+            return Ok((shape, page));
+        }
+        let rings = shape.outline().rings.iter().map(|ring| ring.iter().map(|&p| p * factor).collect()).collect();
+        let scaled = Shape::from_outline(Outline { rings })
+            .ok_or_else(|| Error::input(input.name(), "a shape without area", "draw a closed shape"))?;
+        let view = Bounds::new(page.view.min * factor, page.view.max * factor);
+        Ok((scaled, Page { view, unit: page.unit, unit_per_user: page.unit_per_user / factor }))
+    }
+
+    fn check_room(&self, exemplar: &arabesque_core::Exemplar<2>, domain: &Domain<2>) -> Result<()> {
+        let expected = domain.measure() / exemplar.spacing().powi(2);
+        if !(expected <= self.limits.output_elements as f64) {
+            return Err(Error::Limit {
+                what: "size of the domain".into(),
+                found: format!("room for about {expected:.0} elements"),
+                limit: format!("{} elements", self.limits.output_elements),
+                advice: "make it smaller; sizes without a unit are in the units of the exemplar".into(),
+            });
+        }
+        let smallest = exemplar.elements.iter().map(|e| e.outline.area()).fold(f64::INFINITY, f64::min);
+        if domain.measure() < smallest || expected < 0.5 {
+            return Err(Error::no_result(
+                format!(
+                    "the domain ({:.4} square units) is smaller than one element takes ({:.4})",
+                    domain.measure(),
+                    smallest.max(exemplar.spacing().powi(2))
+                ),
+                "make it larger; sizes without a unit are in the units of the exemplar",
+            ));
+        }
+        Ok(())
+    }
+
+    fn fields(&mut self, drawing: &Drawing, bounds: &Bounds<2>) -> Result<Fields<2>> {
+        let orientation = match self.recipe.orient.clone() {
+            Some(FieldSource::Constant(degrees)) if degrees.is_finite() => {
+                Some(OrientationField::Constant(Matrix::rotation(degrees.to_radians())))
+            }
+            Some(FieldSource::Constant(degrees)) => {
+                return Err(Error::parameter("orient", degrees, "a finite number of degrees"));
+            }
+            Some(FieldSource::File(source)) => {
+                let field = self.orientation(&source.file, bounds)?;
+                let file = self.embedded(&source.file)?;
+                self.recipe.orient = Some(FieldSource::File(FieldFile { file, ..source }));
+                Some(field)
+            }
+            None if drawing.job.flow.is_empty() => None,
+            None => OrientationField::from_strokes(&drawing.job.flow, *bounds, STROKE_NODES),
+        };
+        let (scale, scale_source) = self.factor("scale", self.recipe.scale.clone(), bounds, SCALE_RANGE)?;
+        let (density, density_source) = self.factor("density", self.recipe.density.clone(), bounds, DENSITY_RANGE)?;
+        self.recipe.scale = scale_source;
+        self.recipe.density = density_source;
+        Ok(Fields { orientation, scale, density })
+    }
+
+    fn orientation(&self, input: &Input, bounds: &Bounds<2>) -> Result<OrientationField<2>> {
+        let bytes = input.read(self.base, &self.limits)?;
+        let is_drawing = bytes.trim_ascii_start().starts_with(b"<") || bytes.starts_with(&[0xEF, 0xBB, 0xBF, b'<']);
+        if png::is_png(&bytes) || !is_drawing {
+            return Picture::read(input.name(), &bytes, &self.limits)?.orientation_field(input.name(), *bounds);
+        }
+        let strokes = svg::read_flow(&file::decode_text(input.name(), &bytes)?, &self.options(input))?;
+        OrientationField::from_strokes(&strokes, *bounds, STROKE_NODES).ok_or_else(|| {
+            Error::input(
+                input.name(),
+                "no stroke crosses the domain",
+                "draw strokes over the domain, in its coordinates",
+            )
+        })
+    }
+
+    /// The field of a factor, and its source with the picture inside.
+    fn factor(
+        &self,
+        name: &str,
+        source: Option<FieldSource>,
+        bounds: &Bounds<2>,
+        range: [f64; 2],
+    ) -> Result<(ScalarField<2>, Option<FieldSource>)> {
+        let expected = format!("a factor between {} and {}, or a PNG picture", FACTORS[0], FACTORS[1]);
+        let allowed = |v: f64| (FACTORS[0]..=FACTORS[1]).contains(&v);
+        match source {
+            None => Ok((ScalarField::Constant(1.0), None)),
+            Some(FieldSource::Constant(v)) if allowed(v) => Ok((ScalarField::Constant(v), source)),
+            Some(FieldSource::Constant(v)) => Err(Error::parameter(name, v, expected)),
+            Some(FieldSource::File(field)) => {
+                let range = field.range.unwrap_or(range);
+                if !range.iter().all(|v| allowed(*v)) {
+                    return Err(Error::parameter(name, format!("{}..{}", range[0], range[1]), expected));
+                }
+                let bytes = field.file.read(self.base, &self.limits)?;
+                let picture = Picture::read(field.file.name(), &bytes, &self.limits)?;
+                let file = field.file.carrying(&bytes);
+                let source = FieldSource::File(FieldFile { file, ..field });
+                Ok((picture.scalar_field(*bounds, range), Some(source)))
+            }
+        }
+    }
+
+    /// The areas to keep free: those given, else the layer Avoid of the exemplar.
+    fn avoided(&mut self, drawing: &Drawing, domain: &Domain<2>) -> Result<Vec<Outline<2>>> {
+        let mut outlines = Vec::new();
+        for k in 0..self.recipe.avoid.len() {
+            let input = self.recipe.avoid[k].clone();
+            outlines.push(self.shape(&input, drawing, false)?.0);
+            self.recipe.avoid[k] = self.embedded(&input)?;
+        }
+        if self.recipe.avoid.is_empty() {
+            outlines.extend(drawing.job.avoid.clone());
+        }
+        let page = Shape::rectangle(domain.bounds());
+        let left = outlines.iter().try_fold(page, |left, shape| match left {
+            Some(left) => Ok(left.without(shape)),
+            None => Err(()),
+        });
+        if !outlines.is_empty() && !matches!(left, Ok(Some(_))) {
+            let advice = "make the avoided shapes smaller, or the domain larger";
+            return Err(Error::no_result("the avoided shapes cover the whole domain", advice));
+        }
+        Ok(outlines.into_iter().map(|shape| shape.outline().clone()).collect())
+    }
+
+    fn kept(&mut self, drawing: &Drawing, is_points: bool) -> Result<Option<Placed>> {
+        let Some(input) = self.recipe.keep.clone() else { return Ok(None) };
+        if is_points {
+            return Err(Error::Unsupported {
+                what: "keeping elements beside an exemplar of points".into(),
+                advice: "give an SVG exemplar".into(),
+            });
+        }
+        let mut placed = svg::read_placed(&self.text(&input)?, drawing, &self.options(&input))?;
+        self.warnings.append(&mut placed.warnings);
+        self.recipe.keep = Some(self.embedded(&input)?);
+        Ok(Some(placed))
+    }
+}
+
+fn shaped(shape: Shape, page: Page) -> Place {
+    let outline = shape.outline().clone();
+    Place { domain: Domain::Region(std::sync::Arc::new(shape)), shape: Some(outline), page }
+}
+
+impl Prepared {
+    /// What was noticed while reading.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// The recipe, with small inputs inside it.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// Number of elements and of classes of the exemplar.
+    pub fn exemplar_size(&self) -> (usize, usize) {
+        (self.drawing.exemplar.elements.len(), self.drawing.exemplar.classes.len())
+    }
+
+    /// The outlines of placements as they would be drawn, for previews.
+    pub fn outlines(&self, placements: &[Placement<2>]) -> Vec<Outline<2>> {
+        placements.iter().map(|p| self.drawing.exemplar.elements[p.source].outline.transformed(&p.transform)).collect()
+    }
+
+    /// Whether elements are cut at the border when they are drawn.
+    pub fn clips(&self) -> bool {
+        self.request.border == Border::Clip
+    }
+
+    /// The page of the result: its lower and upper corner, in user units.
+    pub fn view(&self) -> (Vector<2>, Vector<2>) {
+        (self.page.view.min, self.page.view.max)
+    }
+}

@@ -1,0 +1,144 @@
+//! Sizes as people write them: `800x600`, `210mmx297mm`, `8inx8in`.
+
+use std::{fmt, str::FromStr};
+
+use arabesque_core::{Error, Limits};
+use arabesque_io::svg::{Page, Unit};
+
+/// Width and height, in the units of the exemplar or in a unit of length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// Width and height, both positive.
+    pub sides: [f64; 2],
+    /// Unit of both; `None` stands for the user unit of the exemplar.
+    pub unit: Option<Unit>,
+}
+
+const UNITS: [(&str, Unit, f64); 7] = [
+    ("px", Unit::Px, 1.0),
+    ("mm", Unit::Mm, 96.0 / 25.4),
+    ("cm", Unit::Cm, 96.0 / 2.54),
+    ("in", Unit::In, 96.0),
+    ("pt", Unit::Pt, 96.0 / 72.0),
+    ("pc", Unit::Pc, 16.0),
+    ("q", Unit::Q, 96.0 / 101.6),
+];
+
+/// CSS pixels of one `unit`.
+fn pixels(unit: Unit) -> f64 {
+    UNITS.iter().find(|(_, u, _)| *u == unit).map_or(1.0, |(_, _, px)| *px)
+}
+
+/// The name of a unit.
+pub(crate) fn unit_name(unit: Unit) -> &'static str {
+    UNITS.iter().find(|(_, u, _)| *u == unit).map_or("px", |(name, _, _)| *name)
+}
+
+/// CSS pixels of one user unit of a page.
+pub(crate) fn pixels_per_user(page: &Page) -> f64 {
+    pixels(page.unit) * page.unit_per_user
+}
+
+impl Size {
+    /// Width and height in user units of `page`, and a page of that size that starts at the origin.
+    pub(crate) fn on(&self, page: &Page) -> ([f64; 2], Page) {
+        let user = pixels_per_user(page);
+        let (factor, unit, unit_per_user) = match self.unit {
+            None => (1.0, page.unit, page.unit_per_user),
+            Some(unit) => (pixels(unit) / user, unit, user / pixels(unit)),
+        };
+        let sides = self.sides.map(|s| s * factor);
+        let view = arabesque_core::Bounds::new(arabesque_core::Vector::ZERO, arabesque_core::Vector(sides));
+        (sides, Page { view, unit, unit_per_user })
+    }
+}
+
+impl FromStr for Size {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let fail = || {
+            Error::parameter(
+                "size",
+                format!("\"{text}\""),
+                "width x height with positive numbers, such as 800x600, 210mmx297mm or 8inx8in (px, mm, cm, in, pt, pc, q)",
+            )
+        };
+        let lower = text.trim().to_ascii_lowercase();
+        let (first, second) = halves(&lower).ok_or_else(fail)?;
+        let ((width, unit_w), (height, unit_h)) = (length(first).ok_or_else(fail)?, length(second).ok_or_else(fail)?);
+        let unit = match (unit_w, unit_h) {
+            (Some(a), Some(b)) if a != b => return Err(fail()),
+            (a, b) => a.or(b),
+        };
+        let limit = Limits::default().coordinate;
+        if [width, height].iter().all(|v| v.is_finite() && *v > 0.0 && *v <= limit) {
+            Ok(Self { sides: [width, height], unit })
+        } else {
+            Err(fail())
+        }
+    }
+}
+
+/// What stands before and after the `x` between two lengths: the one that is not the end of `px`.
+fn halves(text: &str) -> Option<(&str, &str)> {
+    let text_bytes = text.as_bytes();
+    let at = (1..text.len().saturating_sub(1))
+        .find(|&k| matches!(text_bytes[k], b'x' | b'*') && (text_bytes[k - 1] != b'p' || text_bytes[k] == b'*'))?;
+    Some((text.get(..at)?, text.get(at + 1..)?))
+}
+
+fn length(text: &str) -> Option<(f64, Option<Unit>)> {
+    let text = text.trim();
+    let named = UNITS.iter().find_map(|(name, unit, _)| Some((text.strip_suffix(name)?, *unit)));
+    match named {
+        Some((number, unit)) => Some((number.trim().parse().ok()?, Some(unit))),
+        None => Some((text.parse().ok()?, None)),
+    }
+}
+
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.unit.map_or("", unit_name);
+        write!(f, "{}{unit}x{}{unit}", self.sides[0], self.sides[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_have_units_or_none() {
+        for (text, sides, unit) in [
+            ("800x600", [800.0, 600.0], None),
+            ("210mmx297mm", [210.0, 297.0], Some(Unit::Mm)),
+            ("8inx8in", [8.0, 8.0], Some(Unit::In)),
+            ("800pxx600px", [800.0, 600.0], Some(Unit::Px)),
+            ("10 x 20cm", [10.0, 20.0], Some(Unit::Cm)),
+            ("3.1X3.1", [3.1, 3.1], None),
+        ] {
+            assert_eq!(text.parse::<Size>().unwrap(), Size { sides, unit }, "{text}");
+        }
+        for text in
+            ["", "x", "800", "0x5", "-3x5", "nanx5", "infx5", "1e300x1", "5x5x5", "5mmx5in", "5furlongx5furlong"]
+        {
+            assert!(text.parse::<Size>().is_err(), "{text}");
+        }
+        let size = Size { sides: [800.0, 600.0], unit: Some(Unit::Px) };
+        assert_eq!(size.to_string().parse::<Size>().unwrap(), size);
+    }
+
+    #[test]
+    fn millimetres_on_a_pixel_page() {
+        let page = Page {
+            view: arabesque_core::Bounds::new(arabesque_core::Vector::ZERO, arabesque_core::Vector::xy(1.0, 1.0)),
+            unit: Unit::Px,
+            unit_per_user: 1.0,
+        };
+        let (sides, out) = "25.4mmx50.8mm".parse::<Size>().unwrap().on(&page);
+        assert!((sides[0] - 96.0).abs() < 1e-9 && (sides[1] - 192.0).abs() < 1e-9);
+        assert_eq!(out.unit, Unit::Mm);
+        assert!((out.view.size()[0] * out.unit_per_user - 25.4).abs() < 1e-9);
+    }
+}

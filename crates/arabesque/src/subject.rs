@@ -1,0 +1,137 @@
+//! Exemplars of any file kind, as a drawing.
+
+use arabesque_core::{Exemplar, Limits, Outline, Result, Vector, Warning};
+use arabesque_io::{
+    csv::{self, Points},
+    file,
+    svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Unit},
+};
+
+use crate::{Error, Input, recipe::Method};
+
+/// An exemplar as it was read.
+#[derive(Clone, Debug)]
+pub enum Subject {
+    /// An SVG drawing.
+    Drawing(Box<Drawing>),
+    /// Points of the plane.
+    Points(Exemplar<2>),
+    /// Points of space.
+    Space(Exemplar<3>),
+}
+
+/// Points are drawn as dots of this radius, in mean spacings.
+const DOT_RADIUS: f64 = 0.2;
+/// Corners of the outline of a dot.
+const DOT_CORNERS: usize = 24;
+/// A mean spacing of points is drawn this long, in CSS pixels.
+const DOT_SPACING_PIXELS: f64 = 24.0;
+/// Colours of the classes of points, told apart by people with any colour vision; further classes start again.
+const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
+
+impl Subject {
+    /// Reads an exemplar from the bytes of a file: SVG or CSV, by its content.
+    ///
+    /// # Errors
+    /// As [`svg::read_exemplar`] and [`csv::read_points`]; [`Error::Unsupported`] for methods that do not exist yet.
+    pub fn read(input: &Input, bytes: &[u8], method: Method, limits: &Limits) -> Result<Self> {
+        let name = input.name();
+        let method = match method {
+            Method::Auto => svg::Method::Auto,
+            Method::Elements => svg::Method::Elements,
+            Method::Curves | Method::Structures => {
+                let value = if method == Method::Curves { "curves" } else { "structures" };
+                let expected = format!("auto or elements; {value} are not handled yet");
+                return Err(Error::parameter("method", value, expected));
+            }
+        };
+        if arabesque_io::png::is_png(bytes) {
+            let problem = "a picture where an SVG drawing or a CSV file of points was expected";
+            return Err(Error::input(name, problem, "draw the elements as vectors"));
+        }
+        let text = file::decode_text(name, bytes)?;
+        if looks_like_points(name, &text) {
+            return Ok(match csv::read_points(name, &text, limits)? {
+                Points::Plane(exemplar) => Self::Points(exemplar),
+                Points::Space(exemplar) => Self::Space(exemplar),
+            });
+        }
+        let options = ReadOptions { name: name.to_owned(), method, limits: *limits };
+        Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
+    }
+}
+
+/// By the extension where it is one of the usual, else by the first character.
+fn looks_like_points(name: &str, text: &str) -> bool {
+    let lower = name.to_ascii_lowercase();
+    let has = |endings: &[&str]| endings.iter().any(|e| lower.ends_with(e));
+    has(&[".csv", ".tsv", ".txt", ".xyz"]) || !(has(&[".svg"]) || text.trim_start().starts_with('<') || text.is_empty())
+}
+
+/// Points as a drawing of dots, one colour a class.
+pub(crate) fn dots(points: &Exemplar<2>) -> Drawing {
+    let spacing = points.spacing();
+    let radius = DOT_RADIUS * spacing;
+    let mut exemplar = points.clone();
+    for element in &mut exemplar.elements {
+        element.outline = Outline { rings: vec![circle(element.centre, radius)] };
+    }
+    let fragments = points.elements.iter().map(|e| Fragment {
+        markup: format!(
+            "<circle cx=\"{}\" cy=\"{}\" r=\"{radius}\" fill=\"{}\"/>",
+            e.centre[0],
+            e.centre[1],
+            PALETTE[e.class % PALETTE.len()]
+        ),
+        layer: None,
+        label: Some(points.classes[e.class].name.clone()),
+    });
+    Drawing {
+        fragments: fragments.collect(),
+        background: None,
+        definitions: String::new(),
+        page: Page { view: exemplar.window, unit: Unit::Px, unit_per_user: DOT_SPACING_PIXELS / spacing },
+        job: Job::default(),
+        warnings: Vec::<Warning>::new(),
+        exemplar,
+    }
+}
+
+fn circle(centre: Vector<2>, radius: f64) -> Vec<Vector<2>> {
+    (0..DOT_CORNERS)
+        .map(|k| {
+            let (s, c) = (k as f64 / DOT_CORNERS as f64 * std::f64::consts::TAU).sin_cos();
+            centre + Vector::xy(c, s) * radius
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(name: &str, bytes: &[u8]) -> Result<Subject> {
+        Subject::read(&Input::file(name), bytes, Method::Auto, &Limits::default())
+    }
+
+    #[test]
+    fn the_content_decides_where_the_name_does_not() {
+        assert!(matches!(read("-", b"x,y\n0,0\n1,0\n0,1\n"), Ok(Subject::Points(_))));
+        assert!(matches!(read("a.csv", b"x,y,z\n0,0,0\n1,0,1\n0,1,0\n"), Ok(Subject::Space(_))));
+        assert!(read("a.svg", b"\x89PNG\r\n\x1a\n").unwrap_err().to_string().contains("a picture where"));
+    }
+
+    #[test]
+    fn later_methods_are_refused_by_name() {
+        let err = Subject::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Curves, &Limits::default()).unwrap_err();
+        assert!(err.to_string().contains("curves are not handled yet"));
+    }
+
+    #[test]
+    fn dots_have_area_and_colour() {
+        let Ok(Subject::Points(points)) = read("a.csv", b"x,y,class\n0,0,a\n1,0,b\n0,1,a\n") else { panic!() };
+        let drawing = dots(&points);
+        assert!(drawing.exemplar.elements[0].outline.area() > 0.0);
+        assert_ne!(drawing.fragments[0].markup, drawing.fragments[1].markup);
+    }
+}

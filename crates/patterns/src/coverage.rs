@@ -118,6 +118,11 @@ impl<const D: usize> Coverage<D> {
         hit.into_iter().for_each(|index| self.state[index] = Cell::Covered);
     }
 
+    /// Marks as covered what lies within `reach(p)` of the places given.
+    pub(crate) fn cover_around(&mut self, places: impl Iterator<Item = Vector<D>>, reach: impl Fn(Vector<D>) -> f64) {
+        places.for_each(|p| self.cover(p, reach(p), |_| true));
+    }
+
     /// The open cells, in order.
     pub(crate) fn open(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.state.len()).filter(|&c| self.state[c] == Cell::Open)

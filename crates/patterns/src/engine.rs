@@ -76,6 +76,9 @@ impl<const D: usize> Prepared<D> {
         for level in 0..self.levels.len() {
             let (next, flow) = self.refine(level, items, request, &extent, observer, &mut trace);
             items = next;
+            if self.params.existence == Existence::Voted {
+                items = self.fill_holes(items, request, &extent);
+            }
             if flow.is_break() {
                 stopped = StopReason::Observer;
                 break;
@@ -86,28 +89,56 @@ impl<const D: usize> Prepared<D> {
     }
 
     fn initialise(&self, request: &Request<D>, extent: &Extent<'_, D>) -> Items<D> {
-        let library = &self.library;
-        let side = library.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
-        let patch = library.radius_for(self.params.patch).min(self.params.patch_share * side);
-        let mut canvas = Canvas::new(&request.domain, extent.margin, 0.7 * patch * extent.largest_spacing_scale);
+        let mut canvas = self.canvas(request, extent);
         if self.params.initialisation == Initialisation::WhiteNoise {
-            noise::scatter(library, request, extent, &mut canvas);
+            noise::scatter(&self.library, request, extent, &mut canvas);
         } else {
-            let cell = 0.3 * library.spacing * extent.smallest_spacing_scale;
-            let mut coverage = Coverage::new(&request.domain, extent.margin, cell);
-            let params = GrowParams {
-                patch,
-                context: patch * env("CTX", 1.5),
-                repeat: self.params.novelty,
-                balance: self.params.balance,
-                noise: env("NOISE", 0.02),
-                room_open: env("ROPEN", 0.5),
-                room_covered: env("RCOV", 0.75),
-                anchors: if self.params.initialisation == Initialisation::RandomCopy { 0 } else { 3 },
-            };
-            Grower::new(library, request, extent, params).fill(&mut canvas, &mut coverage);
+            let mut coverage = self.coverage(request, extent);
+            Grower::new(&self.library, request, extent, self.grow_params()).fill(&mut canvas, &mut coverage);
         }
         canvas.items.into_iter().map(|item| (item, Matrix::identity())).collect()
+    }
+
+    /// Lays out anew what is emptier than anything in the exemplar.
+    fn fill_holes(&self, items: Items<D>, request: &Request<D>, extent: &Extent<'_, D>) -> Items<D> {
+        let mut canvas = self.canvas(request, extent);
+        let mut coverage = self.coverage(request, extent);
+        items.iter().for_each(|(item, _)| canvas.push(*item));
+        let reach = env("HOLE", 0.9) * self.library.emptiness;
+        coverage.cover_around(items.iter().map(|(item, _)| item.position), |p| {
+            reach * request.fields.frame(p).spacing_scale
+        });
+        Grower::new(&self.library, request, extent, self.grow_params()).fill(&mut canvas, &mut coverage);
+        let turns = items.iter().map(|(_, turn)| *turn).chain(std::iter::repeat(Matrix::identity()));
+        canvas.items.into_iter().zip(turns).collect()
+    }
+
+    fn patch_radius(&self) -> f64 {
+        let side = self.library.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+        self.library.radius_for(self.params.patch).min(self.params.patch_share * side)
+    }
+
+    fn canvas(&self, request: &Request<D>, extent: &Extent<'_, D>) -> Canvas<D> {
+        Canvas::new(&request.domain, extent.margin, 0.7 * self.patch_radius() * extent.largest_spacing_scale)
+    }
+
+    fn coverage(&self, request: &Request<D>, extent: &Extent<'_, D>) -> Coverage<D> {
+        let cell = 0.3 * self.library.spacing * extent.smallest_spacing_scale;
+        Coverage::new(&request.domain, extent.margin, cell)
+    }
+
+    fn grow_params(&self) -> GrowParams {
+        let patch = self.patch_radius();
+        GrowParams {
+            patch,
+            context: patch * env("CTX", 1.5),
+            repeat: self.params.novelty,
+            balance: self.params.balance,
+            noise: env("NOISE", 0.02),
+            room_open: env("ROPEN", 0.5),
+            room_covered: env("RCOV", 0.75),
+            anchors: if self.params.initialisation == Initialisation::RandomCopy { 0 } else { 3 },
+        }
     }
 
     fn refine(
@@ -136,7 +167,8 @@ impl<const D: usize> Prepared<D> {
             let searched = search::search(&mut state, &search);
             trace.push(EnergyPoint { level, iteration, energy: state.energy(), elements: state.count() });
             let done = (level as f64 + iteration as f64 / params.iterations as f64) / self.levels.len() as f64;
-            let (low, high) = (env("F0", 0.3), env("F1", 0.97));
+            let noisy = params.initialisation == Initialisation::WhiteNoise;
+            let (low, high) = (if noisy { env("F0", 0.3) } else { 0.95 }, env("F1", 0.97));
             let floor = (low + (high - low) * env("FS", 1.5) * done).min(high);
             let moved = self.assign(&mut state, &targets, floor);
             flow = observer.step(&self.progress(level, iteration, &state), &|| snapshot(&state));

@@ -33,6 +33,8 @@ pub(crate) struct Library<const D: usize> {
     pub(crate) outlier: Vec<f64>,
     /// Distance of each element to its nearest neighbour, any class counted.
     pub(crate) nearest: Vec<f64>,
+    /// Radius of the largest ball without a centre that the exemplar surely shows.
+    pub(crate) emptiness: f64,
     by_class: Vec<ClassIndex<D>>,
     all: GridIndex<D>,
 }
@@ -64,6 +66,7 @@ impl<const D: usize> Library<D> {
             spacing,
             outlier,
             nearest,
+            emptiness: emptiness(&exemplar.window, &all, spacing),
             by_class,
             all,
         }
@@ -117,6 +120,30 @@ impl<const D: usize> Library<D> {
         let unit = if D == 3 { 4.0 / 3.0 * std::f64::consts::PI } else { std::f64::consts::PI };
         self.spacing * (count / unit).powf(1.0 / D as f64)
     }
+}
+
+/// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that centre.
+fn emptiness<const D: usize>(window: &Bounds<D>, all: &GridIndex<D>, spacing: f64) -> f64 {
+    let size = window.size();
+    let step = if D == 2 { 0.2 * spacing } else { 0.34 * spacing };
+    let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).clamp(1, 2048));
+    let mut largest = 0.0_f64;
+    for c in 0..cells.iter().product() {
+        let mut rest: usize = c;
+        let p = Vector(std::array::from_fn(|k| {
+            let i = rest % cells[k];
+            rest /= cells[k];
+            window.min[k] + size[k] * (i as f64 + 0.5) / cells[k] as f64
+        }));
+        let side = window.signed_distance(p);
+        let Some((_, distance)) = (0..6).find_map(|n| all.nearest(p, spacing * f64::from(1 << n), None)) else {
+            continue;
+        };
+        if distance <= side {
+            largest = largest.max(distance);
+        }
+    }
+    if largest > 0.0 { largest } else { spacing }
 }
 
 fn nearest_distances<const D: usize>(centre: &[Vector<D>], all: &GridIndex<D>, spacing: f64) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! Time of one pairing, at the sizes that the search meets.
 
-#[expect(dead_code, reason = "the benchmark uses part of the solver")]
+#[expect(unused, reason = "the benchmark uses part of the solver")]
 #[path = "../src/assignment.rs"]
 mod assignment;
 

@@ -1,6 +1,8 @@
 //! The rules of the house, checked by machine: which crate may know which, what stays in one room, what is cited,
 //! where links lead.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, its helpers too")]
+
 use std::{
     collections::BTreeSet,
     fs,

@@ -1,0 +1,203 @@
+//! Time of whole runs, and of runs with single stages left out or replaced: the difference is what the stage takes.
+//!
+//! One thread, unless `RAYON_NUM_THREADS` says otherwise.
+
+use arabesque_core::{
+    Bounds, Class, Domain, Element, Exemplar, Outcome, Outline, Request, Role, Similarity, Stage, Stream, Unobserved,
+    Vector,
+};
+use arabesque_patterns::{Params, Prepared};
+use divan::Bencher;
+
+/// Elements of the output.
+const SIZES: [usize; 3] = [100, 1_000, 10_000];
+
+/// A hexagonal grid of 72 points.
+fn hexagonal() -> Exemplar<2> {
+    let node = |k: u32| {
+        let (column, row) = (f64::from(k % 8), f64::from(k / 8));
+        Vector::xy(column + 0.25 + 0.5 * (row % 2.0), (row + 0.5) * 0.75_f64.sqrt())
+    };
+    points((0..72).map(node).collect(), 1)
+}
+
+/// 90 points at random that keep a distance, in three classes.
+fn scattered() -> Exemplar<2> {
+    points(spread(90, 10.0, 0.75), 3)
+}
+
+/// 80 discs of several sizes in two classes, with outlines of 24 corners.
+fn discs() -> Exemplar<2> {
+    let mut stream = Stream::new(4, Stage::Test, 1);
+    let centres = spread(80, 10.0, 0.8);
+    let elements = centres.iter().enumerate().map(|(k, &centre)| {
+        let radius = stream.range(0.2, 0.38);
+        let corner = |c: u32| {
+            let turn = f64::from(c) / 24.0 * std::f64::consts::TAU;
+            centre + Vector::xy(turn.cos(), turn.sin()) * radius
+        };
+        let outline = Outline { rings: vec![(0..24).map(corner).collect()] };
+        Element { class: k % 2, centre, pose: Similarity::identity(), outline, colour: [0.5; 3], role: Role::Source }
+    });
+    let window = Bounds::new(Vector::ZERO, Vector::splat(10.0));
+    Exemplar::new("benchmark", elements.collect(), classes(2), window).expect("the exemplar is valid")
+}
+
+fn points(points: Vec<Vector<2>>, count: usize) -> Exemplar<2> {
+    let class_of: Vec<_> = (0..points.len()).map(|k| k % count).collect();
+    let names: Vec<_> = classes(count).into_iter().map(|class| class.name).collect();
+    Exemplar::from_points("benchmark", &points, &class_of, &names).expect("the exemplar is valid")
+}
+
+fn classes(count: usize) -> Vec<Class> {
+    (0..count).map(|k| Class { name: format!("class {k}") }).collect()
+}
+
+/// Up to `count` points in a square of `side`, no two nearer than `distance`.
+fn spread(count: usize, side: f64, distance: f64) -> Vec<Vector<2>> {
+    let mut stream = Stream::new(4, Stage::Test, 0);
+    let mut found: Vec<Vector<2>> = Vec::new();
+    for _ in 0..100 * count {
+        let p = Vector::xy(stream.range(0.5, side - 0.5), stream.range(0.5, side - 0.5));
+        if found.len() < count && found.iter().all(|&q| (p - q).norm() >= distance) {
+            found.push(p);
+        }
+    }
+    found
+}
+
+/// A square page for about `n` elements.
+fn page(exemplar: &Exemplar<2>, n: usize) -> Request<2> {
+    let side = exemplar.spacing() * (n as f64).sqrt();
+    Request::new(Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(side))))
+}
+
+fn params(settings: &[(&str, &str)]) -> Params {
+    let mut params = Params::default();
+    for (name, value) in settings {
+        params.set(name, value).expect("the setting exists");
+    }
+    params
+}
+
+fn fill(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, settings: &[(&str, &str)]) {
+    let prepared = Prepared::new(exemplar, &params(settings)).expect("the exemplar can be analysed");
+    let request = page(exemplar, n);
+    bencher.bench_local(|| -> Outcome<2> { prepared.run(&request, &mut Unobserved).expect("the page can be filled") });
+}
+
+/// Analysing the exemplar.
+mod prepare {
+    use super::*;
+
+    fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
+        let params = Params::default();
+        bencher.bench_local(|| Prepared::new(exemplar, &params));
+    }
+
+    #[divan::bench(sample_count = 20)]
+    fn hexagonal(bencher: Bencher) {
+        analyse(bencher, &super::hexagonal());
+    }
+
+    #[divan::bench(sample_count = 20)]
+    fn scattered(bencher: Bencher) {
+        analyse(bencher, &super::scattered());
+    }
+
+    #[divan::bench(sample_count = 20)]
+    fn discs(bencher: Bencher) {
+        analyse(bencher, &super::discs());
+    }
+}
+
+/// Whole runs with the default parameters.
+mod whole {
+    use super::*;
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn hexagonal(bencher: Bencher, n: usize) {
+        fill(bencher, &super::hexagonal(), n, &[]);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn scattered(bencher: Bencher, n: usize) {
+        fill(bencher, &super::scattered(), n, &[]);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn discs(bencher: Bencher, n: usize) {
+        fill(bencher, &super::discs(), n, &[]);
+    }
+
+    #[divan::bench(args = [100_000], sample_count = 1)]
+    fn many_discs(bencher: Bencher, n: usize) {
+        fill(bencher, &super::discs(), n, &[]);
+    }
+}
+
+/// One stage left out or replaced, on discs.
+mod without {
+    use super::*;
+
+    const N: [usize; 1] = [2_000];
+
+    /// Everything, to compare with.
+    #[divan::bench(args = N, sample_count = 3)]
+    fn a_change(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[]);
+    }
+
+    /// The first layout alone.
+    #[divan::bench(args = N, sample_count = 3)]
+    fn optimisation(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("iterations", "0"), ("existence", "fixed"), ("clearance", "ignored")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn patches_in_the_layout(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("initialisation", "white-noise")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn coherence_in_the_search(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("search", "patchmatch")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 1)]
+    fn shortcuts_in_the_search(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("search", "exhaustive")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn optimal_matching(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("matching", "hard")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn adding_and_removing(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("existence", "fixed")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn exchanging(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("attributes", "kept")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn clearance(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("clearance", "ignored")]);
+    }
+
+    #[divan::bench(args = N, sample_count = 3)]
+    fn levels(bencher: Bencher, n: usize) {
+        fill(bencher, &discs(), n, &[("levels", "1")]);
+    }
+}
+
+fn main() {
+    if std::env::var_os("RAYON_NUM_THREADS").is_none() {
+        rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("no pool was made before");
+    }
+    divan::main();
+}

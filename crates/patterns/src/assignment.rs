@@ -83,6 +83,7 @@ enum End {
 impl Assignment {
     /// Pairs every row with a column of its own at the least total cost, which is returned.
     /// `cost` is finite and row-major; `rows <= columns`.
+    #[allow(dead_code, reason = "for tests and benchmarks: the search enters its pairs as it meets them")]
     pub(crate) fn solve(&mut self, rows: usize, columns: usize, cost: &[f32]) -> f32 {
         debug_assert!(rows <= columns && cost.len() >= rows * columns);
         self.begin(columns);
@@ -94,6 +95,7 @@ impl Assignment {
 
     /// Pairs rows with columns, or leaves row `i` alone at `outlier[i]`, at the least total cost, which is returned.
     /// `cost` is row-major; an infinite cost marks a pair that must not be. There may be fewer columns than rows.
+    #[allow(dead_code, reason = "for tests and benchmarks: the search enters its pairs as it meets them")]
     pub(crate) fn solve_with_outliers(&mut self, rows: usize, columns: usize, cost: &[f32], outlier: &[f32]) -> f32 {
         debug_assert!(cost.len() >= rows * columns && outlier.len() >= rows);
         self.begin(columns);

@@ -1,6 +1,6 @@
 //! Results, and the files they are written as.
 
-use arabesque_core::{Error, Limits, Observer, Outcome, Result, Warning};
+use arabesque_core::{Error, Limits, Observer, Outcome, Result, StopReason, Warning};
 use arabesque_io::{
     csv, json,
     png::{Plate, Resolution, write_png},
@@ -37,6 +37,9 @@ impl Prepared {
         let mut request = self.request.clone();
         request.seed = seed;
         let mut outcome = self.engine.run(&request, observer)?;
+        if outcome.placements.is_empty() && outcome.stopped == StopReason::Observer {
+            return Err(Error::no_result("stopped before anything was placed", "give it more time"));
+        }
         if outcome.placements.is_empty() {
             return Err(Error::no_result(
                 "no element fits the domain under the given constraints",
@@ -49,12 +52,20 @@ impl Prepared {
 }
 
 impl Artwork<'_> {
+    /// The name of the class of each placement, in drawing order.
+    pub fn classes(&self) -> impl Iterator<Item = &str> {
+        let exemplar = &self.prepared.drawing.exemplar;
+        self.outcome.placements.iter().map(|p| exemplar.classes[exemplar.elements[p.source].class].name.as_str())
+    }
+
     /// The recipe of this very result, as its file carries it.
     ///
     /// # Errors
     /// As [`Recipe::to_toml`].
     pub fn recipe(&self, output: &OutputOptions) -> Result<String> {
-        let output = OutputOptions { path: None, ..output.clone() };
+        // A recipe that stands alone leaves the format open: running it makes a result, not the recipe again.
+        let format = output.format.filter(|f| *f != Format::Toml);
+        let output = OutputOptions { path: None, format, ..output.clone() };
         let version = env!("CARGO_PKG_VERSION").to_owned();
         Recipe { seed: self.seed, arabesque: version, output, ..self.prepared.recipe.clone() }.to_toml()
     }

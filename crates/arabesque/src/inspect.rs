@@ -1,10 +1,13 @@
 //! What was understood of an exemplar.
 
-use arabesque_core::{Exemplar, Limits, Result, Role, Warning};
-use arabesque_io::svg::{Drawing, write_survey};
+use arabesque_core::{Error, Exemplar, Limits, Result, Role, Warning};
+use arabesque_io::{
+    png::{Plate, Resolution, write_png},
+    svg::{Drawing, write_survey},
+};
 use serde::Serialize;
 
-use crate::{Input, Subject, recipe::Method, size::unit_name, subject::dots};
+use crate::{Format, Input, Subject, recipe::Method, size::unit_name, subject::dots};
 
 /// What was understood of an exemplar.
 #[derive(Clone, Debug, Serialize)]
@@ -133,9 +136,22 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
 }
 
 impl Report {
-    /// A drawing of what was understood: the exemplar faded, every outline in the colour of its class, the frame, the centres.
-    /// `None` for points in space.
-    pub fn survey(&self) -> Option<String> {
-        self.drawing.as_ref().map(write_survey)
+    /// A picture of what was understood: the exemplar faded, every outline in the colour of its class, the frame, the centres.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for points in space, and for formats other than SVG and PNG.
+    pub fn picture(&self, format: Format) -> Result<Vec<u8>> {
+        let unsupported = |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture away".into() };
+        let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of points in space"))?;
+        let svg = write_survey(drawing);
+        match format {
+            Format::Svg => Ok(svg.into_bytes()),
+            Format::Png => {
+                let units = drawing.page.view.size().0;
+                let plate = Plate { svg: &svg, units, resolution: Resolution::default(), recipe: None };
+                write_png(&plate, &Limits::default())
+            }
+            Format::Json | Format::Csv | Format::Toml => Err(unsupported("a picture in this format")),
+        }
     }
 }

@@ -1,0 +1,57 @@
+//! The command line as a whole.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::{
+    commands::{completions, fill, inspect, man, run},
+    failure::Failure,
+};
+
+/// From one small example of a repeating pattern, make as much of it as you want, in any shape.
+#[derive(Debug, Parser)]
+#[command(name = "arabesque", version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 done; 1 failure; 2 usage; 3 bad input; 4 no valid result under the given constraints; \
+                        130 interrupted (the best so far is written).")]
+pub(crate) struct App {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Fill a page, a shape or a seamless tile with the pattern of an exemplar
+    Fill(Box<fill::Fill>),
+    /// Say what was understood of an exemplar
+    Inspect(inspect::Inspect),
+    /// Repeat a run from a recipe, or from any result that carries one
+    Run(run::Run),
+    /// Write the completion script of a shell
+    Completions(completions::Completions),
+    /// Write the manual page
+    Man(man::Man),
+}
+
+impl App {
+    pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        match self.command {
+            Command::Fill(c) => c.execute(),
+            Command::Inspect(c) => c.execute(),
+            Command::Run(c) => c.execute(),
+            Command::Completions(c) => c.execute(),
+            Command::Man(c) => c.execute(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        App::command().debug_assert();
+    }
+}

@@ -1,0 +1,24 @@
+//! `arabesque completions`: completion scripts.
+
+use std::{io::Write, process::ExitCode};
+
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+use crate::{app::App, failure::Failure};
+
+/// Write the completion script of a shell
+#[derive(Args, Debug)]
+pub(crate) struct Completions {
+    /// The shell
+    shell: Shell,
+}
+
+impl Completions {
+    pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut App::command(), "arabesque", &mut script);
+        std::io::stdout().lock().write_all(&script)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

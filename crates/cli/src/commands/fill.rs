@@ -1,0 +1,186 @@
+//! `arabesque fill`: a page, a shape or a seamless tile from an exemplar.
+
+use std::process::ExitCode;
+
+use arabesque::{BorderRule, FieldSource, Input, Method, Recipe, patterns::Params};
+use clap::{Args, ValueEnum};
+
+use crate::{
+    failure::Failure,
+    produce::{RunOptions, produce},
+};
+
+/// Fill a page, a shape or a seamless tile with the pattern of an exemplar
+#[derive(Args, Debug)]
+#[command(after_long_help = parameters())]
+pub(crate) struct Fill {
+    /// The example: an SVG drawing, or points as CSV; - is standard input
+    exemplar: String,
+    /// Where to write; the extension chooses SVG, PNG, JSON, CSV or TOML (the recipe alone); - is standard output
+    #[arg(short, long, value_name = "OUT")]
+    output: String,
+    #[command(flatten)]
+    place: Place,
+    #[command(flatten)]
+    fields: Fields,
+    #[command(flatten)]
+    engine: Engine,
+    #[command(flatten)]
+    writing: Writing,
+    /// Seed of all random choices
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: u64,
+    #[command(flatten)]
+    run: RunOptions,
+}
+
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Where")]
+struct Place {
+    /// Fill a page: 800x600 in the units of the exemplar, or with a unit such as 210mmx297mm, 8inx8in, 800pxx600px
+    #[arg(long, value_name = "WxH", group = "where")]
+    size: Option<String>,
+    /// Fill the closed shapes of an SVG file, holes included; #ID takes one of them
+    #[arg(long, value_name = "SHAPE.svg[#ID]", group = "where")]
+    domain: Option<String>,
+    /// Make a tile that repeats without a seam
+    #[arg(long, value_name = "WxH", group = "where")]
+    tile: Option<String>,
+    /// Keep these shapes free; may be given several times
+    #[arg(long, value_name = "SHAPE.svg[#ID]")]
+    avoid: Vec<String>,
+    /// Elements that stay exactly where this file has them; the rest is fitted around them
+    #[arg(long, value_name = "FILE.svg")]
+    keep: Option<String>,
+    /// What happens to elements at the border
+    #[arg(long, value_enum, default_value_t = Border::Clip)]
+    border: Border,
+}
+
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Fields")]
+struct Fields {
+    /// Turn the pattern: degrees (clockwise), strokes in an SVG file, or a PNG picture whose hue, or gray, is the direction
+    #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = FieldSource::parse)]
+    orient: Option<FieldSource>,
+    /// Scale the pattern: a factor, or a PNG picture from black (0.5) to white (2); PICTURE.png@0.8..1.2 for another range
+    #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = FieldSource::parse)]
+    scale: Option<FieldSource>,
+    /// Elements per area: a factor, or a PNG picture from black (0.2) to white (1); PICTURE.png@0.5..1 for another range
+    #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = FieldSource::parse)]
+    density: Option<FieldSource>,
+}
+
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Method")]
+struct Engine {
+    /// What the exemplar is made of
+    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
+    method: MethodName,
+    /// Named set of parameters: default, ma2011, tu2020
+    #[arg(long, value_name = "NAME", default_value = "default")]
+    preset: String,
+    /// Neighbourhood radius, in the units of the exemplar [default: chosen from the exemplar]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    radius: Option<f64>,
+    /// Levels of the hierarchy [default: as the preset has it]
+    #[arg(long, value_name = "N")]
+    levels: Option<usize>,
+    /// Iterations a level [default: as the preset has it]
+    #[arg(long, value_name = "N")]
+    iterations: Option<usize>,
+    /// Set one parameter by its name (listed under --help); may be given several times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
+    set: Vec<(String, String)>,
+}
+
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Writing")]
+struct Writing {
+    /// SVG: write every element out in place, flattened, for cutters and plotters
+    #[arg(long)]
+    expand: bool,
+    /// PNG: pixels an inch [default: 96]
+    #[arg(long, value_name = "N", conflicts_with = "pixels_per_unit")]
+    dpi: Option<f64>,
+    /// PNG: pixels a user unit of the page
+    #[arg(long, value_name = "N")]
+    pixels_per_unit: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Border {
+    /// Elements lie wholly inside
+    Inside,
+    /// Elements with their centre inside stay whole and may reach over the border
+    Cross,
+    /// Whatever reaches into the domain is drawn, cut at the border
+    Clip,
+}
+
+/// What the exemplar is made of.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum MethodName {
+    /// The exemplar decides
+    Auto,
+    /// Every connected piece is an element
+    Elements,
+    /// Curves (not yet)
+    Curves,
+    /// Repetitive structures (not yet)
+    Structures,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Auto => Self::Auto,
+            MethodName::Elements => Self::Elements,
+            MethodName::Curves => Self::Curves,
+            MethodName::Structures => Self::Structures,
+        }
+    }
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("expected NAME=VALUE, such as levels=2".to_owned()),
+    }
+}
+
+/// The parameters that `--set` knows, for the long help.
+fn parameters() -> String {
+    let list: String = Params::options().iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
+    format!("Parameters for --set, by name:\n{list}\nPresets: {}", Params::PRESETS.join(", "))
+}
+
+impl Fill {
+    pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        let mut recipe = Recipe::new(Input::file(self.exemplar));
+        recipe.seed = self.seed;
+        recipe.size = self.place.size;
+        recipe.tile = self.place.tile;
+        recipe.domain = self.place.domain.as_deref().map(Input::shape);
+        recipe.avoid = self.place.avoid.iter().map(|text| Input::shape(text)).collect();
+        recipe.keep = self.place.keep.map(Input::file);
+        recipe.border = match self.place.border {
+            Border::Inside => BorderRule::Inside,
+            Border::Cross => BorderRule::Cross,
+            Border::Clip => BorderRule::Clip,
+        };
+        recipe.orient = self.fields.orient;
+        recipe.scale = self.fields.scale;
+        recipe.density = self.fields.density;
+        recipe.method = self.engine.method.into();
+        recipe.preset = self.engine.preset;
+        recipe.radius = self.engine.radius;
+        recipe.levels = self.engine.levels;
+        recipe.iterations = self.engine.iterations;
+        recipe.set = self.engine.set.into_iter().collect();
+        recipe.output.expand = self.writing.expand;
+        recipe.output.dpi = self.writing.dpi;
+        recipe.output.pixels_per_unit = self.writing.pixels_per_unit;
+        produce(recipe, None, &self.output, &self.run)
+    }
+}

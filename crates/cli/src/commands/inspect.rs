@@ -1,0 +1,85 @@
+//! `arabesque inspect`: what was understood of an exemplar.
+
+use std::{io::Write, process::ExitCode};
+
+use arabesque::{Format, Input, Report, inspect, io::file};
+use clap::Args;
+
+use super::fill::MethodName;
+use crate::{
+    failure::Failure,
+    produce::TalkOptions,
+    say::{self, Level},
+    summary,
+};
+
+/// Say what was understood of an exemplar
+#[derive(Args, Debug)]
+pub(crate) struct Inspect {
+    /// An SVG drawing, or points as CSV; - is standard input
+    file: String,
+    /// Draw it as well, SVG or PNG: outlines in the colours of their classes, the frame, the centres
+    #[arg(short, long, value_name = "PICTURE")]
+    output: Option<String>,
+    /// What the exemplar is made of
+    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
+    method: MethodName,
+    #[command(flatten)]
+    talk: TalkOptions,
+}
+
+impl Inspect {
+    pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        let result = self.inspect();
+        if let Err(failure) = &result
+            && self.talk.json
+        {
+            summary::print_failure(failure);
+        }
+        result
+    }
+
+    fn inspect(&self) -> Result<ExitCode, Failure> {
+        let target = self.output.as_deref().map(target).transpose()?;
+        let report = inspect(&Input::file(&self.file), self.method.into())?;
+        if let Some((target, format)) = target {
+            target.write(&report.picture(format)?).map_err(Failure::writing)?;
+        }
+        if self.talk.json {
+            summary::print(&report)?;
+        } else if self.output.as_deref() != Some(file::STANDARD) {
+            print(&report)?;
+        }
+        if self.talk.level() > Level::Quiet {
+            report.warnings.iter().for_each(|w| say::note(&format!("warning: {}; {}", w.message, w.advice)));
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+fn target(path: &str) -> Result<(file::Target, Format), Failure> {
+    let format = match Format::of_path(path)? {
+        None | Some(Format::Svg) => Format::Svg,
+        Some(Format::Png) => Format::Png,
+        Some(_) => return Err(Failure::usage(format!("{path}: a picture is written as .svg or .png"))),
+    };
+    Ok((file::Target::new(path).map_err(Failure::writing)?, format))
+}
+
+fn print(report: &Report) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let join = |v: &[f64]| v.iter().map(|x| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()).collect::<Vec<_>>().join(" x ");
+    let unit = report.unit.zip(report.unit_per_user).map_or_else(String::new, |(unit, n)| format!(" (1 unit = {n} {unit})"));
+    writeln!(out, "{}: {}", report.file, report.kind)?;
+    writeln!(out, "  frame: {}{unit}", join(&report.frame_size))?;
+    writeln!(out, "  elements: {}, of these {} cut at the frame", report.elements, report.cut_at_frame)?;
+    writeln!(out, "  spacing: {:.4}; suggested radius: {:.4}", report.spacing, report.suggested_radius)?;
+    if !report.layers.is_empty() {
+        writeln!(out, "  a whole job, with the layers {}", report.layers.join(", "))?;
+    }
+    for class in &report.classes {
+        writeln!(out, "  class {}: {} elements, diameter {:.4}", class.name, class.elements, class.diameter)?;
+    }
+    out.flush()?;
+    Ok(())
+}

@@ -1,0 +1,120 @@
+//! Failures with their exit codes.
+
+use std::{io, process::ExitCode};
+
+use arabesque::Error;
+
+use crate::say;
+
+/// Anything that went wrong on the way.
+pub(crate) const FAILURE: u8 = 1;
+/// The command line asks for something that does not exist.
+pub(crate) const USAGE: u8 = 2;
+/// A file cannot be used.
+pub(crate) const BAD_INPUT: u8 = 3;
+/// The constraints exclude every result.
+pub(crate) const NO_RESULT: u8 = 4;
+/// Stopped by Ctrl-C.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// Why the program ends early, and with which exit code.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    code: u8,
+    cause: anyhow::Error,
+}
+
+impl Failure {
+    /// The command line contradicts itself.
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self { code: USAGE, cause: anyhow::Error::msg(message.into()) }
+    }
+
+    /// A result could not be written.
+    pub(crate) fn writing(error: Error) -> Self {
+        Self { code: FAILURE, cause: anyhow::Error::new(error).context("cannot write the result") }
+    }
+
+    /// The same failure under another exit code.
+    pub(crate) fn with_code(self, code: u8) -> Self {
+        Self { code, ..self }
+    }
+
+    pub(crate) fn code(&self) -> u8 {
+        self.code
+    }
+
+    /// Whether whoever reads our output has gone away, which is no failure of ours.
+    fn is_broken_pipe(&self) -> bool {
+        let system = |e: &io::Error| e.kind() == io::ErrorKind::BrokenPipe;
+        self.cause.chain().any(|c| c.downcast_ref::<io::Error>().is_some_and(system))
+    }
+
+    /// The chain of causes on one line.
+    pub(crate) fn message(&self) -> String {
+        let mut message = String::new();
+        for cause in self.cause.chain() {
+            let text = cause.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+            // Some errors repeat their cause in their own words.
+            if message.is_empty() {
+                message = text;
+            } else if !message.contains(&text) {
+                message = format!("{message}: {text}");
+            }
+        }
+        message
+    }
+
+    /// Tells the user and gives the exit code.
+    pub(crate) fn report(&self) -> ExitCode {
+        if self.is_broken_pipe() {
+            return ExitCode::SUCCESS;
+        }
+        say::error(&self.message());
+        ExitCode::from(self.code)
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        let code = match &error {
+            Error::Parameter { .. } => USAGE,
+            Error::Input { .. } | Error::Limit { .. } | Error::Unsupported { .. } | Error::Io { .. } => BAD_INPUT,
+            Error::NoResult { .. } => NO_RESULT,
+            _ => FAILURE,
+        };
+        Self { code, cause: anyhow::Error::new(error) }
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self { code: FAILURE, cause: anyhow::Error::new(error).context("standard output") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_stand_on_one_line_and_once() {
+        let source = io::Error::from(io::ErrorKind::NotFound);
+        let failure = Failure::writing(Error::Io { path: "a/b.svg".into(), source });
+        assert_eq!(failure.message(), "cannot write the result: a/b.svg: entity not found");
+        assert_eq!(failure.code(), FAILURE);
+    }
+
+    #[test]
+    fn codes_follow_who_must_act() {
+        assert_eq!(Failure::from(Error::parameter("seed", -1, "more")).code(), USAGE);
+        assert_eq!(Failure::from(Error::input("f", "p", "a")).code(), BAD_INPUT);
+        assert_eq!(Failure::from(Error::no_result("p", "a")).code(), NO_RESULT);
+    }
+
+    #[test]
+    fn a_broken_pipe_is_no_failure() {
+        let failure = Failure::from(io::Error::from(io::ErrorKind::BrokenPipe));
+        assert_eq!(failure.report(), ExitCode::SUCCESS);
+    }
+}

@@ -1,0 +1,225 @@
+//! From a recipe to files: what `fill` and `run` have in common.
+
+use std::{collections::BTreeMap, path::Path, process::ExitCode, time::Duration};
+
+use arabesque::{Artwork, Format, OutputOptions, Prepared, Recipe, StopReason, Warning, in_pool, io::file};
+use clap::Args;
+
+use crate::{
+    control::{self, Deadline, is_interrupted},
+    duration,
+    failure::{Failure, INTERRUPTED},
+    progress::Watch,
+    say::{self, Level},
+    summary::{self, Message, Output, Summary},
+};
+
+/// Options of everything that runs.
+#[derive(Args, Debug)]
+pub(crate) struct RunOptions {
+    /// Number of threads; the result does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<usize>,
+    /// Make N results with the seeds SEED, SEED+1, ...; OUT gets -1, -2, ... before its extension
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub(crate) variations: Option<u32>,
+    /// Stop after this time and write the best so far: seconds, or 1m30s
+    #[arg(long, value_name = "TIME", value_parser = duration::parse)]
+    pub(crate) time_limit: Option<Duration>,
+    /// File format, where the extension of OUT does not say: svg, png, json, csv or toml (the recipe alone)
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+    /// Leave the recipe out of the result, which then cannot be repeated by `arabesque run`
+    #[arg(long)]
+    pub(crate) no_recipe: bool,
+    #[command(flatten)]
+    pub(crate) talk: TalkOptions,
+}
+
+/// How much is said, and to whom.
+#[derive(Args, Debug)]
+pub(crate) struct TalkOptions {
+    /// Write a machine-readable summary to standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Say what was understood and how the run went
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
+}
+
+impl TalkOptions {
+    pub(crate) fn level(&self) -> Level {
+        match (self.quiet, self.verbose) {
+            (true, _) => Level::Quiet,
+            (false, true) => Level::Verbose,
+            (false, false) => Level::Normal,
+        }
+    }
+}
+
+/// One file to be made.
+struct Plan {
+    path: String,
+    seed: u64,
+    target: file::Target,
+}
+
+/// Runs `recipe`, whose files lie beside `base`, and writes the result to `path`.
+pub(crate) fn produce(
+    mut recipe: Recipe,
+    base: Option<&Path>,
+    path: &str,
+    options: &RunOptions,
+) -> Result<ExitCode, Failure> {
+    let result = check(&mut recipe, path, options).and_then(|plans| {
+        control::listen();
+        in_pool(options.threads, || make_all(&recipe, base, plans, options))?
+    });
+    match &result {
+        Err(failure) if options.talk.json && path != file::STANDARD => summary::print_failure(failure),
+        _ => {}
+    }
+    result
+}
+
+/// Settles the format and makes sure that every file can be written, before any work is done.
+fn check(recipe: &mut Recipe, path: &str, options: &RunOptions) -> Result<Vec<Plan>, Failure> {
+    let standard = path == file::STANDARD;
+    if standard && options.talk.json {
+        return Err(Failure::usage("--json and -o - both write to standard output; give a file for one of them"));
+    }
+    if standard && options.variations.is_some() {
+        return Err(Failure::usage("--variations writes several files; give -o a name"));
+    }
+    let by_name = if standard || options.format.is_some() { None } else { Format::of_path(path)? };
+    let format = options.format.or(by_name).or(recipe.output.format).unwrap_or(Format::Svg);
+    recipe.output.format = Some(format);
+    recipe.output.bare |= options.no_recipe;
+    let numbered = |n: u64| match options.variations {
+        Some(_) => variation(path, n),
+        None => path.to_owned(),
+    };
+    let count = u64::from(options.variations.unwrap_or(1));
+    (0..count)
+        .map(|k| {
+            let path = numbered(k + 1);
+            let target = file::Target::new(&path).map_err(Failure::writing)?;
+            let seed = recipe.seed.checked_add(k).ok_or_else(|| Failure::usage("the seed is too large"))?;
+            Ok(Plan { path, seed, target })
+        })
+        .collect()
+}
+
+/// `out.svg` as `out-3.svg`.
+fn variation(path: &str, number: u64) -> String {
+    let path = Path::new(path);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = match path.extension() {
+        Some(extension) => format!("{stem}-{number}.{}", extension.to_string_lossy()),
+        None => format!("{stem}-{number}"),
+    };
+    path.with_file_name(name).to_string_lossy().into_owned()
+}
+
+fn make_all(
+    recipe: &Recipe,
+    base: Option<&Path>,
+    plans: Vec<Plan>,
+    options: &RunOptions,
+) -> Result<ExitCode, Failure> {
+    let level = options.talk.level();
+    let prepared = recipe.prepare(base)?;
+    if level == Level::Verbose {
+        let (elements, classes) = prepared.exemplar_size();
+        say::note(&format!("exemplar: {elements} elements in {classes} classes"));
+    }
+    let deadline = Deadline::after(options.time_limit);
+    let mut outputs = Vec::new();
+    for plan in &plans {
+        outputs.push(make(&prepared, plan, &recipe.output, (level, deadline))?);
+        if is_interrupted() {
+            break;
+        }
+    }
+    if options.talk.json {
+        summary::print(&Summary { version: env!("CARGO_PKG_VERSION"), outputs })?;
+    }
+    Ok(if is_interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+}
+
+fn make(
+    prepared: &Prepared,
+    plan: &Plan,
+    output: &OutputOptions,
+    (level, deadline): (Level, Deadline),
+) -> Result<Output, Failure> {
+    let mut watch = Watch::new(level, deadline);
+    let artwork = prepared.run(plan.seed, &mut watch);
+    watch.finish();
+    let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };
+    let artwork = artwork.map_err(|e| interrupted(e.into()))?;
+    let encoded = artwork.encode(output)?;
+    plan.target.write(&encoded.bytes).map_err(Failure::writing)?;
+    let warnings: Vec<_> = artwork.outcome.warnings.iter().chain(&encoded.warnings).cloned().collect();
+    let made = describe(&artwork, plan, output, watch.elapsed(), &warnings);
+    tell(&made, &artwork, &warnings, level);
+    Ok(made)
+}
+
+fn describe(
+    artwork: &Artwork<'_>,
+    plan: &Plan,
+    output: &OutputOptions,
+    elapsed: Duration,
+    warnings: &[Warning],
+) -> Output {
+    let mut classes = BTreeMap::new();
+    for class in artwork.classes() {
+        *classes.entry(class.to_owned()).or_insert(0) += 1;
+    }
+    Output {
+        path: plan.path.clone(),
+        format: output.format.unwrap_or(Format::Svg).name(),
+        seed: plan.seed,
+        elements: artwork.outcome.placements.len(),
+        classes,
+        energy: artwork.outcome.energy.last().map(|e| e.energy),
+        stopped: match artwork.outcome.stopped {
+            StopReason::Finished => "finished",
+            StopReason::Observer if is_interrupted() => "interrupted",
+            StopReason::Observer => "time limit",
+        },
+        seconds: elapsed.as_secs_f64(),
+        warnings: warnings.iter().map(Message::from).collect(),
+    }
+}
+
+fn tell(made: &Output, artwork: &Artwork<'_>, warnings: &[Warning], level: Level) {
+    if level == Level::Quiet {
+        return;
+    }
+    if level == Level::Verbose {
+        for e in &artwork.outcome.energy {
+            let (l, i) = (e.level + 1, e.iteration);
+            say::note(&format!("level {l}, iteration {i}: energy {:.5}, {} elements", e.energy, e.elements));
+        }
+    }
+    warnings.iter().for_each(say::warning);
+    let stopped = if made.stopped == "finished" { String::new() } else { format!(", stopped early ({})", made.stopped) };
+    let name = if made.path == file::STANDARD { "standard output" } else { &made.path };
+    say::note(&format!("{name}: {} elements in {:.2} s{stopped}", made.elements, made.seconds));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variations_are_numbered_before_the_extension() {
+        assert_eq!(variation("a/out.svg", 2), "a/out-2.svg");
+        assert_eq!(variation("out", 10), "out-10");
+    }
+}

@@ -1,12 +1,18 @@
 //! Where an element may be put, given the domain and what happens at its border.
 
-use arabesque_core::{Border, Exemplar, Matrix, Outline, Request, ScalarField, Similarity, Vector};
+use std::{any::Any, sync::Arc};
+
+use arabesque_core::{
+    Border, Exemplar, FillRule, Matrix, Outline, Placement, Region, Request, ScalarField, Shape, Similarity, Vector,
+};
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
     request: &'a Request<D>,
     exemplar: &'a Exemplar<D>,
     radius: &'a [f64],
+    /// The ink that is in the way.
+    obstacles: Option<Arc<dyn Region<D>>>,
     /// How far outside the domain centres may lie.
     pub(crate) margin: f64,
     /// Largest factor by which gaps between elements are wider than in the exemplar.
@@ -24,13 +30,24 @@ impl<'a, const D: usize> Extent<'a, D> {
         let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
         let smallest_spacing_scale = request.fields.scale.range().0 * dense;
         let margin = if request.border == Border::Clip { reach } else { 0.0 };
-        Self { request, exemplar, radius, margin, largest_spacing_scale: scale * thin, smallest_spacing_scale }
+        Self {
+            request,
+            exemplar,
+            radius,
+            obstacles: obstacles(&request.obstacles),
+            margin,
+            largest_spacing_scale: scale * thin,
+            smallest_spacing_scale,
+        }
     }
 
     /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
     pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
         let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
         let distance = self.request.domain.signed_distance(p);
+        if self.is_blocked(p, 0.7 * reach) {
+            return false;
+        }
         match self.request.border {
             Border::Cross => distance >= 0.0,
             Border::Clip if distance >= 0.0 => true,
@@ -44,9 +61,14 @@ impl<'a, const D: usize> Extent<'a, D> {
         }
     }
 
+    /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check has the last word.
+    pub(crate) fn is_blocked(&self, p: Vector<D>, reach: f64) -> bool {
+        self.obstacles.as_ref().is_some_and(|o| o.signed_distance(p) > -reach)
+    }
+
     /// Whether anything at all may have its centre at `p`: a quick test that ignores what would lie there.
     pub(crate) fn may_hold(&self, p: Vector<D>) -> bool {
-        self.request.domain.signed_distance(p) >= -self.margin
+        self.request.domain.signed_distance(p) >= -self.margin && !self.is_blocked(p, 0.0)
     }
 
     /// The shortest way for element `i` at `p` to where its centre may lie; zero where it already does.
@@ -63,6 +85,19 @@ impl<'a, const D: usize> Extent<'a, D> {
         }
         let back = domain.offset(p, domain.nearest_inside(p));
         back * ((allowed - distance) / back.norm().max(f64::MIN_POSITIVE))
+    }
+
+    /// Whether a finished element shows in the domain at all, or for [`Border::Cross`] has its centre in it. Elements that should lie
+    /// wholly inside are the business of the clearance check; without an outline their centre decides.
+    pub(crate) fn may_show(&self, placement: &Placement<D>) -> bool {
+        let element = &self.exemplar.elements[placement.source];
+        let p = placement.transform.apply(element.centre);
+        let distance = self.request.domain.signed_distance(p);
+        if distance >= 0.0 || self.request.border != Border::Clip {
+            return distance >= 0.0;
+        }
+        let ink = element.outline.transformed(&placement.transform);
+        ink.points().any(|q| self.request.domain.contains(q))
     }
 
     /// The outline of element `i` with its centre at `p`.
@@ -82,4 +117,12 @@ impl<'a, const D: usize> Extent<'a, D> {
         let rotation = frame.rotation.compose(turn);
         Similarity::about(self.exemplar.elements[i as usize].centre, p, rotation, frame.element_scale)
     }
+}
+
+/// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
+fn obstacles<const D: usize>(outlines: &Vec<Outline<D>>) -> Option<Arc<dyn Region<D>>> {
+    let outlines = (outlines as &dyn Any).downcast_ref::<Vec<Outline<2>>>()?;
+    let rings: Vec<_> = outlines.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+    let region: Arc<dyn Region<2>> = Arc::new(Shape::new(&rings, FillRule::NonZero)?);
+    (&region as &dyn Any).downcast_ref::<Arc<dyn Region<D>>>().cloned()
 }

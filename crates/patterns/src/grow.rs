@@ -7,17 +7,38 @@
 //!
 //! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do it.
 
-use arabesque_core::{Domain, Frame, Request, Stage, Stream, Vector};
+use std::ops::ControlFlow;
+
+use arabesque_core::{Frame, Request, Stage, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
     canvas::{Canvas, Item},
     coverage::{Cell, Coverage},
     extent::Extent,
+    layout::Watch,
     library::Library,
 };
 
-/// Knobs of the layout, fixed by measurement.
+/// Amplitude of the random part of the cost: patches this close in cost are equally good.
+const NOISE: f64 = 0.02;
+
+/// Share of its nearest-neighbour distance that a new element keeps to what is there already, in the open part.
+const ROOM_OPEN: f64 = 0.5;
+
+/// The same where a neighbouring patch has already been.
+const ROOM_COVERED: f64 = 0.75;
+
+/// Cost of an element of which the exemplar does not tell whether it could be there: beyond its frame.
+const UNSEEN: f64 = 0.35;
+
+/// Cost of a patch whose centre lies at the frame of the exemplar, against one from its middle.
+const RIM: f64 = 0.3;
+
+/// Candidates where there is nothing to register on.
+const FREE_CANDIDATES: usize = 24;
+
+/// Knobs of the layout.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GrowParams {
     /// Radius of a patch, exemplar units.
@@ -28,12 +49,6 @@ pub(crate) struct GrowParams {
     pub(crate) repeat: f64,
     /// Cost of a patch whose elements are used more often than others.
     pub(crate) balance: f64,
-    /// Amplitude of the random part of the cost.
-    pub(crate) noise: f64,
-    /// Share of its nearest-neighbour distance that a new element keeps to what is there already, in the open part.
-    pub(crate) room_open: f64,
-    /// The same where a neighbouring patch has already been.
-    pub(crate) room_covered: f64,
     /// Output elements that patches are registered on, for each site.
     pub(crate) anchors: usize,
 }
@@ -69,8 +84,18 @@ impl<'a, const D: usize> Grower<'a, D> {
     }
 
     /// Fills every open cell of `coverage` with elements on `canvas`.
-    pub(crate) fn fill(&mut self, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) {
-        for (round, sites) in self.rounds(coverage).into_iter().enumerate() {
+    /// Tells `watch` after each round, and stops when it says so.
+    pub(crate) fn fill(
+        &mut self,
+        canvas: &mut Canvas<D>,
+        coverage: &mut Coverage<D>,
+        watch: Watch<'_, D>,
+    ) -> ControlFlow<()> {
+        let start = self.start(canvas);
+        let rounds = self.rounds(coverage, start);
+        let all = rounds.iter().map(Vec::len).sum::<usize>().max(1) as f64;
+        let mut done = 0;
+        for (round, sites) in rounds.into_iter().enumerate() {
             let patches: Vec<_> = sites
                 .par_iter()
                 .enumerate()
@@ -85,12 +110,20 @@ impl<'a, const D: usize> Grower<'a, D> {
                 })
                 .collect();
             patches.into_iter().flatten().for_each(|patch| self.paste(&patch, canvas, coverage));
+            done += sites.len();
+            watch(&canvas.items, done as f64 / all)?;
         }
+        ControlFlow::Continue(())
+    }
+
+    /// Where the layout begins: at what is there already, else in the middle.
+    fn start(&self, canvas: &Canvas<D>) -> Vector<D> {
+        canvas.items.first().map_or_else(|| self.request.domain.bounds().centre(), |item| item.position)
     }
 
     /// Sites in rounds: those of one round are too far apart to see one another.
-    fn rounds(&self, coverage: &Coverage<D>) -> Vec<Vec<Vector<D>>> {
-        let sites = site_order(coverage, &self.request.domain, self.params.patch * self.largest_scale());
+    fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>) -> Vec<Vec<Vector<D>>> {
+        let sites = site_order(coverage, start, self.params.patch * self.smallest_scale());
         let reach = (self.params.patch + self.params.context) * self.largest_scale();
         let mut earlier = crate::buckets::Buckets::new(&self.request.domain, self.extent.margin, reach);
         let mut round_of: Vec<usize> = Vec::with_capacity(sites.len());
@@ -112,6 +145,10 @@ impl<'a, const D: usize> Grower<'a, D> {
         rounds
     }
 
+    fn smallest_scale(&self) -> f64 {
+        self.extent.smallest_spacing_scale
+    }
+
     fn largest_scale(&self) -> f64 {
         self.extent.largest_spacing_scale
     }
@@ -131,10 +168,9 @@ impl<'a, const D: usize> Grower<'a, D> {
         let view = View::new(self, site, frame, canvas, coverage);
         let mut best: Option<(f64, Vector<D>)> = None;
         for centre in view.candidates(self.params.anchors, random) {
-            let noise = self.params.noise * random.unit();
-            let limit = best.map_or(f64::INFINITY, |(cost, _)| cost);
-            let cost = view.cost(centre, limit - noise) + noise;
-            if cost < limit {
+            let noise = NOISE * random.unit();
+            let cost = view.cost(centre) + noise;
+            if best.is_none_or(|(least, _)| cost < least) {
                 best = Some((cost, centre));
             }
         }
@@ -157,16 +193,15 @@ impl<'a, const D: usize> Grower<'a, D> {
     }
 }
 
-/// Sites for patches of `radius`: a jitter-free grid over the open cells, from the seed outwards.
-fn site_order<const D: usize>(coverage: &Coverage<D>, domain: &Domain<D>, radius: f64) -> Vec<Vector<D>> {
+/// Sites for patches of `radius`: a grid over the open cells, from `start` outwards.
+fn site_order<const D: usize>(coverage: &Coverage<D>, start: Vector<D>, radius: f64) -> Vec<Vector<D>> {
     // Balls of this radius on a square or cubic grid of this step leave no gap.
     let step = 2.0 * radius / (D as f64).sqrt() * 0.95;
     let mut open: Vec<Vector<D>> = coverage.open().map(|c| coverage.centre(c)).collect();
     if open.is_empty() {
         return open;
     }
-    let middle = domain.bounds().centre();
-    let origin = middle;
+    let origin = start;
     let key = |p: &Vector<D>| -> [i64; D] { std::array::from_fn(|k| ((p[k] - origin[k]) / step).round() as i64) };
     open.sort_by_cached_key(key);
     open.dedup_by_key(|p| key(p));
@@ -178,7 +213,7 @@ fn site_order<const D: usize>(coverage: &Coverage<D>, domain: &Domain<D>, radius
             if coverage.at(node) == Cell::Outside { p } else { node }
         })
         .collect();
-    sites.sort_by(|a, b| (*a - middle).norm2().total_cmp(&(*b - middle).norm2()));
+    sites.sort_by(|a, b| (*a - start).norm2().total_cmp(&(*b - start).norm2()));
     sites
 }
 
@@ -222,15 +257,16 @@ impl<'a, const D: usize> View<'a, D> {
                 }
             }
         }
-        while centres.len() < 24 {
+        let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
+        while centres.len() < wanted {
             let (a, b) = (library.window.min, library.window.max);
             centres.push(Vector(std::array::from_fn(|k| random.range(a[k], b[k]))));
         }
         centres
     }
 
-    /// Disagreement of the patch around exemplar point `centre` with what is there, or anything above `limit` once it exceeds that.
-    fn cost(&self, centre: Vector<D>, limit: f64) -> f64 {
+    /// Disagreement of the patch around exemplar point `centre` with what is there.
+    fn cost(&self, centre: Vector<D>) -> f64 {
         let (library, params) = (self.grower.library, self.grower.params);
         let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
         let (mut cost, mut weights, mut repeated) = (0.0, 1e-9, 0.0);
@@ -238,7 +274,7 @@ impl<'a, const D: usize> View<'a, D> {
             weights += weight;
             let p = centre + offset;
             if !library.window.contains(p) {
-                cost += 0.35 * weight;
+                cost += UNSEEN * weight;
                 continue;
             }
             let class = library.class[source as usize];
@@ -255,11 +291,7 @@ impl<'a, const D: usize> View<'a, D> {
         let (missing, missing_weights, usage) = self.missing(centre, &taken);
         let total = weights + missing_weights;
         let known = library.window.signed_distance(centre).min(params.patch) / params.patch;
-        (cost + missing) / total
-            + params.repeat * repeated / weights
-            + params.balance * usage
-            + 0.3 * (1.0 - known)
-            + if limit.is_nan() { 0.0 } else { 0.0 }
+        (cost + missing) / total + params.repeat * repeated / weights + params.balance * usage + RIM * (1.0 - known)
     }
 
     /// Weight of the patch elements that should be there already and are not, weight of all that should, and mean relative use of the new ones.
@@ -329,14 +361,14 @@ impl<const D: usize> View<'_, D> {
     /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on something, and into a
     /// covered cell at the seam, where registration may have moved it across, only if there is a gap of its own size.
     fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
-        let (library, params) = (self.grower.library, self.grower.params);
+        let library = self.grower.library;
         let own = library.nearest[i as usize];
         let gap = self.around.iter().map(|(_, o, _)| (*o - offset).norm2()).fold(f64::INFINITY, f64::min).sqrt();
         match self.coverage.at(p) {
-            Cell::Open => gap >= params.room_open * own,
+            Cell::Open => gap >= ROOM_OPEN * own,
             Cell::Covered => {
                 let reach = 0.5 * own * self.frame.spacing_scale;
-                gap >= params.room_covered * own && self.coverage.open_within(p, reach).0 > 0
+                gap >= ROOM_COVERED * own && self.coverage.open_within(p, reach).0 > 0
             }
             Cell::Outside => false,
         }

@@ -1,4 +1,32 @@
-//! Sample-graph synthesis.
+//! Sample-graph synthesis of discrete elements: one engine, whose presets are [Ma 2011] and [Tu 2020].
+//!
+//! Elements of an exemplar become samples; output samples are matched with exemplar samples by their neighbourhoods, and the matches say
+//! where every element belongs, which one it is, and whether it should be there. Coarse levels settle the arrangement, fine ones the poses.
+//!
+//! | step | module | source |
+//! |---|---|---|
+//! | sample the elements | `samples`, `level` | [Ma 2011 §3.1], [Tu 2020 §4.1.1] |
+//! | lay out the output | `layout`, `grow`, `noise` | [Tu 2020 §4.3.2], [Ma 2011 §4.1] |
+//! | search | `search`, `matching`, `assignment` | [Ma 2011 §4.2], [Tu 2020 §4.2, §4.3.3] |
+//! | assign positions | `positions`, `solver` | [Ma 2011 eqs 3, 4], [Tu 2020 eqs 14, 15] |
+//! | assign attributes | `attributes`, `features` | [Ma 2011 eq. 5] |
+//! | assign existence | `existence`, `targets` | [Tu 2020 §4.3.4, appendix A] |
+//! | place | `finish`, `clearance`, `deform` | [Ma 2011 §3.1], [Schaefer 2006] |
+//!
+//! | symbol | identifier |
+//! |---|---|
+//! | s_o, s_i | `Sample`, index into `Level::position` |
+//! | n(s) | `Surroundings`, `Level::neighbours` |
+//! | k | `Library::outlier` |
+//! | q(s) | `Feature` |
+//! | c(s_o) | `existence::confidences` |
+//! | r | `Level::radius` |
+//!
+//! Where it departs from the papers, each departure measured to be better and switchable by [`Params`]: patches are laid out in register with what
+//! is there and prefer not to go on copying; missing elements cost as much as surplus ones; numbers of elements are kept near those of the exemplar; holes larger
+//! than any in the exemplar are laid out anew; overlaps are mended on the real outlines.
+//!
+//! Not handled: curves; interleaved physics; elements outside two and three dimensions.
 
 mod assignment;
 mod attributes;
@@ -11,7 +39,9 @@ mod engine;
 mod existence;
 mod extent;
 mod features;
+mod finish;
 mod grow;
+mod layout;
 mod level;
 mod library;
 mod matching;

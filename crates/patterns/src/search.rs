@@ -9,9 +9,10 @@ use arabesque_core::{Stage, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
-    level::fall_off,
+    level::{Level, fall_off},
+    library::Library,
     matching::{Matcher, Row, Surroundings},
-    params::{Matching, Search},
+    params::{Matching, Params, Search},
     state::{Match, State},
 };
 
@@ -26,32 +27,83 @@ pub(crate) struct SearchParams {
     pub(crate) coherence: usize,
     /// Random candidates a sample.
     pub(crate) random: usize,
+    /// Rounds of propagation.
+    pub(crate) rounds: usize,
     /// Distinguishes the random draws of this step from those of other steps.
     pub(crate) step: u64,
 }
 
 /// Finds a match for every living sample. Returns how many samples were searched anew.
 pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchParams) -> usize {
-    let found: Vec<Option<Match>> = state
-        .living
-        .par_iter()
-        .map_init(
-            || Matcher::new(state.level, state.library, params.matching, params.missing),
-            |matcher, &s| search_one(state, s, params, matcher),
-        )
-        .collect();
     let mut searched = 0;
-    for (k, found) in found.into_iter().enumerate() {
-        let s = state.living[k] as usize;
-        if let Some(found) = found {
-            state.samples[s].matched = Some(found);
-            searched += 1;
+    for round in 0..params.rounds as u64 {
+        let params = SearchParams { step: params.step + (round << 40), ..*params };
+        let found: Vec<Option<Match>> = state
+            .living
+            .par_iter()
+            .map_init(
+                || Matcher::new(state.level, state.library, params.matching, params.missing),
+                |matcher, &s| search_one(state, s, &params, matcher),
+            )
+            .collect();
+        searched += found.iter().flatten().count();
+        for (k, found) in found.into_iter().enumerate().filter(|(_, found)| found.is_some()) {
+            let s = state.living[k] as usize;
+            state.samples[s].matched = found;
         }
     }
-    for sample in &mut state.samples {
-        sample.dirty = false;
-    }
+    state.samples.iter_mut().for_each(|sample| sample.dirty = false);
     searched
+}
+
+/// For every exemplar sample, the ones with the most similar neighbourhoods [Ma 2011 §4.2].
+///
+/// Keys with very many samples are compared with an even selection of them: the sets need good members, not the best.
+pub(crate) fn similarity_sets<const D: usize>(
+    level: &Level<D>,
+    library: &Library<D>,
+    params: &Params,
+) -> Vec<Vec<u32>> {
+    const MOST: usize = 256;
+    (0..level.position.len() as u32)
+        .into_par_iter()
+        .map_init(
+            || Matcher::new(level, library, params.matching, 0.0),
+            |matcher, i| {
+                let others = &level.of_key[level.key[i as usize] as usize];
+                let around = exemplar_surroundings(level, i);
+                let mut best: Vec<(f32, u32)> = Vec::with_capacity(params.coherence + 1);
+                for &j in others.iter().step_by(others.len().div_ceil(MOST)).filter(|&&j| j != i) {
+                    let full = best.len() == params.coherence;
+                    let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
+                    let cost = matcher.cost(&around, j, limit, &|_| true);
+                    if cost < limit {
+                        let at = best.partition_point(|b| b.0 <= cost);
+                        best.insert(at, (cost, j));
+                        best.truncate(params.coherence);
+                    }
+                }
+                best.into_iter().map(|(_, j)| j).collect()
+            },
+        )
+        .collect()
+}
+
+/// The neighbourhood of an exemplar sample, as if it were an output sample.
+fn exemplar_surroundings<const D: usize>(level: &Level<D>, i: u32) -> Surroundings<D> {
+    let near = level.neighbours(i).iter().filter(|n| n.weight > 0.0);
+    let mut rows: Vec<_> = near
+        .map(|n| Row {
+            sample: n.sample,
+            key: level.key[n.sample as usize],
+            source: level.element[n.sample as usize],
+            offset: Vector(n.offset.map(f64::from)),
+            weight: n.weight,
+            frozen: false,
+        })
+        .collect();
+    rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
+    Surroundings { source: level.element[i as usize], rows }
 }
 
 fn search_one<const D: usize>(
@@ -145,10 +197,13 @@ fn candidates<const D: usize>(
         push(&mut list, m.input);
     }
     push(&mut list, level.first[around.source as usize] + sample.part);
-    let from_neighbours: Vec<u32> = around.rows.iter().filter_map(|row| implied(state, row.sample, s)).collect();
+    // PatchMatch asks the eight nearest neighbours [Tu 2020 §4.3.3], k-coherence all of them.
+    let asked = if params.search == Search::PatchMatch { 8 } else { around.rows.len() };
+    let from_neighbours: Vec<u32> =
+        around.rows.iter().take(asked).filter_map(|row| implied(state, row.sample, s)).collect();
     from_neighbours.iter().for_each(|&i| push(&mut list, i));
     let seeds = list.len();
-    if params.search == Search::KCoherence && !level.alike.is_empty() {
+    if !level.alike.is_empty() {
         for k in 0..seeds.min(6) {
             let i = list[k];
             level.alike[i as usize].iter().take(params.coherence).for_each(|&j| push(&mut list, j));

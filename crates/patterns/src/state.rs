@@ -2,7 +2,7 @@
 
 use arabesque_core::{Domain, GridIndex, Matrix, Request, Similarity, Vector};
 
-use crate::{canvas::Item, extent::Extent, level::Level, library::Library, samples::pose_of};
+use crate::{canvas::Item, extent::Extent, level::Level, library::Library, params::Deform, samples::pose_of};
 
 /// What the search found for one output sample.
 #[derive(Clone, Debug)]
@@ -63,6 +63,8 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) level: &'a Level<D>,
     pub(crate) request: &'a Request<D>,
     pub(crate) extent: &'a Extent<'a, D>,
+    /// Whether samples may leave the shape of their element.
+    pub(crate) deform: Deform,
     pub(crate) items: Vec<LiveItem<D>>,
     pub(crate) samples: Vec<Sample<D>>,
     /// Living samples, parallel to the points of `index`.
@@ -76,13 +78,14 @@ impl<'a, const D: usize> State<'a, D> {
         level: &'a Level<D>,
         request: &'a Request<D>,
         extent: &'a Extent<'a, D>,
-        items: &[(Item<D>, Matrix<D>)],
+        (items, deform): (&[(Item<D>, Matrix<D>)], Deform),
     ) -> Self {
         let mut state = Self {
             library,
             level,
             request,
             extent,
+            deform,
             items: Vec::with_capacity(items.len()),
             samples: Vec::with_capacity(items.len()),
             living: Vec::new(),
@@ -166,8 +169,10 @@ impl<'a, const D: usize> State<'a, D> {
             item.item.position = centre;
             item.turn = frame.rotation.transpose().compose(&pose.rotation);
             for s in range {
-                let p = self.part_position(i, self.samples[s].part);
-                self.samples[s].position = p;
+                self.samples[s].position = match self.deform {
+                    Deform::Rigid => self.part_position(i, self.samples[s].part),
+                    Deform::AsRigidAsPossible => position[s],
+                };
             }
         }
     }
@@ -183,6 +188,20 @@ impl<'a, const D: usize> State<'a, D> {
             let sample = &mut self.samples[s as usize];
             (sample.position, sample.dirty) = (p, true);
         }
+    }
+
+    /// Marks the samples that moved more than `noticeable` since their neighbours last looked. Returns whether any did.
+    pub(crate) fn announce_moves(&mut self, noticeable: f64) -> bool {
+        let domain = &self.request.domain;
+        let mut any = false;
+        for sample in &mut self.samples {
+            if domain.offset(sample.announced, sample.position).norm() > noticeable {
+                sample.announced = sample.position;
+                sample.dirty = true;
+                any = true;
+            }
+        }
+        any
     }
 
     /// The domain of the output.

@@ -34,6 +34,9 @@ pub(crate) fn class_targets<const D: usize>(
         }));
         let frame = request.fields.frame(p);
         let distance = request.domain.signed_distance(p);
+        if extent.is_blocked(p, 0.0) {
+            continue;
+        }
         for (sum, reach) in usable.iter_mut().zip(&reach) {
             if distance >= reach * frame.element_scale {
                 *sum += cell_measure / frame.spacing_scale.powi(D as i32);

@@ -1,8 +1,34 @@
 //! SVG: exemplars, jobs and results.
+//!
+//! Reading goes from the raw text (`guard`: size, depth, entities) over the parsed file (`source`, `css`, `style`) to a tree of what is
+//! drawn (`scene`), whose ink (`ink`) tells elements from curves and background (`select`, `pieces`, `join`) and sorts the elements into
+//! classes (`signature`, `classes`). What is kept of an element is markup of its own (`markup`, `definitions`).
 
+mod area;
+mod classes;
+mod colour;
+mod css;
+mod definitions;
 mod drawing;
+mod extent;
+mod frame;
+mod geometry;
+mod guard;
+mod ink;
+mod join;
+mod length;
+mod markup;
+mod notes;
 mod options;
+mod pieces;
+mod placed;
 mod read;
+mod scene;
+mod select;
+mod signature;
+mod source;
+mod style;
+mod touch;
 mod write;
 mod write_background;
 mod write_cut;
@@ -10,8 +36,10 @@ mod write_flat;
 mod write_pieces;
 mod write_survey;
 
+pub use area::{read_flow, read_shape};
 pub use drawing::{Drawing, Fragment, Job, Page, Placed, Unit};
 pub use options::{Method, ReadOptions};
-pub use read::{read_exemplar, read_flow, read_placed, read_shape};
+pub use placed::read_placed;
+pub use read::read_exemplar;
 pub use write::{Bend, NAMESPACE, Sheet, Style, Written, recipe_of, write_svg};
 pub use write_survey::write_survey;

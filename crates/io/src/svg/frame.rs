@@ -1,0 +1,67 @@
+//! The frame of an exemplar, and what lies on it.
+
+use arabesque_core::{Bounds, Outline, Role};
+
+use super::select::Item;
+
+/// Share of its diagonal that an element has along the frame when it is cut there.
+const CUT: f64 = 0.15;
+/// How far from the frame a cut may be, as a share of the diagonal of the element.
+const NEAR: f64 = 0.002;
+
+/// Whether an element is whole, or cut at the frame by the file.
+pub(super) fn role(item: &Item, frame: &Bounds<2>) -> Role {
+    if item.is_cut || is_cut_along(&item.outline, frame) { Role::Context } else { Role::Source }
+}
+
+/// Whether a good part of the outline runs exactly along a side of the frame and nothing reaches over that side.
+fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
+    let extent = outline.bounds();
+    let diagonal = extent.size().norm();
+    let near = NEAR * diagonal;
+    let sides = (0..2).flat_map(|k| [(k, frame.min[k], extent.min[k]), (k, frame.max[k], extent.max[k])]);
+    sides.filter(|(_, side, reach)| (side - reach).abs() <= near).any(|(k, side, _)| {
+        let on_side = |v: f64| (v - side).abs() <= near;
+        let along = outline.edges().filter(|(a, b)| on_side(a[k]) && on_side(b[k]));
+        along.map(|(a, b)| (a[1 - k] - b[1 - k]).abs()).sum::<f64>() >= CUT * diagonal
+    })
+}
+
+/// The box around all items, with half the usual gap around it: the frame that the artist had in mind.
+pub(super) fn around(items: &[Item]) -> Bounds<2> {
+    let tight = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.outline.bounds()));
+    if items.len() < 2 {
+        return tight;
+    }
+    let spacing = (tight.measure() / items.len() as f64).sqrt();
+    let diameter = items.iter().map(|item| item.outline.bounds().measure().sqrt()).sum::<f64>() / items.len() as f64;
+    tight.grown((0.5 * (spacing - diameter)).max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arabesque_core::Vector;
+
+    fn polygon(corners: &[(f64, f64)]) -> Outline<2> {
+        Outline { rings: vec![corners.iter().map(|&(x, y)| Vector::xy(x, y)).collect()] }
+    }
+
+    fn is_cut(corners: &[(f64, f64)]) -> bool {
+        is_cut_along(&polygon(corners), &Bounds::new(Vector::ZERO, Vector::xy(10.0, 10.0)))
+    }
+
+    #[test]
+    fn a_half_disc_on_the_frame_is_cut_and_a_disc_that_touches_is_not() {
+        let arc = |from: f64, to: f64| -> Vec<(f64, f64)> {
+            let at = |k: u32| (from + (to - from) * f64::from(k) / 30.0).sin_cos();
+            (0..=30).map(at).map(|(s, c)| (s, 5.0 + c)).collect()
+        };
+        let half = std::f64::consts::PI;
+        assert!(is_cut(&arc(0.0, half)));
+        let disc: Vec<_> = arc(0.0, 2.0 * half).iter().map(|(x, y)| (x + 1.0, *y)).collect();
+        assert!(!is_cut(&disc));
+        let over: Vec<_> = arc(0.0, 2.0 * half);
+        assert!(!is_cut(&over));
+    }
+}

@@ -1,0 +1,474 @@
+//! Ink: the area that shapes cover once they are painted, and its colours.
+
+use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
+
+use arabesque_core::{Error, FillRule, Outline, Result, Ring, Vector, ring_area};
+use kurbo::{Affine, BezPath, Cap, Join, PathEl, Shape as _, Stroke, StrokeOpts};
+
+use super::{
+    colour,
+    geometry::{Geometry, Painted},
+    length::Viewport,
+    notes::Note,
+    scene::{Content, Node, build_definition},
+    source::Source,
+    style::{Property as P, Style, fraction, reference},
+};
+
+/// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
+const DEVIATION: f64 = 0.002;
+
+/// Dashes of one stroke beyond which it is taken as unbroken.
+const DASHES: f64 = 20_000.0;
+
+/// Area covered by something, in user coordinates of the root.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ink {
+    /// Rings with positive area for outer borders and negative area for holes, shape by shape; shapes may overlap.
+    pub(super) rings: Vec<Ring<2>>,
+    /// Number of shapes in `rings`; one shape needs no union.
+    shapes: usize,
+    /// Colours with the area that they cover.
+    pub(super) colours: Vec<([f64; 3], f64)>,
+}
+
+impl Ink {
+    /// The covered area as disjoint polygons.
+    pub(super) fn outline(&self) -> Outline<2> {
+        if self.shapes <= 1 {
+            return Outline { rings: self.rings.clone() };
+        }
+        Outline::union(&self.rings, FillRule::NonZero)
+    }
+
+    /// Mean colour by area; black without ink.
+    pub(super) fn colour(&self) -> [f64; 3] {
+        let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
+        let mean = |k: usize| self.colours.iter().map(|(c, area)| c[k] * area).sum::<f64>() / total;
+        if total > 0.0 { std::array::from_fn(mean) } else { [0.0; 3] }
+    }
+
+    /// The colours that cover at least a tenth of the ink each, rounded, as text: items alike in paint have the same.
+    pub(super) fn colours_key(&self) -> String {
+        let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
+        let mut shares: BTreeMap<String, f64> = BTreeMap::new();
+        for (colour, area) in &self.colours {
+            let [r, g, b] = colour.map(|v| (v * 15.0).round() as u8);
+            *shares.entry(format!("{r:x}{g:x}{b:x}")).or_default() += area;
+        }
+        let main: Vec<_> = shares.into_iter().filter(|(_, area)| *area >= 0.1 * total).map(|(key, _)| key).collect();
+        main.join("+")
+    }
+
+    /// Adds a shape in one colour.
+    fn add(&mut self, outline: Outline<2>, colour: [f64; 3]) {
+        if !outline.rings.is_empty() {
+            self.colours.push((colour, outline.area()));
+            self.rings.extend(outline.rings);
+            self.shapes += 1;
+        }
+    }
+
+    /// Adds other ink.
+    pub(super) fn append(&mut self, other: Self) {
+        self.rings.extend(other.rings);
+        self.colours.extend(other.colours);
+        self.shapes += other.shapes;
+    }
+
+    fn clipped(self, clip: &Outline<2>) -> Self {
+        let outline = self.outline().intersection(clip);
+        let shapes = usize::from(!outline.rings.is_empty());
+        Self { rings: outline.rings, shapes, colours: self.colours }
+    }
+}
+
+/// Finds the ink of nodes.
+pub(super) struct Inker<'a, 's> {
+    pub(super) source: &'s Source<'a>,
+    clips: RefCell<BTreeMap<String, Option<Rc<Node>>>>,
+}
+
+impl<'a, 's> Inker<'a, 's> {
+    pub(super) fn new(source: &'s Source<'a>) -> Self {
+        Self { source, clips: RefCell::default() }
+    }
+
+    /// Ink of a node whose parent has the transform `parent` to the root.
+    pub(super) fn ink(&self, node: &Node, parent: Affine) -> Result<Ink> {
+        let mut ink = Ink::default();
+        self.collect(node, parent, &mut ink)?;
+        Ok(ink)
+    }
+
+    fn collect(&self, node: &Node, parent: Affine, ink: &mut Ink) -> Result<()> {
+        if node.own.get("opacity").is_some_and(|o| fraction(o) == 0.0) {
+            return Ok(());
+        }
+        let world = parent * node.transform;
+        let mut own = Ink::default();
+        match &node.content {
+            Content::Group(children) => {
+                for child in children {
+                    self.collect(child, world, &mut own)?;
+                }
+            }
+            Content::Shape(geometry) => self.shape(node, geometry, world, &mut own)?,
+        }
+        if let Some(clip) = self.clip(node, world)? {
+            own = own.clipped(&clip);
+        }
+        ink.append(own);
+        Ok(())
+    }
+
+    fn shape(&self, node: &Node, geometry: &Geometry, world: Affine, ink: &mut Ink) -> Result<()> {
+        self.check(node, geometry, world)?;
+        if geometry.paint == Painted::Picture {
+            ink.add(filled(&geometry.path, world, FillRule::NonZero), [0.5; 3]);
+            return Ok(());
+        }
+        let style = &node.style;
+        if style.fills() {
+            let rule = fill_rule(style.get(P::FillRule));
+            ink.add(filled(&geometry.path, world, rule), colour::of_paint(self.source, style.get(P::Fill)));
+        }
+        if style.strokes() {
+            let outline = stroked(node, &geometry.path, world);
+            ink.add(outline, colour::of_paint(self.source, style.get(P::Stroke)));
+        }
+        Ok(())
+    }
+
+    /// Refuses coordinates beyond the limit.
+    pub(super) fn check(&self, node: &Node, geometry: &Geometry, world: Affine) -> Result<()> {
+        let extent = (world * geometry.path.clone()).control_box().inflate(0.0, 0.0);
+        let width = if node.style.strokes() { node.style.number(P::StrokeWidth) * growth(world) } else { 0.0 };
+        let largest = [extent.x0, extent.y0, extent.x1, extent.y1, width].map(f64::abs);
+        if largest.iter().all(|v| *v <= self.source.limits.coordinate) {
+            return Ok(());
+        }
+        let place = self.source.xml.get_node(node.meta.xml).map_or_else(String::new, |xml| self.source.place(xml));
+        let problem = format!("a coordinate beyond {:e} user units", self.source.limits.coordinate);
+        Err(Error::input(place, problem, "correct or delete this shape"))
+    }
+
+    /// The area that the clips of a node leave visible; `world` leads from the node to the root.
+    pub(super) fn clip(&self, node: &Node, world: Affine) -> Result<Option<Outline<2>>> {
+        let by_path = match node.own.get("clip-path").and_then(reference) {
+            Some(Ok((id, _))) => self.clip_area(id, node, world, 0)?,
+            _ => None,
+        };
+        let by_viewport = node.viewport_clip.map(|r| filled(&r.to_path(0.1), world, FillRule::NonZero));
+        Ok(match (by_path, by_viewport) {
+            (Some(a), Some(b)) => Some(a.intersection(&b)),
+            (a, b) => a.or(b),
+        })
+    }
+
+    fn clip_area(&self, id: &str, node: &Node, world: Affine, nested: usize) -> Result<Option<Outline<2>>> {
+        // A clip path that is clipped by itself ends here.
+        if nested > 8 {
+            return Ok(None);
+        }
+        let Some(clip) = self.clip_node(id, node.viewport)? else { return Ok(None) };
+        let in_box = self.source.xml.get_node(clip.meta.xml).and_then(|n| n.attribute("clipPathUnits"));
+        let mut space = world;
+        if in_box == Some("objectBoundingBox") {
+            let Some(extent) = extent(node) else { return Ok(Some(Outline::default())) };
+            space = space
+                * Affine::translate(extent.origin().to_vec2())
+                * Affine::scale_non_uniform(extent.width(), extent.height());
+        }
+        let mut rings = Vec::new();
+        for child in clip.children() {
+            self.clip_rings(child, space * clip.transform, &mut rings)?;
+        }
+        let area = Outline::union(&rings, FillRule::NonZero);
+        match clip.own.get("clip-path").and_then(reference) {
+            Some(Ok((outer, _))) => {
+                let outer = self.clip_area(outer, node, world, nested + 1)?;
+                Ok(Some(outer.map_or_else(|| area.clone(), |o| area.intersection(&o))))
+            }
+            _ => Ok(Some(area)),
+        }
+    }
+
+    fn clip_rings(&self, node: &Node, parent: Affine, rings: &mut Vec<Ring<2>>) -> Result<()> {
+        let world = parent * node.transform;
+        if let Content::Shape(geometry) = &node.content {
+            self.check(node, geometry, world)?;
+            rings.extend(filled(&geometry.path, world, fill_rule(node.style.get(P::ClipRule))).rings);
+        }
+        node.children().iter().try_for_each(|child| self.clip_rings(child, world, rings))
+    }
+
+    fn clip_node(&self, id: &str, viewport: Viewport) -> Result<Option<Rc<Node>>> {
+        if let Some(known) = self.clips.borrow().get(id) {
+            return Ok(known.clone());
+        }
+        let found = self.source.by_id(id).filter(|n| n.tag_name().name() == "clipPath");
+        if found.is_none() {
+            self.source.notes.add(Note::Missing, || format!("clip path #{id}"));
+        }
+        let node = match found {
+            Some(xml) => build_definition(self.source, xml, viewport)?,
+            None => None,
+        };
+        self.clips.borrow_mut().insert(id.to_owned(), node.clone());
+        Ok(node)
+    }
+}
+
+/// Box around the shapes of a node, strokes left out, in its own coordinates.
+fn extent(node: &Node) -> Option<kurbo::Rect> {
+    match &node.content {
+        Content::Shape(geometry) => Some(geometry.path.bounding_box()),
+        Content::Group(children) => {
+            let boxes = children.iter().filter_map(|c| Some(c.transform.transform_rect_bbox(extent(c)?)));
+            boxes.reduce(|a, b| a.union(b))
+        }
+    }
+}
+
+/// The fill rule of that name.
+pub(super) fn fill_rule(name: &str) -> FillRule {
+    if name == "evenodd" { FillRule::EvenOdd } else { FillRule::NonZero }
+}
+
+/// Mean factor by which a transform enlarges lengths.
+pub(super) fn growth(transform: Affine) -> f64 {
+    transform.determinant().abs().sqrt()
+}
+
+/// The area that a filled path covers.
+pub(super) fn filled(path: &BezPath, world: Affine, rule: FillRule) -> Outline<2> {
+    covered(&rings(&(world * path.clone())), rule)
+}
+
+/// The union of rings under a rule, with a short cut for one plain ring.
+pub(super) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
+    match rings {
+        [] => Outline::default(),
+        [ring] if is_convex(ring) => {
+            let mut ring = ring.clone();
+            if ring_area(&ring) < 0.0 {
+                ring.reverse();
+            }
+            Outline { rings: vec![ring] }
+        }
+        _ => Outline::union(rings, rule),
+    }
+}
+
+/// Whether a ring turns one way all along, once around: then it cannot cross itself.
+fn is_convex(ring: &[Vector<2>]) -> bool {
+    let n = ring.len();
+    let edge = |k: usize| ring[(k + 1) % n] - ring[k % n];
+    let mut turned = 0.0;
+    let mut sign = 0.0;
+    for k in 0..n {
+        let (a, b) = (edge(k), edge(k + 1));
+        let cross = a.cross(b);
+        if cross * sign < 0.0 || a.norm2() == 0.0 {
+            return false;
+        }
+        if cross != 0.0 {
+            sign = cross.signum();
+        }
+        turned += cross.atan2(a.dot(b));
+    }
+    n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
+}
+
+/// The subpaths of a path as polygons, as fine as their size deserves.
+pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
+    subpaths(path).map(|elements| flattened(elements)).filter(|ring| ring.len() >= 3).collect()
+}
+
+/// The subpaths of a path.
+pub(super) fn subpaths(path: &BezPath) -> impl Iterator<Item = &[PathEl]> {
+    path.subpaths()
+}
+
+/// A subpath as polyline; a closing point that repeats the first is dropped.
+pub(super) fn flattened(elements: &[PathEl]) -> Ring<2> {
+    let mut points: Ring<2> = Vec::new();
+    let extent = control_box(elements);
+    let tolerance = (DEVIATION * extent.width().hypot(extent.height())).max(f64::MIN_POSITIVE);
+    kurbo::flatten(elements.iter().copied(), tolerance, |element| {
+        if let PathEl::MoveTo(p) | PathEl::LineTo(p) = element {
+            let p = Vector::xy(p.x, p.y);
+            if points.last() != Some(&p) {
+                points.push(p);
+            }
+        }
+    });
+    while points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    points
+}
+
+fn control_box(elements: &[PathEl]) -> kurbo::Rect {
+    let mut extent: Option<kurbo::Rect> = None;
+    let mut add = |p: kurbo::Point| {
+        let at = kurbo::Rect::from_points(p, p);
+        extent = Some(extent.map_or(at, |e| e.union(at)));
+    };
+    for element in elements {
+        match *element {
+            PathEl::MoveTo(p) | PathEl::LineTo(p) => add(p),
+            PathEl::QuadTo(a, p) => [a, p].into_iter().for_each(&mut add),
+            PathEl::CurveTo(a, b, p) => [a, b, p].into_iter().for_each(&mut add),
+            PathEl::ClosePath => {}
+        }
+    }
+    extent.unwrap_or_default()
+}
+
+/// The area that the stroke of a shape covers.
+pub(super) fn stroked(node: &Node, path: &BezPath, world: Affine) -> Outline<2> {
+    let style = &node.style;
+    let width = style.number(P::StrokeWidth);
+    let scale = growth(world);
+    // A stroke that does not scale has its width in user units of the root.
+    let fixed = node.own.get("vector-effect") == Some("non-scaling-stroke") && scale > 0.0;
+    let (path, world) = if fixed { (world * path.clone(), Affine::IDENTITY) } else { (path.clone(), world) };
+    let extent = path.control_box();
+    let tolerance = (DEVIATION * (extent.width().hypot(extent.height()) + width)).min(0.1 * width);
+    let pen = pen(style, width, &path);
+    let mut outline = BezPath::new();
+    for elements in path.subpaths() {
+        match dot(elements, &pen) {
+            Some(dot) => outline.extend(dot),
+            None => outline.extend(kurbo::stroke(elements.iter().copied(), &pen, &StrokeOpts::default(), tolerance)),
+        }
+    }
+    if !outline.is_finite() {
+        return Outline::default();
+    }
+    let rings = rings(&(world * outline));
+    covered(&rings, FillRule::NonZero)
+}
+
+fn pen(style: &Style, width: f64, path: &BezPath) -> Stroke {
+    let cap = match style.get(P::StrokeLinecap) {
+        "round" => Cap::Round,
+        "square" => Cap::Square,
+        _ => Cap::Butt,
+    };
+    let join = match style.get(P::StrokeLinejoin) {
+        "round" => Join::Round,
+        "bevel" => Join::Bevel,
+        _ => Join::Miter,
+    };
+    let pen = Stroke::new(width).with_caps(cap).with_join(join).with_miter_limit(style.number(P::StrokeMiterlimit));
+    let dashes: Vec<f64> = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse().ok()).collect();
+    let period: f64 = dashes.iter().sum();
+    if dashes.is_empty() || period <= 0.0 || rough_length(path) / period * dashes.len() as f64 > DASHES {
+        return pen;
+    }
+    // A dash of no length still shows its caps.
+    let dashes = dashes.into_iter().map(|d| if d == 0.0 { 1e-3 * width } else { d });
+    let dashes: Vec<f64> = dashes.collect();
+    let doubled = if dashes.len() % 2 == 1 { [dashes.clone(), dashes].concat() } else { dashes };
+    pen.with_dashes(style.number(P::StrokeDashoffset), doubled)
+}
+
+/// Length of the control polygon: no less than the length of the path.
+fn rough_length(path: &BezPath) -> f64 {
+    let ends = |s: kurbo::PathSeg| s.to_cubic();
+    path.segments().map(ends).map(|c| (c.p1 - c.p0).hypot() + (c.p2 - c.p1).hypot() + (c.p3 - c.p2).hypot()).sum()
+}
+
+/// What a subpath of no length shows: a dot with round caps, a square with square ones, nothing with butt ones.
+fn dot(elements: &[PathEl], pen: &Stroke) -> Option<BezPath> {
+    let extent = control_box(elements);
+    if elements.len() < 2 || extent.width() > 0.0 || extent.height() > 0.0 {
+        return None;
+    }
+    let (centre, half) = (extent.origin(), 0.5 * pen.width);
+    Some(match pen.start_cap {
+        Cap::Round => kurbo::Circle::new(centre, half).to_path(0.01 * half),
+        Cap::Square => kurbo::Rect::from_center_size(centre, (pen.width, pen.width)).to_path(0.1),
+        Cap::Butt => BezPath::new(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::svg::{ReadOptions, scene, source::with_source};
+
+    fn area(svg: &str) -> f64 {
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{svg}</svg>");
+        with_source(&text, &ReadOptions::new("i.svg"), |source| {
+            let root = scene::build(source, Viewport { width: 100.0, height: 100.0 })?;
+            Ok(Inker::new(source).ink(&root, Affine::IDENTITY)?.outline().area())
+        })
+        .unwrap()
+    }
+
+    fn is_near(svg: &str, want: f64) {
+        let got = area(svg);
+        assert!((got - want).abs() < 0.01 * want, "{svg}: {got}, expected {want}");
+    }
+
+    #[test]
+    fn fills_and_strokes_count_once_where_they_overlap() {
+        is_near("<rect width='10' height='10'/>", 100.0);
+        is_near("<rect width='10' height='10' stroke='red' stroke-width='2' stroke-linejoin='miter'/>", 144.0);
+        is_near("<rect width='10' height='10' stroke='red' stroke-width='2' fill='none'/>", 144.0 - 64.0);
+        is_near("<g fill='red'><rect width='10' height='10'/><rect x='5' width='10' height='10'/></g>", 150.0);
+    }
+
+    #[test]
+    fn opposite_turning_sense_does_not_cancel() {
+        is_near("<path d='M0 0h10v10h-10z'/><path d='M0 0v10h10v-10z'/>", 100.0);
+        is_near(
+            "<g transform='scale(-1 1)'><path d='M0 0h10v10h-10z'/></g><rect x='-5' width='10' height='10'/>",
+            150.0,
+        );
+    }
+
+    #[test]
+    fn caps_joins_dashes_and_dots() {
+        is_near("<path d='M0 0H10' stroke='red' stroke-width='2'/>", 20.0);
+        is_near("<path d='M0 0H10' stroke='red' stroke-width='2' stroke-linecap='square'/>", 24.0);
+        is_near("<path d='M0 0H12' stroke='red' stroke-width='2' stroke-dasharray='1 2'/>", 8.0);
+        is_near("<path d='M5 5h0' stroke='red' stroke-width='2' stroke-linecap='round'/>", std::f64::consts::PI);
+        is_near("<g transform='scale(1 3)'><path d='M0 0H10' stroke='red' stroke-width='2'/></g>", 60.0);
+        is_near(
+            "<g transform='scale(3)'><path d='M0 0H10' vector-effect='non-scaling-stroke' stroke='red'/></g>",
+            30.0,
+        );
+    }
+
+    #[test]
+    fn holes_follow_the_fill_rule() {
+        let d = "M0 0h10v10h-10z M2 2h6v6h-6z";
+        is_near(&format!("<path d='{d}'/>"), 100.0);
+        is_near(&format!("<path fill-rule='evenodd' d='{d}'/>"), 64.0);
+    }
+
+    #[test]
+    fn clips_cut_ink() {
+        let clip = "<clipPath id='c'><rect width='5' height='100'/></clipPath>";
+        is_near(&format!("{clip}<rect clip-path='url(#c)' width='10' height='10'/>"), 50.0);
+        is_near(
+            &format!("{clip}<g transform='scale(2)' clip-path='url(#c)'><rect width='10' height='10'/></g>"),
+            200.0,
+        );
+        let boxed = "<clipPath id='b' clipPathUnits='objectBoundingBox'><rect width='.5' height='.5'/></clipPath>";
+        is_near(&format!("{boxed}<rect x='7' clip-path='url(#b)' width='10' height='10'/>"), 25.0);
+        let looped = "<clipPath id='l' clip-path='url(#l)'><rect width='5' height='5'/></clipPath>";
+        is_near(&format!("{looped}<rect clip-path='url(#l)' width='10' height='10'/>"), 25.0);
+        is_near("<svg width='10' height='10'><rect width='30' height='5'/></svg>", 50.0);
+    }
+
+    #[test]
+    fn no_visible_paint_is_no_ink() {
+        assert_eq!(area("<rect width='9' height='9' fill='none'/><rect width='9' height='9' fill-opacity='0'/>"), 0.0);
+    }
+}

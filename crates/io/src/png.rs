@@ -52,7 +52,8 @@ pub fn write_png(plate: &Plate<'_>, limits: &Limits) -> Result<Vec<u8>> {
         Resolution::PerInch(dpi) => [dpi / PIXELS_PER_INCH; 2],
         Resolution::PerUnit(n) => [n * plate.units[0] / page[0], n * plate.units[1] / page[1]],
     };
-    let side = |k: usize| (page[k] * scale[k]).round().max(1.0);
+    // A clamp keeps NaN, which the limit below then refuses.
+    let side = |k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX);
     let (width, height) = (side(0), side(1));
     if !(width * height <= limits.pixels as f64 && width.max(height) <= f64::from(i16::MAX)) {
         return Err(Error::Limit {

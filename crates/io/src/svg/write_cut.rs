@@ -20,6 +20,9 @@ pub(super) enum Remainder {
     Part(BezPath),
 }
 
+/// Areas that differ by less than this share are the same: polygon operations round to a fine grid.
+const SAME_AREA: f64 = 1e-5;
+
 impl Cutter {
     /// A cutter along `outline`; curves are replaced by chords within `tolerance`. `None` when it encloses no area.
     pub(super) fn new(outline: &Outline<2>, tolerance: f64) -> Option<Self> {
@@ -40,7 +43,7 @@ impl Cutter {
         if inside.rings.is_empty() {
             return Remainder::Nothing;
         }
-        if (inside.area() - area.area()).abs() <= 1e-9 * area.area() {
+        if (inside.area() - area.area()).abs() <= SAME_AREA * area.area() {
             return Remainder::Everything;
         }
         let mut part = BezPath::new();

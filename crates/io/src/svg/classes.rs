@@ -110,11 +110,36 @@ fn shapes(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     let alike = |a: &Signature, b: &Signature| a.may_match(b) && a.fit(b).distance <= WOBBLE;
     let outlines = greedy(members, signatures, MOST_SHAPES, alike);
     let told = outlines.filter(|(_, count)| members.len() < 3 || 2 * count <= members.len());
-    if let Some((shapes, _)) = told {
+    if let Some((shapes, _)) = told.filter(|(shapes, _)| is_clear_cut(members, shapes, signatures)) {
         return shapes;
     }
     let sizes = greedy(members, signatures, usize::MAX, Signature::has_size_of);
     sizes.map_or_else(|| vec![0; members.len()], |(shapes, _)| shapes)
+}
+
+/// Share of the distance between shapes that members may be off their own shape, in the mean.
+const CLEAR: f64 = 0.4;
+
+/// Whether members are much nearer to the first of their shape than the shapes are to each other. Where they are not, the shapes are
+/// accidents of cutting one cloud of outlines into pieces.
+fn is_clear_cut(members: &[usize], shapes: &[usize], signatures: &[Option<Signature>]) -> bool {
+    let mut firsts: Vec<Option<&Signature>> = Vec::new();
+    let mut off = Vec::new();
+    for (&i, &shape) in members.iter().zip(shapes) {
+        firsts.resize(firsts.len().max(shape + 1), None);
+        match (&firsts[shape], &signatures[i]) {
+            (Some(first), Some(own)) => off.push(first.fit(own).distance),
+            (first, own) => firsts[shape] = first.or(own.as_ref()),
+        }
+    }
+    let firsts: Vec<&Signature> = firsts.into_iter().flatten().collect();
+    let nearest = |k: usize| {
+        let others = (0..firsts.len()).filter(|&j| j != k && firsts[k].has_size_of(firsts[j]));
+        others.map(|j| firsts[k].fit(firsts[j]).distance).reduce(f64::min)
+    };
+    let apart: Vec<f64> = (0..firsts.len()).filter_map(nearest).collect();
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
+    apart.is_empty() || off.is_empty() || mean(&off) <= CLEAR * mean(&apart)
 }
 
 /// Gives each member the first shape that it is like, or a new one; `None` when there are more than `most`.

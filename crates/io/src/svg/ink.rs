@@ -140,9 +140,18 @@ impl<'a, 's> Inker<'a, 's> {
         Ok(())
     }
 
+    /// Refuses shapes with coordinates beyond the limit, in the whole tree.
+    pub(super) fn check_all(&self, node: &Node, parent: Affine) -> Result<()> {
+        let world = parent * node.transform;
+        if let Content::Shape(geometry) = &node.content {
+            self.check(node, geometry, world)?;
+        }
+        node.children().iter().try_for_each(|child| self.check_all(child, world))
+    }
+
     /// Refuses coordinates beyond the limit.
     pub(super) fn check(&self, node: &Node, geometry: &Geometry, world: Affine) -> Result<()> {
-        let extent = (world * geometry.path.clone()).control_box().inflate(0.0, 0.0);
+        let extent = (world * geometry.path.clone()).control_box();
         let width = if node.style.strokes() { node.style.number(P::StrokeWidth) * growth(world) } else { 0.0 };
         let largest = [extent.x0, extent.y0, extent.x1, extent.y1, width].map(f64::abs);
         if largest.iter().all(|v| *v <= self.source.limits.coordinate) {
@@ -283,7 +292,7 @@ fn is_convex(ring: &[Vector<2>]) -> bool {
 
 /// The subpaths of a path as polygons, as fine as their size deserves.
 pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
-    subpaths(path).map(|elements| flattened(elements)).filter(|ring| ring.len() >= 3).collect()
+    subpaths(path).map(flattened).filter(|ring| ring.len() >= 3).collect()
 }
 
 /// The subpaths of a path.

@@ -28,6 +28,7 @@ pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Resu
     with_source(text, options, |source| {
         let (root, page) = root(source)?;
         let inker = Inker::new(source);
+        inker.check_all(&root, Affine::IDENTITY)?;
         let content = super::extent::bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let mut definitions = Definitions::new(source, "kept");

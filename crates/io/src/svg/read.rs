@@ -29,6 +29,7 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
     with_source(text, options, |source| {
         let (root, page) = root(source)?;
         let inker = Inker::new(source);
+        inker.check_all(&root, Affine::IDENTITY)?;
         let scope = scope(&inker, &root, page.as_ref())?;
         let mut found = select(&inker, scope.frame, options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
@@ -77,11 +78,6 @@ fn scope(inker: &Inker<'_, '_>, root: &Rc<Node>, page: Option<&Page>) -> Result<
     let by_layer = !layers.is_empty();
     let roots = if by_layer { layers } else { vec![(Affine::IDENTITY, Rc::clone(root))] };
     let content = roots.iter().fold(Bounds::EMPTY, |all, (parent, node)| all.union(&content(node, *parent)));
-    let limit = inker.source.limits.coordinate;
-    if !content.is_empty() && content.min.0.iter().chain(&content.max.0).any(|v| !v.is_finite() || v.abs() > limit) {
-        let problem = format!("the drawing reaches beyond {limit:e} user units");
-        return Err(Error::input(inker.source.name, problem, "delete what lies so far away"));
-    }
     let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
     let share = page.map_or(0.0, |p| content.measure() / p.view.measure());
     let fits = share >= if by_layer { LAYER } else { CORNER };

@@ -77,7 +77,7 @@ const HALF: f64 = 0.5;
 /// Share of the frame from which on a group of distant things is a container.
 const ROOMY: f64 = 0.1;
 /// Widest gap inside one thing, as a share of the smaller neighbour.
-const GAP: f64 = 0.3;
+const GAP: f64 = 0.4;
 /// Share of the frame that a background covers at least.
 const COVER: f64 = 0.95;
 

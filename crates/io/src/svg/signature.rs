@@ -1,7 +1,7 @@
 //! The shape of an outline in short, and the best similarity between two of them.
 //!
 //! A signature holds the farthest ink in 64 directions around the centre, and points along the border. Two outlines are aligned by
-//! the turns for which the directions agree best; how well they then agree is the mean distance between their borders.
+//! the turns for which the directions agree best; how well they then agree is the root mean square distance between their borders.
 
 use std::f64::consts::TAU;
 
@@ -36,7 +36,7 @@ pub(super) struct Signature {
 /// How one outline lies on another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
-    /// Mean distance between the borders, in sizes.
+    /// Root mean square distance between the borders, in sizes.
     pub(super) distance: f64,
     /// From the coordinates of the first to those of the second.
     pub(super) pose: Similarity<2>,
@@ -111,17 +111,17 @@ impl Signature {
     fn border_distance(&self, other: &Self, turn: f64) -> f64 {
         let rotation = Matrix::rotation(turn);
         let turned: Vec<_> = self.points.iter().map(|&p| rotation.apply(p)).collect();
-        0.5 * (mean_gap(&turned, &other.points) + mean_gap(&other.points, &turned))
+        (0.5 * (square_gap(&turned, &other.points) + square_gap(&other.points, &turned))).sqrt()
     }
 }
 
-/// Mean distance from the points of `a` to the nearest segment of the closed run through `b`.
-fn mean_gap(a: &[Vector<2>], b: &[Vector<2>]) -> f64 {
+/// Mean square distance from the points of `a` to the nearest of `b`.
+fn square_gap(a: &[Vector<2>], b: &[Vector<2>]) -> f64 {
     let nearest = |p: Vector<2>| b.iter().map(|&q| (p - q).norm2()).fold(f64::INFINITY, f64::min).sqrt();
     // Samples lie half a step apart on average even where the borders agree; that is not a difference.
     let step = b.windows(2).map(|w| (w[1] - w[0]).norm()).fold(f64::INFINITY, f64::min);
     let slack = if step.is_finite() { 0.25 * step } else { 0.0 };
-    a.iter().map(|&p| (nearest(p) - slack).max(0.0)).sum::<f64>() / a.len().max(1) as f64
+    a.iter().map(|&p| (nearest(p) - slack).max(0.0).powi(2)).sum::<f64>() / a.len().max(1) as f64
 }
 
 fn radial_profile(outline: &Outline<2>, centre: Vector<2>) -> [f64; DIRECTIONS] {

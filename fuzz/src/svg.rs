@@ -1,0 +1,64 @@
+//! Feeds arbitrary text to every way of reading SVG, and checks what comes out: never a panic or a hang, and markup that is well formed,
+//! finite, and refers only to definitions that are there.
+#![no_main]
+
+use std::{collections::BTreeSet, sync::LazyLock};
+
+use arabesque_core::Limits;
+use arabesque_io::svg::{Drawing, Fragment, Method, ReadOptions, read_exemplar, read_flow, read_placed, read_shape};
+use libfuzzer_sys::fuzz_target;
+
+/// An exemplar that kept files are matched to.
+static EXEMPLAR: LazyLock<Option<Drawing>> = LazyLock::new(|| {
+    let text = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><circle cx='2' cy='2' r='1'/><path d='M5 5h2l2 3z'/></svg>";
+    read_exemplar(text, &ReadOptions::new("exemplar.svg")).ok()
+});
+
+fuzz_target!(|data: &[u8]| {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let limits = Limits { nodes: 3000, segments: 3000, depth: 64, elements: 500, ..Limits::default() };
+    for method in [Method::Auto, Method::Elements] {
+        let options = ReadOptions { name: "fuzz.svg".into(), method, limits };
+        if let Ok(drawing) = read_exemplar(text, &options) {
+            check(&drawing);
+        }
+    }
+    let options = ReadOptions { name: "fuzz.svg".into(), method: Method::Elements, limits };
+    let _ = read_shape(text, None, &options);
+    let _ = read_flow(text, &options);
+    if let (Some(drawing), true) = (&*EXEMPLAR, data.len() % 4 == 0)
+        && let Ok(placed) = read_placed(text, drawing, &options)
+    {
+        check_markup(&placed.definitions, placed.fragments.iter().chain(&placed.obstacle_fragments), None);
+    }
+});
+
+fn check(drawing: &Drawing) {
+    let exemplar = &drawing.exemplar;
+    assert_eq!(exemplar.elements.len(), drawing.fragments.len());
+    for element in &exemplar.elements {
+        assert!(element.class < exemplar.classes.len());
+        assert!(element.outline.points().all(|p| p.is_finite()), "an outline is not finite");
+        assert!(element.pose.scale.is_finite() && element.pose.scale > 0.0, "a pose has no scale");
+        assert!(element.colour.iter().all(|c| (0.0..=1.0).contains(c)), "a colour is out of range");
+    }
+    check_markup(&drawing.definitions, drawing.fragments.iter(), drawing.background.as_deref());
+}
+
+fn check_markup<'a>(definitions: &str, fragments: impl Iterator<Item = &'a Fragment>, background: Option<&str>) {
+    let body: String = fragments.map(|f| f.markup.as_str()).chain(background).collect();
+    let text = format!("<svg xmlns=\"http://www.w3.org/2000/svg\"><defs>{definitions}</defs>{body}</svg>");
+    let document = roxmltree::Document::parse(&text).unwrap_or_else(|e| panic!("markup is not well formed: {e}: {text}"));
+    let mut ids = BTreeSet::new();
+    for id in document.descendants().filter_map(|n| n.attribute("id")) {
+        assert!(ids.insert(id), "an id occurs twice: {text}");
+    }
+    for attribute in document.descendants().flat_map(|n| n.attributes()) {
+        let value = attribute.value();
+        let target = value.strip_prefix("url(#").and_then(|v| v.split(')').next());
+        let target = target.or_else(|| value.strip_prefix('#').filter(|_| attribute.name() == "href"));
+        if let Some(target) = target {
+            assert!(ids.contains(target), "{value} leads nowhere: {text}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Files are written whole or not at all.
+
+mod common;
+
+use std::{process::Stdio, time::Duration};
+
+use common::{Folder, stderr};
+
+#[test]
+fn a_place_that_cannot_be_written_is_noticed_first() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("folder.svg")).unwrap();
+    for out in ["nowhere/a.svg", "folder.svg", "leaves.svg/a.svg"] {
+        // The exemplar is missing too: the place is looked at before any file is read.
+        let message = folder.fails(1, &format!("fill missing.svg --size 80x80 -o {out}"));
+        assert!(message.contains("cannot write the result") && message.contains(out), "{message}");
+    }
+}
+
+#[test]
+fn a_failed_run_leaves_the_old_result() {
+    let folder = Folder::new();
+    folder.write("out.svg", "precious");
+    folder.fails(4, "fill leaves.svg --size 1x1 -o out.svg");
+    folder.fails(3, "fill ring.csv --size 80x80 -o out.svg");
+    assert_eq!(folder.text("out.svg"), "precious");
+    folder.ok("fill leaves.svg --size 80x80 -o out.svg");
+    assert!(folder.text("out.svg").starts_with("<?xml"));
+    assert!(folder.names().iter().all(|n| !n.ends_with(".part")));
+}
+
+#[test]
+fn the_exemplar_may_be_replaced_by_its_result() {
+    let folder = Folder::new();
+    folder.ok("fill leaves.svg --size 80x80 -o leaves.svg");
+    folder.ok("run leaves.svg -o again.svg");
+    assert!(folder.read("leaves.svg") == folder.read("again.svg"));
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_devices_keep_what_they_are() {
+    let folder = Folder::new();
+    folder.write("real.svg", "old");
+    std::os::unix::fs::symlink("real.svg", folder.path("link.svg")).unwrap();
+    folder.ok("fill leaves.svg --size 80x80 -o link.svg");
+    assert!(folder.path("link.svg").is_symlink());
+    assert!(folder.text("real.svg").starts_with("<?xml"));
+    folder.ok("fill leaves.svg --size 80x80 --format svg -o /dev/null");
+}
+
+/// Sends the signal of Ctrl-C.
+#[cfg(unix)]
+fn interrupt(child: &std::process::Child) {
+    let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_writes_the_best_so_far() {
+    let folder = Folder::new();
+    let child = folder
+        .command("fill points.csv --size 6x6 --iterations 1000 -o out.csv --json")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(2500));
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    let text = folder.text("out.csv");
+    assert!(text.starts_with("x,y,class\n") && text.lines().count() > 100);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["outputs"][0]["stopped"], "interrupted");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_second_ctrl_c_ends_at_once_without_half_a_file() {
+    let folder = Folder::new();
+    let before = folder.names();
+    let mut child = folder
+        .command("fill points.csv --size 40x40 --iterations 1000 -o out.csv")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(800));
+    interrupt(&child);
+    std::thread::sleep(Duration::from_millis(50));
+    if child.try_wait().unwrap().is_none() {
+        interrupt(&child);
+    }
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let after: Vec<_> = folder.names().into_iter().filter(|n| n != "out.csv").collect();
+    assert_eq!(after, before);
+}

@@ -148,7 +148,7 @@ impl ExemplarClearance {
 
     fn unlayered_area(&self, scene: &Scene, overlaps: &[Overlap]) -> f64 {
         let counts = |o: &&Overlap| !self.layered(&scene.bodies[o.a], &scene.bodies[o.b]);
-        overlaps.iter().filter(counts).map(|o| o.area).sum()
+        overlaps.iter().filter(counts).fold(0.0, |sum, o| sum + o.area)
     }
 
     /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than in the

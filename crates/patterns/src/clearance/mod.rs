@@ -81,6 +81,6 @@ pub fn overlap_ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], domain
     };
     let (own, bodies) = clearance.bodies(placements);
     let scene = Scene::new(domain, &clearance.figures, own, bodies);
-    let common: f64 = scene.overlaps().iter().map(|overlap| overlap.area).sum();
+    let common = scene.overlaps().iter().fold(0.0, |sum, overlap| sum + overlap.area);
     common / limits::ink(&scene).max(f64::MIN_POSITIVE)
 }

@@ -13,7 +13,7 @@ use super::{
 };
 
 /// How far an element may be shifted, in mean spacings.
-const REACH: f64 = 0.35;
+const REACH: f64 = 0.5;
 
 /// Circles on which a free place is looked for, out to the reach.
 const RINGS: u32 = 5;

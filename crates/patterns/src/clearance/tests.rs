@@ -94,7 +94,7 @@ fn three_in_a_row_make_room_for_each_other() {
     assert_eq!((mended.len(), summary.removed, summary.pairs), (3, 0, 2));
     assert_eq!(ratio(&e, &mended, &on_page(20.0)), 0.0);
     for (before, after) in placements.iter().zip(&mended) {
-        assert!((centre(&e, before) - centre(&e, after)).norm() < 0.36 * 5.0);
+        assert!((centre(&e, before) - centre(&e, after)).norm() < 0.25 * 5.0);
     }
 }
 

@@ -254,7 +254,8 @@ fn classes_by_name() {
 fn classes_by_paint_and_outline() {
     let red = DOTS.replace("<circle", "<circle transform='translate(0 18)' fill='red'");
     assert_eq!(class_sizes(&read(&format!("{DOTS}{red}"))), [6, 6]);
-    let squares = DOTS.replace("<circle c", "<rect width='9' height='9' transform='translate(0 14)' ").replace("cy=", "y=");
+    let squares =
+        DOTS.replace("<circle c", "<rect width='9' height='9' transform='translate(0 14)' ").replace("cy=", "y=");
     assert_eq!(class_sizes(&read(&format!("{DOTS}{squares}"))), [6, 6]);
 }
 
@@ -376,7 +377,8 @@ fn bad_input_says_what_and_where() {
         let message = error(text);
         assert!(message.starts_with("t.svg") && message.contains(part), "{message}");
     }
-    let cut = page("<path d='M0 80a8 8 0 0 1 0 16z'/><path d='M0 20a8 8 0 0 1 0 16z'/><path d='M100 50a8 8 0 0 0 0 16z'/>");
+    let cut =
+        page("<path d='M0 80a8 8 0 0 1 0 16z'/><path d='M0 20a8 8 0 0 1 0 16z'/><path d='M100 50a8 8 0 0 0 0 16z'/>");
     assert!(error(&cut).contains("cut by the frame"));
 }
 

@@ -110,8 +110,15 @@ impl Reader<'_, '_> {
         let Some(data) = self.node.attribute("d") else { return Ok(None) };
         let mut path = BezPath::new();
         for segment in SimplifyingPathParser::from(data) {
-            let segment = segment.map_err(|e| self.wrong(format!("the path data cannot be read: {e}")))?;
-            append(&mut path, segment);
+            match segment {
+                Ok(segment) => append(&mut path, segment),
+                // Data that merely stops is drawn up to there, as browsers do.
+                Err(svgtypes::Error::UnexpectedEndOfStream) => {
+                    self.source.notes.add(Note::CutShort, || self.source.place(self.node));
+                    return Ok(Geometry::new(path.clone(), format!("path d=\"{}\"", path_data(&path))));
+                }
+                Err(e) => return Err(self.wrong(format!("the path data cannot be read: {e}"))),
+            }
         }
         if path.elements().len() < 2 {
             return Ok(None);

@@ -24,10 +24,8 @@ const DASHES: f64 = 20_000.0;
 /// Area covered by something, in user coordinates of the root.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ink {
-    /// Rings with positive area for outer borders and negative area for holes, shape by shape; shapes may overlap.
-    pub(super) rings: Vec<Ring<2>>,
-    /// Number of shapes in `rings`; one shape needs no union.
-    shapes: usize,
+    /// The covered area shape by shape; shapes may overlap.
+    shapes: Vec<Outline<2>>,
     /// Colours with the area that they cover.
     pub(super) colours: Vec<([f64; 3], f64)>,
 }
@@ -35,10 +33,7 @@ pub(super) struct Ink {
 impl Ink {
     /// The covered area as disjoint polygons.
     pub(super) fn outline(&self) -> Outline<2> {
-        if self.shapes <= 1 {
-            return Outline { rings: self.rings.clone() };
-        }
-        Outline::union(&self.rings, FillRule::NonZero)
+        united(&self.shapes)
     }
 
     /// Mean colour by area; black without ink.
@@ -64,22 +59,39 @@ impl Ink {
     fn add(&mut self, outline: Outline<2>, colour: [f64; 3]) {
         if !outline.rings.is_empty() {
             self.colours.push((colour, outline.area()));
-            self.rings.extend(outline.rings);
-            self.shapes += 1;
+            self.shapes.push(outline);
         }
     }
 
     /// Adds other ink.
     pub(super) fn append(&mut self, other: Self) {
-        self.rings.extend(other.rings);
+        self.shapes.extend(other.shapes);
         self.colours.extend(other.colours);
-        self.shapes += other.shapes;
     }
 
     fn clipped(self, clip: &Outline<2>) -> Self {
         let outline = self.outline().intersection(clip);
-        let shapes = usize::from(!outline.rings.is_empty());
-        Self { rings: outline.rings, shapes, colours: self.colours }
+        let shapes = if outline.rings.is_empty() { Vec::new() } else { vec![outline] };
+        Self { shapes, colours: self.colours }
+    }
+}
+
+/// Shapes that are united at once.
+const AT_ONCE: usize = 8;
+
+/// The union of shapes. Many are united by halves: where they lie on top of each other, as in blends, most borders vanish early.
+fn united(shapes: &[Outline<2>]) -> Outline<2> {
+    match shapes {
+        [] => Outline::default(),
+        [one] => one.clone(),
+        few if few.len() <= AT_ONCE => {
+            let rings: Vec<_> = few.iter().flat_map(|shape| shape.rings.iter().cloned()).collect();
+            Outline::union(&rings, FillRule::NonZero)
+        }
+        many => {
+            let (left, right) = many.split_at(many.len() / 2);
+            united(&[united(left), united(right)])
+        }
     }
 }
 

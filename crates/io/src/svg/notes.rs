@@ -49,6 +49,8 @@ pub(super) enum Note {
     DomainBackground,
     /// A drawing in a corner of its page.
     Corner,
+    /// Path data that stops in the middle.
+    CutShort,
 }
 
 impl Note {
@@ -94,6 +96,7 @@ impl Note {
                 "the drawing covers only a part of the page; the box around it is taken for the frame",
                 "resize the page to the drawing, or draw a rectangle with the id \"frame\"",
             ),
+            Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
             Self::DomainBackground => {
                 ("shape around all others taken for a background, not for the domain", "choose a shape by its id")
             }
@@ -120,6 +123,12 @@ impl Notes {
                 examples.push(what);
             }
         }
+    }
+
+    /// The kinds of trouble so far, in few words, for an error that they may explain.
+    pub(super) fn summary(&self) -> String {
+        let all = self.0.borrow();
+        all.iter().map(|(note, (count, _))| format!("{} ({count}x)", note.words().0)).collect::<Vec<_>>().join(", ")
     }
 
     /// One warning a kind.

@@ -40,6 +40,9 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
+        if elements.is_empty() {
+            return Err(nothing_found(source, &found));
+        }
         let exemplar = Exemplar::new(source.name, elements, classes.classes, window)?;
         let mut definitions = Definitions::new(source, "exemplar");
         let fragments = found.items.iter().map(|item| fragment(item, &mut definitions)).collect();
@@ -195,6 +198,16 @@ fn refuse_curves(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> Res
                  data-arabesque=\"element\" or \"ignore\""
             .into(),
     })
+}
+
+/// What to say when no element is left, with what may explain it.
+fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
+    let seen = source.notes.summary();
+    let background = if found.background.is_empty() { "" } else { "what covers the whole frame is background" };
+    let why: Vec<&str> = [background, seen.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
+    let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join(", ")) };
+    let advice = "draw a few closed shapes or groups that should be repeated";
+    Error::input(source.name, format!("no element found{why}"), advice)
 }
 
 fn elements(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> (Vec<Element<2>>, Classes) {

@@ -9,7 +9,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, Outline, Result};
+use arabesque_core::{Bounds, FillRule, Outline, Result};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
@@ -277,7 +277,7 @@ impl Selector<'_, '_, '_> {
             let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
             return self.take(node, at, kind, origin);
         }
-        if closed && self.is_frame(&bounds(leaf, world * leaf.transform.inverse())) {
+        if closed && self.is_frame(leaf, geometry, world) {
             self.inker.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
             return Ok(());
         }
@@ -285,11 +285,13 @@ impl Selector<'_, '_, '_> {
         self.take(node, at, kind, origin)
     }
 
-    fn is_frame(&self, extent: &Bounds<2>) -> bool {
+    /// Whether a stroke encloses nearly the whole frame and hardly more.
+    fn is_frame(&self, leaf: &Node, geometry: &Geometry, world: Affine) -> bool {
+        let extent = bounds(leaf, world * leaf.transform.inverse());
         let near = 0.04 * longer(&self.frame);
-        (0..2).all(|k| {
-            (extent.min[k] - self.frame.min[k]).abs() < near && (extent.max[k] - self.frame.max[k]).abs() < near
-        })
+        let close = |a: f64, b: f64| (a - b).abs() < near;
+        let along = (0..2).all(|k| close(extent.min[k], self.frame.min[k]) && close(extent.max[k], self.frame.max[k]));
+        along && ink::filled(&geometry.path, world, FillRule::NonZero).area() >= 0.85 * self.frame.measure()
     }
 
     fn covers_frame(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Context) -> Result<bool> {

@@ -24,7 +24,7 @@ fn what_is_no_exemplar() {
         ("empty.svg", String::new(), "empty.svg"),
         ("html.svg", "<html><body/></html>".into(), "html.svg"),
         ("blank.svg", svg("80", "80", "0 0 80 80", ""), "no element"),
-        ("frame.svg", svg("80", "80", "0 0 80 80", "<rect x=\"-20\" y=\"-20\" width=\"30\" height=\"30\" fill=\"red\"/><circle cx=\"79\" cy=\"79\" r=\"10\"/>"), "frame"),
+        ("frame.svg", svg("80", "80", "0 0 80 80", "<path d=\"M0 10L10 20L0 30Z\"/><path d=\"M70 80L75 70L80 75V80Z\"/>"), "frame"),
         ("empty.csv", String::new(), "no point"),
         ("nan.csv", "x,y\n0,0\nnan,1\n".into(), "line 3"),
         ("inf.csv", "x,y\n0,0\n1,-inf\n".into(), "line 3"),

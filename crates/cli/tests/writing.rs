@@ -61,12 +61,12 @@ fn interrupt(child: &std::process::Child) {
 fn ctrl_c_writes_the_best_so_far() {
     let folder = Folder::new();
     let child = folder
-        .command("fill points.csv --size 6x6 --iterations 1000 -o out.csv --json")
+        .command("fill points.csv --size 25x25 --iterations 1000 -o out.csv --json")
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    std::thread::sleep(Duration::from_millis(2500));
+    std::thread::sleep(Duration::from_millis(1500));
     interrupt(&child);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));

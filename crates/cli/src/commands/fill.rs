@@ -12,7 +12,7 @@ use crate::{
 
 /// Fill a page, a shape or a seamless tile with the pattern of an exemplar
 #[derive(Args, Debug)]
-#[command(after_long_help = parameters())]
+#[command(after_long_help = parameters(), allow_negative_numbers = true)]
 pub(crate) struct Fill {
     /// The example: an SVG drawing, or points as CSV; - is standard input
     exemplar: String,

@@ -12,6 +12,7 @@ use crate::{
 
 /// Repeat a run from a recipe, or from any result that carries one
 #[derive(Args, Debug)]
+#[command(allow_negative_numbers = true)]
 pub(crate) struct Run {
     /// A recipe (TOML), or a result (SVG, PNG, JSON or CSV); - is standard input
     file: String,

@@ -187,7 +187,7 @@ fn level<const D: usize>(
         Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max),
         Matching::Hard => radius,
     };
-    let mut level = Level::new(exemplar, library, samples, detail, (radius, slack));
+    let mut level = Level::new(library, samples, detail, (radius, slack));
     if params.search == Search::KCoherence {
         level.alike = search::similarity_sets(&level, library, params);
     }

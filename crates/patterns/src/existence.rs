@@ -10,6 +10,12 @@ use crate::{buckets::Buckets, canvas::Item, state::State};
 /// Confidence from which an element exists.
 const HALF: f64 = 0.5;
 
+/// Two elements crowd each other when they are closer than this share of the closest distance of their classes.
+const CROWDED: f64 = 0.4;
+
+/// Share of the closest distance of their classes that a new element keeps.
+const ROOM: f64 = 0.6;
+
 /// Adding stops at this multiple of the target number of a class.
 const MOST: f64 = 1.03;
 
@@ -74,7 +80,34 @@ fn confidences<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
         matched.members.iter().for_each(|&o| votes[state.samples[o as usize].item as usize].0 += 1);
         matched.pairs.iter().for_each(|&(o, _)| votes[state.samples[o as usize].item as usize].1 += 1);
     }
-    votes.into_iter().map(|(all, kept)| if all > 0 { f64::from(kept) / f64::from(all) } else { 1.0 }).collect()
+    let share = |(all, kept)| if all > 0 { f64::from(kept) / f64::from(all) } else { 1.0 };
+    let mut confidence: Vec<f64> = votes.into_iter().map(share).collect();
+    for i in crowded(state, &confidence) {
+        confidence[i as usize] *= HALF;
+    }
+    confidence
+}
+
+/// Of each pair of elements that are closer than any such pair of the exemplar, the one with the smaller confidence.
+fn crowded<const D: usize>(state: &State<'_, D>, confidence: &[f64]) -> Vec<u32> {
+    let mut losers = Vec::new();
+    for &s in state.living.iter().filter(|&&s| state.samples[s as usize].part == 0) {
+        let i = state.samples[s as usize].item;
+        let live = &state.items[i as usize];
+        let class = state.library.class[live.item.source as usize];
+        let scale = CROWDED * state.request.fields.frame(live.item.position).spacing_scale;
+        state.index.within(state.samples[s as usize].position, scale * state.library.widest(class), |slot, _| {
+            let j = state.samples[state.living[slot] as usize].item;
+            let other = &state.items[j as usize];
+            let least = scale * state.library.closest(class, state.library.class[other.item.source as usize]);
+            let close = state.domain().offset(live.item.position, other.item.position).norm() < least;
+            if j != i && close && (confidence[i as usize], i) < (confidence[j as usize], j) {
+                losers.push(i);
+            }
+        });
+    }
+    losers.dedup();
+    losers
 }
 
 /// Makes the neighbours of the dead search again.
@@ -116,26 +149,41 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
     }
     // The surest first, so that of two that collide the better one stays.
     accepted.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut placed: Vec<(Vector<D>, f64)> = Vec::new();
+    let mut placed: Vec<(Vector<D>, u32)> = Vec::new();
     let mut added = 0;
     for (_, position, source) in accepted {
         let Some(source) = source else { continue };
-        let own = 0.5 * state.library.nearest[source as usize] * state.request.fields.frame(position).spacing_scale;
-        let class = state.library.class[source as usize] as usize;
-        if counts[class] >= MOST * targets[class] {
+        let class = state.library.class[source as usize];
+        if counts[class as usize] >= MOST * targets[class as usize] {
             continue;
         }
-        let free = state.extent.admits(source, position)
-            && placed.iter().all(|&(p, d)| state.domain().offset(p, position).norm() >= own.max(d))
-            && state.index.nearest(position, own, None).is_none();
-        if free {
+        if state.extent.admits(source, position) && is_clear(state, class, position, &placed) {
             state.push(Item { source, position, frozen: None }, Matrix::identity());
-            placed.push((position, own));
+            placed.push((position, class));
             added += 1;
-            counts[class] += 1.0;
+            counts[class as usize] += 1.0;
         }
     }
     added
+}
+
+/// Whether a new element of `class` at `p` would keep its distance from the living and from those just `placed`.
+fn is_clear<const D: usize>(state: &State<'_, D>, class: u32, p: Vector<D>, placed: &[(Vector<D>, u32)]) -> bool {
+    let scale = ROOM * state.request.fields.frame(p).spacing_scale;
+    let keeps = |other: u32, offset: Vector<D>| offset.norm() >= scale * state.library.closest(class, other);
+    let mut clear = placed.iter().all(|&(q, other)| keeps(other, state.domain().offset(p, q)));
+    // Samples stand for their elements here: the centres of long elements lie between them.
+    state.index.within(p, scale * state.library.widest(class), |slot, offset| {
+        let item = state.samples[state.living[slot] as usize].item;
+        let live = &state.items[item as usize];
+        if live.count == 1 {
+            clear &= keeps(state.library.class[live.item.source as usize], offset);
+        } else {
+            let offset = state.domain().offset(p, live.item.position);
+            clear &= keeps(state.library.class[live.item.source as usize], offset);
+        }
+    });
+    clear
 }
 
 /// Candidates for new elements, grouped by class and place.

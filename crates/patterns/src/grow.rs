@@ -23,10 +23,10 @@ use crate::{
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
 const NOISE: f64 = 0.02;
 
-/// Share of its nearest-neighbour distance that a new element keeps to what is there already, in the open part.
-const ROOM_OPEN: f64 = 0.5;
+/// Share of the closest distance of their classes that a new element keeps to what is there already.
+const ROOM: f64 = 0.6;
 
-/// The same where a neighbouring patch has already been.
+/// Share of its own nearest-neighbour distance that it keeps as well where a neighbouring patch has already been.
 const ROOM_COVERED: f64 = 0.75;
 
 /// Cost of an element of which the exemplar does not tell whether it could be there: beyond its frame.
@@ -362,11 +362,19 @@ impl<const D: usize> View<'_, D> {
     /// covered cell at the seam, where registration may have moved it across, only if there is a gap of its own size.
     fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
         let library = self.grower.library;
-        let own = library.nearest[i as usize];
-        let gap = self.around.iter().map(|(_, o, _)| (*o - offset).norm2()).fold(f64::INFINITY, f64::min).sqrt();
+        let class = library.class[i as usize];
+        let clear = |&(source, o, _): &(u32, Vector<D>, f64)| {
+            (o - offset).norm() >= ROOM * library.closest(class, library.class[source as usize])
+        };
+        if !self.around.iter().all(clear) {
+            return false;
+        }
         match self.coverage.at(p) {
-            Cell::Open => gap >= ROOM_OPEN * own,
+            Cell::Open => true,
             Cell::Covered => {
+                let own = library.nearest[i as usize];
+                let gap =
+                    self.around.iter().map(|(_, o, _)| (*o - offset).norm2()).fold(f64::INFINITY, f64::min).sqrt();
                 let reach = 0.5 * own * self.frame.spacing_scale;
                 gap >= ROOM_COVERED * own && self.coverage.open_within(p, reach).0 > 0
             }

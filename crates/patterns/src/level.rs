@@ -1,6 +1,6 @@
 //! The exemplar at one level of the hierarchy: its samples and their neighbourhoods, flattened for the search.
 
-use arabesque_core::{Domain, Exemplar, GridIndex, Vector};
+use arabesque_core::{Domain, GridIndex, Vector};
 
 use crate::{library::Library, samples::ElementSamples};
 
@@ -56,27 +56,20 @@ impl<const D: usize> Level<D> {
     /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]), neighbourhoods of `radius`, input neighbourhoods
     /// larger by `slack` so that border samples find a partner.
     pub(crate) fn new(
-        exemplar: &Exemplar<D>,
         library: &Library<D>,
         samples: &ElementSamples<D>,
         detail: f64,
         (radius, slack): (f64, f64),
     ) -> Self {
-        let mut level = Self::sampled(exemplar, library, samples, detail, radius);
-        level.flatten(exemplar, slack);
+        let mut level = Self::sampled(library, samples, detail, radius);
+        level.flatten(&Domain::Box(library.window), slack);
         level
     }
 
-    fn sampled(
-        exemplar: &Exemplar<D>,
-        library: &Library<D>,
-        samples: &ElementSamples<D>,
-        detail: f64,
-        radius: f64,
-    ) -> Self {
+    fn sampled(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, radius: f64) -> Self {
         let parts: Vec<_> = (0..library.len()).map(|e| samples.at_detail(e, detail)).collect();
         let most = parts.iter().map(Vec::len).max().unwrap_or(1);
-        let keys = exemplar.classes.len() * most;
+        let keys = library.classes() * most;
         let mut level = Self {
             radius,
             position: Vec::new(),
@@ -107,9 +100,9 @@ impl<const D: usize> Level<D> {
         level
     }
 
-    fn flatten(&mut self, exemplar: &Exemplar<D>, slack: f64) {
+    fn flatten(&mut self, plane: &Domain<D>, slack: f64) {
         let reach = self.radius + slack;
-        let index = GridIndex::new(&self.position, reach, &Domain::Box(exemplar.window));
+        let index = GridIndex::new(&self.position, reach, plane);
         for i in 0..self.position.len() {
             let mut found = Vec::new();
             index.within(self.position[i], reach, |j, offset| {

@@ -41,6 +41,7 @@ mod extent;
 mod features;
 mod finish;
 mod grow;
+mod kinds;
 mod layout;
 mod level;
 mod library;

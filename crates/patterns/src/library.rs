@@ -2,7 +2,7 @@
 
 use arabesque_core::{Bounds, Domain, Exemplar, GridIndex, Role, Vector};
 
-use crate::features::Feature;
+use crate::{features::Feature, kinds::kinds};
 
 /// Elements of one class, for look-ups by place.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ struct ClassIndex<const D: usize> {
 pub(crate) struct Library<const D: usize> {
     /// Centre of each element.
     pub(crate) centre: Vec<Vector<D>>,
-    /// Class of each element.
+    /// Kind of each element: its class, divided by colour where the class comes in several. What this crate calls a class of the library.
     pub(crate) class: Vec<u32>,
     /// Attributes of each element.
     pub(crate) feature: Vec<Feature>,
@@ -35,6 +35,8 @@ pub(crate) struct Library<const D: usize> {
     pub(crate) nearest: Vec<f64>,
     /// Radius of the largest ball without a centre that the exemplar surely shows.
     pub(crate) emptiness: f64,
+    /// Smallest distance between the centres of two classes, row by row; as far as the elements are looked for when they never come close.
+    closest: Vec<f64>,
     by_class: Vec<ClassIndex<D>>,
     all: GridIndex<D>,
 }
@@ -42,13 +44,14 @@ pub(crate) struct Library<const D: usize> {
 impl<const D: usize> Library<D> {
     pub(crate) fn new(exemplar: &Exemplar<D>) -> Self {
         let centre: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
-        let class: Vec<_> = exemplar.elements.iter().map(|e| e.class as u32).collect();
+        let (class, classes) = kinds(exemplar);
         let spacing = exemplar.spacing();
         let plane = Domain::Box(exemplar.window);
         let all = GridIndex::new(&centre, spacing, &plane);
         let nearest = nearest_distances(&centre, &all, spacing);
-        let outlier = outlier_distances(&nearest, &class, exemplar.classes.len(), spacing);
-        let by_class = (0..exemplar.classes.len())
+        let closest = closest_distances(&centre, &class, classes, &all, spacing);
+        let outlier = outlier_distances(&nearest, &class, classes, spacing);
+        let by_class = (0..classes)
             .map(|c| {
                 let members: Vec<u32> = (0..class.len() as u32).filter(|&i| class[i as usize] == c as u32).collect();
                 let points: Vec<_> = members.iter().map(|&i| centre[i as usize]).collect();
@@ -57,7 +60,7 @@ impl<const D: usize> Library<D> {
             .collect();
         let elements = &exemplar.elements;
         Self {
-            feature: elements.iter().map(|e| Feature::of(e, outlier[e.class])).collect(),
+            feature: elements.iter().map(|e| Feature::of(e, spacing)).collect(),
             radius: elements.iter().map(|e| e.outline.radius(e.centre)).collect(),
             copyable: elements.iter().map(|e| e.role == Role::Source).collect(),
             window: exemplar.window,
@@ -66,6 +69,7 @@ impl<const D: usize> Library<D> {
             spacing,
             outlier,
             nearest,
+            closest,
             emptiness: emptiness(&exemplar.window, &all, spacing),
             by_class,
             all,
@@ -115,6 +119,16 @@ impl<const D: usize> Library<D> {
         best
     }
 
+    /// Smallest distance of the centres of two elements of these classes in the exemplar.
+    pub(crate) fn closest(&self, a: u32, b: u32) -> f64 {
+        self.closest[a as usize * self.classes() + b as usize]
+    }
+
+    /// Largest distance that [`Library::closest`] gives for a class.
+    pub(crate) fn widest(&self, a: u32) -> f64 {
+        (0..self.classes() as u32).map(|b| self.closest(a, b)).fold(0.0, f64::max)
+    }
+
     /// Radius of the ball that holds `count` elements on average.
     pub(crate) fn radius_for(&self, count: f64) -> f64 {
         let unit = if D == 3 { 4.0 / 3.0 * std::f64::consts::PI } else { std::f64::consts::PI };
@@ -144,6 +158,26 @@ fn emptiness<const D: usize>(window: &Bounds<D>, all: &GridIndex<D>, spacing: f6
         }
     }
     if largest > 0.0 { largest } else { spacing }
+}
+
+/// Smallest centre distances of all pairs of classes, none larger than two mean spacings.
+fn closest_distances<const D: usize>(
+    centre: &[Vector<D>],
+    class: &[u32],
+    classes: usize,
+    all: &GridIndex<D>,
+    spacing: f64,
+) -> Vec<f64> {
+    let mut closest = vec![2.0 * spacing; classes * classes];
+    for (i, &p) in centre.iter().enumerate() {
+        all.within(p, 2.0 * spacing, |j, offset| {
+            if i != j {
+                let entry = &mut closest[class[i] as usize * classes + class[j] as usize];
+                *entry = entry.min(offset.norm());
+            }
+        });
+    }
+    closest
 }
 
 fn nearest_distances<const D: usize>(centre: &[Vector<D>], all: &GridIndex<D>, spacing: f64) -> Vec<f64> {

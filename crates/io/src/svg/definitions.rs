@@ -38,15 +38,17 @@ impl<'a, 's> Definitions<'a, 's> {
         Self { source, prefix, names: BTreeMap::new(), queue: VecDeque::new(), rectangles: Vec::new() }
     }
 
-    /// The new id of a definition, which is queued to be copied; `None` when the id leads nowhere.
-    fn refer(&mut self, id: &str, viewport: Viewport) -> Option<String> {
-        if let Some(name) = self.names.get(id) {
-            return Some(name.clone());
-        }
-        let Some(node) = self.source.by_id(id) else {
+    /// The new id of a definition with one of the given tags (any where none is given), which is queued to be copied;
+    /// `None` when the id leads to none.
+    fn refer(&mut self, id: &str, tags: &[&str], viewport: Viewport) -> Option<String> {
+        let fits = |node: &Xml<'_, '_>| tags.is_empty() || tags.contains(&node.tag_name().name());
+        let Some(node) = self.source.by_id(id).filter(fits) else {
             self.source.notes.add(Note::Missing, || format!("#{}", clip_text(id, 60)));
             return None;
         };
+        if let Some(name) = self.names.get(id) {
+            return Some(name.clone());
+        }
         let plain = id.len() <= 60 && id.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
         // A number can follow the prefix only where the id is not plain: plain ids keep their own name after `-`.
         let name = if plain { format!("{}-{id}", self.prefix) } else { format!("{}{}", self.prefix, self.names.len()) };
@@ -69,16 +71,17 @@ impl<'a, 's> Definitions<'a, 's> {
     pub(super) fn paint(&mut self, value: &str, viewport: Viewport) -> String {
         let Some((id, fallback)) = self.checked(value) else { return "none".into() };
         let fallback = if fallback.is_empty() { "none" } else { fallback };
-        match self.refer(id, viewport) {
+        match self.refer(id, &["linearGradient", "radialGradient", "pattern"], viewport) {
             Some(name) => format!("url(#{name})"),
             None => fallback.to_owned(),
         }
     }
 
-    /// A clip, mask or filter with the new id; `None` where it leads nowhere.
-    pub(super) fn effect(&mut self, value: &str, viewport: Viewport) -> Option<String> {
+    /// The value of the property `name` (clip-path, mask or filter) with the new id; `None` where it leads nowhere.
+    pub(super) fn effect(&mut self, name: &str, value: &str, viewport: Viewport) -> Option<String> {
         let (id, _) = self.checked(value)?;
-        Some(format!("url(#{})", self.refer(id, viewport)?))
+        let tag = if name == "clip-path" { "clipPath" } else { name };
+        Some(format!("url(#{})", self.refer(id, &[tag], viewport)?))
     }
 
     /// A reference to a clip by a rectangle.
@@ -98,8 +101,13 @@ impl<'a, 's> Definitions<'a, 's> {
     pub(super) fn finish(mut self) -> String {
         let mut out = String::new();
         while let Some((id, name, viewport)) = self.queue.pop_front() {
+            let before = out.len();
             if let Some(node) = self.source.xml.get_node(id) {
                 self.copy_root(&mut out, node, &name, viewport);
+            }
+            if out.len() == before {
+                // What is referred to draws nothing; the reference must not dangle.
+                let _ = write!(out, "<g id=\"{name}\"/>");
             }
         }
         for (name, shape) in &self.rectangles {
@@ -256,7 +264,7 @@ impl<'a, 's> Definitions<'a, 's> {
         }
         if matches!(tag, "use" | "feImage") {
             let target = self.source.target(node)?;
-            let name = self.refer(target.attribute("id")?, viewport)?;
+            let name = self.refer(target.attribute("id")?, &[], viewport)?;
             push_attribute(&mut out, "href", &format!("#{name}"));
         }
         Some(out)
@@ -266,7 +274,7 @@ impl<'a, 's> Definitions<'a, 's> {
         for (name, value) in own.iter() {
             match name {
                 "clip-path" | "mask" | "filter" => {
-                    let value = self.effect(value, viewport);
+                    let value = self.effect(name, value, viewport);
                     value.into_iter().for_each(|value| push_attribute(out, name, &value));
                 }
                 "display" | "transform" => {}

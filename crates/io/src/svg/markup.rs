@@ -61,7 +61,7 @@ fn push_own(out: &mut String, node: &Node, definitions: &mut Definitions<'_, '_>
         match name {
             "opacity" | "vector-effect" => push_attribute(out, name, value),
             "clip-path" | "mask" | "filter" => {
-                if let Some(value) = definitions.effect(value, node.viewport) {
+                if let Some(value) = definitions.effect(name, value, node.viewport) {
                     push_attribute(out, name, &value);
                 }
             }

@@ -1,33 +1,92 @@
 //! Files that a recipe refers to, with their content where it is small.
 
-use std::path::Path;
+use std::{borrow::Cow, fmt, path::Path};
 
 use arabesque_core::{Error, Limits, Result};
 use arabesque_io::file;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{MapAccess, Visitor, value::MapAccessDeserializer},
+};
 
 /// Content up to this size travels inside the recipe. In bytes.
 pub const EMBEDDED_BYTES: usize = 1 << 20;
 
-/// A file that a run reads.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+/// A file that a run reads. In a recipe a path alone stands for it too, such as `leaves.svg` or `shape.svg#heart`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Input {
     /// Where it was: relative to the file that holds the recipe, or to the working folder.
     pub path: String,
     /// The one item of the file that counts, by its id.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
     /// Fingerprint of the content (FNV-1a, 128 bits): a changed file is noticed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub hash: Option<String>,
     /// How `content` is written; plain text when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub encoding: Option<Encoding>,
     /// The content itself; when absent the file is read.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
+}
+
+/// An [`Input`] written out as a table.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    /// Where it is: relative to the file that holds the recipe, or to the working folder.
+    path: String,
+    /// The one item of the file that counts, by its id.
+    #[serde(default)]
+    id: Option<String>,
+    /// Fingerprint of the content (FNV-1a, 128 bits): a changed file is noticed.
+    #[serde(default)]
+    hash: Option<String>,
+    /// How `content` is written; plain text when absent.
+    #[serde(default)]
+    encoding: Option<Encoding>,
+    /// The content itself; when absent the file is read.
+    #[serde(default)]
+    content: Option<String>,
+}
+
+/// Accepts a path alone in place of a table.
+struct PathOrTable;
+
+impl<'de> Visitor<'de> for PathOrTable {
+    type Value = Input;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a path, or a table with a path")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> std::result::Result<Input, E> {
+        Ok(Input::shape(text))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<Input, A::Error> {
+        let Table { path, id, hash, encoding, content } = Table::deserialize(MapAccessDeserializer::new(map))?;
+        Ok(Input { path, id, hash, encoding, content })
+    }
+}
+
+impl<'de> Deserialize<'de> for Input {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(PathOrTable)
+    }
+}
+
+impl JsonSchema for Input {
+    fn schema_name() -> Cow<'static, str> {
+        "Input".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = generator.subschema_for::<Table>();
+        json_schema!({ "anyOf": [{ "type": "string", "description": "a path, with #ID where one item of the file counts" }, table] })
+    }
 }
 
 /// How content is written in a recipe.

@@ -3,10 +3,10 @@
 //! A recipe is a TOML document. Every file that arabesque writes carries one, with small inputs inside it, so that the run can be repeated from
 //! the result alone.
 
-use std::{collections::BTreeMap, fmt};
+use std::{borrow::Cow, collections::BTreeMap, fmt};
 
 use arabesque_core::{Border, Error, Result};
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::{Format, Input, nearest::nearest};
@@ -47,13 +47,12 @@ pub struct Recipe {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub iterations: Option<usize>,
     /// The exemplar.
-    #[serde(deserialize_with = "path_or_table")]
     pub exemplar: Input,
     /// A file with the shape to fill.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "maybe_path_or_table")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<Input>,
     /// Elements that stay where they are.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "maybe_path_or_table")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<Input>,
     /// How the pattern is turned: degrees from x towards y (clockwise on the page), a picture, or strokes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -138,7 +137,7 @@ pub enum Method {
 }
 
 /// Where the values of a field come from.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FieldSource {
     /// The same value everywhere.
@@ -155,7 +154,6 @@ pub struct FieldFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
     /// The file.
-    #[serde(deserialize_with = "path_or_table")]
     pub file: Input,
 }
 
@@ -236,33 +234,6 @@ fn meant(message: &str) -> Option<&str> {
     nearest(unknown, quoted)
 }
 
-/// Accepts a path alone in place of a table.
-struct PathOrTable;
-
-impl<'de> serde::de::Visitor<'de> for PathOrTable {
-    type Value = Input;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a path, or a table with a path")
-    }
-
-    fn visit_str<E: serde::de::Error>(self, text: &str) -> std::result::Result<Input, E> {
-        Ok(Input::shape(text))
-    }
-
-    fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> std::result::Result<Input, A::Error> {
-        Input::deserialize(serde::de::value::MapAccessDeserializer::new(map))
-    }
-}
-
-fn path_or_table<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Input, D::Error> {
-    deserializer.deserialize_any(PathOrTable)
-}
-
-fn maybe_path_or_table<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Input>, D::Error> {
-    path_or_table(deserializer).map(Some)
-}
-
 /// Accepts a number, a path or a table.
 struct AnyField;
 
@@ -297,6 +268,18 @@ impl<'de> serde::de::Visitor<'de> for AnyField {
 impl<'de> Deserialize<'de> for FieldSource {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         deserializer.deserialize_any(AnyField)
+    }
+}
+
+impl JsonSchema for FieldSource {
+    fn schema_name() -> Cow<'static, str> {
+        "FieldSource".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let table = generator.subschema_for::<FieldFile>();
+        let text = "a path, with @LOW..HIGH where black and white have other values than usual";
+        json_schema!({ "anyOf": [{ "type": "number" }, { "type": "string", "description": text }, table] })
     }
 }
 
@@ -342,11 +325,12 @@ mod tests {
     fn a_short_recipe_is_enough() {
         let recipe = Recipe::from_toml(
             "r.toml",
-            "size = \"210mmx297mm\"\nexemplar = \"leaves.svg\"\nscale = 2\norient = \"flow.svg\"\n[set]\nlevels = 2\nmatching = \"hard\"\n",
+            "size = \"210mmx297mm\"\nexemplar = \"leaves.svg\"\navoid = [\"a.svg#b\"]\nscale = 2\norient = \"flow.svg\"\n[set]\nlevels = 2\nmatching = \"hard\"\n",
         )
         .unwrap();
         assert_eq!(recipe.exemplar.path, "leaves.svg");
         assert_eq!(recipe.scale, Some(FieldSource::Constant(2.0)));
+        assert_eq!(recipe.avoid, [Input::shape("a.svg#b")]);
         assert_eq!(recipe.set["levels"], "2");
         assert!(matches!(recipe.orient, Some(FieldSource::File(f)) if f.file.path == "flow.svg"));
     }

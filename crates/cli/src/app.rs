@@ -12,8 +12,10 @@ use crate::{
 /// From one small example of a repeating pattern, make as much of it as you want, in any shape.
 #[derive(Debug, Parser)]
 #[command(name = "arabesque", version, propagate_version = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done; 1 failure; 2 usage; 3 bad input; 4 no valid result under the given constraints; \
-                        130 interrupted (the best so far is written).")]
+#[command(
+    after_help = "Exit codes: 0 done; 1 failure; 2 usage; 3 bad input; 4 no valid result under the given constraints; \
+                        130 interrupted (the best so far is written)."
+)]
 pub(crate) struct App {
     #[command(subcommand)]
     command: Command,

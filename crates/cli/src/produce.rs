@@ -124,12 +124,7 @@ fn variation(path: &str, number: u64) -> String {
     path.with_file_name(name).to_string_lossy().into_owned()
 }
 
-fn make_all(
-    recipe: &Recipe,
-    base: Option<&Path>,
-    plans: Vec<Plan>,
-    options: &RunOptions,
-) -> Result<ExitCode, Failure> {
+fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &RunOptions) -> Result<ExitCode, Failure> {
     let level = options.talk.level();
     let prepared = recipe.prepare(base)?;
     if level == Level::Verbose {
@@ -208,7 +203,8 @@ fn tell(made: &Output, artwork: &Artwork<'_>, warnings: &[Warning], level: Level
         }
     }
     warnings.iter().for_each(say::warning);
-    let stopped = if made.stopped == "finished" { String::new() } else { format!(", stopped early ({})", made.stopped) };
+    let stopped =
+        if made.stopped == "finished" { String::new() } else { format!(", stopped early ({})", made.stopped) };
     let name = if made.path == file::STANDARD { "standard output" } else { &made.path };
     say::note(&format!("{name}: {} elements in {:.2} s{stopped}", made.elements, made.seconds));
 }

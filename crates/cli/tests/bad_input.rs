@@ -24,7 +24,11 @@ fn what_is_no_exemplar() {
         ("empty.svg", String::new(), "empty.svg"),
         ("html.svg", "<html><body/></html>".into(), "html.svg"),
         ("blank.svg", svg("80", "80", "0 0 80 80", ""), "no element"),
-        ("frame.svg", svg("80", "80", "0 0 80 80", "<path d=\"M0 10L10 20L0 30Z\"/><path d=\"M70 80L75 70L80 75V80Z\"/>"), "frame"),
+        (
+            "frame.svg",
+            svg("80", "80", "0 0 80 80", "<path d=\"M0 10L10 20L0 30Z\"/><path d=\"M70 80L75 70L80 75V80Z\"/>"),
+            "frame",
+        ),
         ("empty.csv", String::new(), "no point"),
         ("nan.csv", "x,y\n0,0\nnan,1\n".into(), "line 3"),
         ("inf.csv", "x,y\n0,0\n1,-inf\n".into(), "line 3"),
@@ -98,8 +102,14 @@ fn domains_that_cannot_be_filled() {
 fn pictures_of_the_wrong_kind() {
     let folder = Folder::new();
     folder.write("photo.png", [0xFF, 0xD8, 0xFF, 0xE0]);
-    assert!(folder.fails(3, "fill leaves.svg --size 80x80 --scale ring.svg -o a.svg").contains("an SVG or XML file where a PNG"));
-    assert!(folder.fails(3, "fill leaves.svg --size 80x80 --density photo.png -o a.svg").contains("a JPEG picture where"));
+    assert!(
+        folder
+            .fails(3, "fill leaves.svg --size 80x80 --scale ring.svg -o a.svg")
+            .contains("an SVG or XML file where a PNG")
+    );
+    assert!(
+        folder.fails(3, "fill leaves.svg --size 80x80 --density photo.png -o a.svg").contains("a JPEG picture where")
+    );
     assert!(folder.fails(3, "fill leaves.svg --size 80x80 --orient points.csv -o a.svg").contains("points.csv"));
     let whole = folder.read("ramp.png");
     folder.write("cut.png", &whole[..whole.len() / 2]);

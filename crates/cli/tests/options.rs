@@ -37,7 +37,10 @@ fn size_with_units_sets_the_page() {
 #[test]
 fn millimetres_in_are_millimetres_out() {
     let folder = Folder::new();
-    folder.write("mm.svg", common::leaves().replace("width=\"80\" height=\"80\" viewBox", "width=\"80mm\" height=\"80mm\" viewBox"));
+    folder.write(
+        "mm.svg",
+        common::leaves().replace("width=\"80\" height=\"80\" viewBox", "width=\"80mm\" height=\"80mm\" viewBox"),
+    );
     folder.ok("fill mm.svg --size 120x100 -o a.svg");
     assert!(folder.text("a.svg").contains("width=\"120mm\" height=\"100mm\" viewBox=\"0 0 120 100\""));
 }
@@ -81,7 +84,10 @@ fn a_tile_repeats_what_crosses_its_edge() {
     let text = folder.text("tile.svg");
     let all = attributes(drawn(&text), "data-arabesque-source").len();
     let ids = attributes(drawn(&text), "id");
-    let copies = ids.iter().filter(|id| id.matches('-').count() == 2 && id.starts_with("arabesque-") && !id.contains("element")).count();
+    let copies = ids
+        .iter()
+        .filter(|id| id.matches('-').count() == 2 && id.starts_with("arabesque-") && !id.contains("element"))
+        .count();
     assert!(copies > 0 && copies < all, "{copies} copies of {all}");
     folder.ok(&format!("fill {birds} --tile 90x70 -o tile.png"));
     assert_eq!(pixels(&folder.read("tile.png")).0, 90);
@@ -129,16 +135,23 @@ fn pictures_steer_scale_density_and_direction() {
 #[test]
 fn strokes_turn_the_pattern() {
     let folder = Folder::new();
-    folder.write("flow.svg", common::svg("120", "120", "0 0 120 120", "<path d=\"M60 5L60 115\" fill=\"none\" stroke=\"#000\"/>"));
+    folder.write(
+        "flow.svg",
+        common::svg("120", "120", "0 0 120 120", "<path d=\"M60 5L60 115\" fill=\"none\" stroke=\"#000\"/>"),
+    );
     let value = json(&folder, "fill leaves.svg --size 120x120 --orient flow.svg");
-    let turned = value["placements"].as_array().unwrap().iter().filter(|p| p["transform"][1].as_f64().unwrap() > 0.9).count();
+    let turned =
+        value["placements"].as_array().unwrap().iter().filter(|p| p["transform"][1].as_f64().unwrap() > 0.9).count();
     assert!(turned * 10 >= count(&value) * 9, "{turned} of {}", count(&value));
 }
 
 #[test]
 fn avoided_shapes_stay_free() {
     let folder = Folder::new();
-    folder.write("hole.svg", common::svg("160", "160", "0 0 160 160", "<rect x=\"50\" y=\"50\" width=\"60\" height=\"60\"/>"));
+    folder.write(
+        "hole.svg",
+        common::svg("160", "160", "0 0 160 160", "<rect x=\"50\" y=\"50\" width=\"60\" height=\"60\"/>"),
+    );
     folder.write("corner.svg", common::svg("160", "160", "0 0 160 160", "<rect width=\"30\" height=\"30\"/>"));
     let value = json(&folder, "fill leaves.svg --size 160x160 --avoid hole.svg --avoid corner.svg");
     for p in value["placements"].as_array().unwrap() {
@@ -166,9 +179,15 @@ fn kept_elements_stay_where_they_are() {
 #[test]
 fn the_engine_takes_its_options() {
     let folder = Folder::new();
-    for option in
-        ["--preset ma2011", "--preset tu2020", "--levels 1", "--iterations 1", "--radius 25", "--method elements", "--set levels=1 --set iterations=2"]
-    {
+    for option in [
+        "--preset ma2011",
+        "--preset tu2020",
+        "--levels 1",
+        "--iterations 1",
+        "--radius 25",
+        "--method elements",
+        "--set levels=1 --set iterations=2",
+    ] {
         folder.ok(&format!("fill leaves.svg --size 80x80 {option} -o a.svg"));
         let name = option.split_whitespace().nth(1).unwrap().split('=').next().unwrap();
         assert!(folder.text("a.svg").contains(name), "{option} is not in the recipe");
@@ -218,7 +237,8 @@ fn points_in_and_points_out() {
     let folder = Folder::new();
     folder.ok("fill points.csv --size 3x3 -o out.csv");
     let text = folder.text("out.csv");
-    let rows: Vec<Vec<&str>> = text.lines().skip(1).filter(|l| !l.starts_with('#')).map(|l| l.split(',').collect()).collect();
+    let rows: Vec<Vec<&str>> =
+        text.lines().skip(1).filter(|l| !l.starts_with('#')).map(|l| l.split(',').collect()).collect();
     assert!((600..1200).contains(&rows.len()), "{}", rows.len());
     assert!(rows.iter().all(|r| ["a", "b"].contains(&r[2])));
     assert!(rows.iter().all(|r| r[..2].iter().all(|v| (0.0..=3.0).contains(&v.parse::<f64>().unwrap()))));
@@ -231,7 +251,8 @@ fn a_file_can_be_a_whole_job() {
     let folder = Folder::new();
     let leaves = common::leaves();
     let elements = leaves.lines().filter(|l| l.contains("class=")).collect::<Vec<_>>().join("\n");
-    let layer = |label: &str, body: &str| format!("<g inkscape:groupmode=\"layer\" inkscape:label=\"{label}\">{body}</g>\n");
+    let layer =
+        |label: &str, body: &str| format!("<g inkscape:groupmode=\"layer\" inkscape:label=\"{label}\">{body}</g>\n");
     let body = layer("Exemplar", &format!("<rect width=\"80\" height=\"80\" fill=\"#fff\"/>{elements}"))
         + &layer("Domain", "<circle cx=\"200\" cy=\"80\" r=\"70\"/>")
         + &layer("Avoid", "<rect x=\"190\" y=\"70\" width=\"20\" height=\"20\"/>");
@@ -258,7 +279,10 @@ fn a_time_limit_is_told() {
 fn inspect_says_what_was_understood() {
     let folder = Folder::new();
     let text = stdout(&folder.ok("inspect leaves.svg"));
-    assert!(text.contains("elements: 16") && text.contains("class leaf: 8 elements") && text.contains("class berry"), "{text}");
+    assert!(
+        text.contains("elements: 16") && text.contains("class leaf: 8 elements") && text.contains("class berry"),
+        "{text}"
+    );
     let value: Value = serde_json::from_slice(&folder.ok("inspect leaves.svg --json -o a.svg").stdout).unwrap();
     assert_eq!(value["elements"], 16);
     assert_eq!(value["classes"][0]["name"], "leaf");

@@ -19,7 +19,8 @@ fn compare(name: &str, line: &str) {
         std::fs::write(&path, &made).unwrap();
         return;
     }
-    let known = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}; make it with ARABESQUE_BLESS=1", path.display()));
+    let known =
+        std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}; make it with ARABESQUE_BLESS=1", path.display()));
     let (a, b) = (pixels(&made), pixels(&known));
     assert_eq!((a.0, a.1), (b.0, b.1), "{name}: another size");
     let differs = |(p, q): &(&[u8], &[u8])| p.iter().zip(*q).any(|(x, y)| x.abs_diff(*y) > TOLERANCE);
@@ -27,7 +28,11 @@ fn compare(name: &str, line: &str) {
     if count * 1000 > a.2.len() / 4 {
         let beside = std::env::temp_dir().join(format!("arabesque-{name}.png"));
         std::fs::write(&beside, &made).unwrap();
-        panic!("{name}: {count} of {} pixels differ; see {}, and bless it if it is right", a.2.len() / 4, beside.display());
+        panic!(
+            "{name}: {count} of {} pixels differ; see {}, and bless it if it is right",
+            a.2.len() / 4,
+            beside.display()
+        );
     }
 }
 

@@ -7,7 +7,9 @@ use common::Folder;
 #[test]
 fn threads_do_not_change_the_bytes() {
     let folder = Folder::new();
-    for (exemplar, place) in [("leaves.svg", "--size 200x150"), ("leaves.svg", "--tile 120x120"), ("points.csv", "--size 3x3")] {
+    for (exemplar, place) in
+        [("leaves.svg", "--size 200x150"), ("leaves.svg", "--tile 120x120"), ("points.csv", "--size 3x3")]
+    {
         let made: Vec<_> = [1, 2, 8]
             .map(|n| {
                 folder.ok(&format!("fill {exemplar} {place} --seed 3 --threads {n} -o {n}.json"));

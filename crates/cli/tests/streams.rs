@@ -42,12 +42,8 @@ fn no_bar_and_no_colour_without_a_terminal() {
 #[test]
 fn dash_is_standard_input() {
     let folder = Folder::new();
-    let mut child = folder
-        .command("fill - --size 80x80 -o a.svg")
-        .stdin(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        folder.command("fill - --size 80x80 -o a.svg").stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     child.stdin.take().unwrap().write_all(common::leaves().as_bytes()).unwrap();
     assert!(child.wait().unwrap().success());
     // What came from standard input cannot be read again: it travels in the result.

@@ -25,7 +25,9 @@ fn ids_are_unique_in_every_style() {
     let folder = Folder::new();
     let busy = common::leaves().replace("<circle class", "<circle id=\"arabesque-7\" class");
     folder.write("busy.svg", busy.replacen("id=\"arabesque-7\"", "id=\"arabesque-element-0\"", 1));
-    for (name, options) in [("leaves", ""), ("leaves", "--expand"), ("busy", "--expand"), ("leaves", "--domain ring.svg --expand")] {
+    for (name, options) in
+        [("leaves", ""), ("leaves", "--expand"), ("busy", "--expand"), ("leaves", "--domain ring.svg --expand")]
+    {
         let place = if options.contains("domain") { "" } else { "--size 120x120" };
         folder.ok(&format!("fill {name}.svg {place} {options} -o a.svg"));
         let text = folder.text("a.svg");
@@ -63,7 +65,11 @@ fn expanded_and_linked_results_look_the_same() {
         };
         let (a, b) = (draw("linked.svg"), draw("expanded.svg"));
         assert_eq!(a.len(), b.len());
-        let differing = a.chunks_exact(4).zip(b.chunks_exact(4)).filter(|(p, q)| p.iter().zip(*q).any(|(x, y)| x.abs_diff(*y) > 64)).count();
+        let differing = a
+            .chunks_exact(4)
+            .zip(b.chunks_exact(4))
+            .filter(|(p, q)| p.iter().zip(*q).any(|(x, y)| x.abs_diff(*y) > 64))
+            .count();
         assert!(differing * 200 < a.len() / 4, "{place}: {differing} of {} pixels differ", a.len() / 4);
     }
 }
@@ -76,7 +82,8 @@ fn expanded_elements_are_cut_at_the_border() {
     let output = text.split("id=\"arabesque-output\"").nth(1).unwrap();
     let mut numbers = 0;
     for data in attributes(output, "d") {
-        let values: Vec<f64> = data.split(|c: char| c.is_ascii_alphabetic() || c == ' ').filter_map(|v| v.parse().ok()).collect();
+        let values: Vec<f64> =
+            data.split(|c: char| c.is_ascii_alphabetic() || c == ' ').filter_map(|v| v.parse().ok()).collect();
         for p in values.chunks_exact(2) {
             let r = (p[0] - 80.0).hypot(p[1] - 80.0);
             // Control points of curves that are not cut may lie a little outside.
@@ -91,7 +98,11 @@ fn expanded_elements_are_cut_at_the_border() {
 fn gradients_stay_with_their_elements() {
     let folder = Folder::new();
     let gradient = "<defs><linearGradient id=\"g\"><stop offset=\"0\" stop-color=\"#f00\"/><stop offset=\"1\" stop-color=\"#00f\"/></linearGradient></defs>";
-    let dots: String = (0..16).map(|k| format!("<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"url(#g)\"/>", 10 + 20 * (k % 4), 10 + 20 * (k / 4))).collect();
+    let dots: String = (0..16)
+        .map(|k| {
+            format!("<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"url(#g)\"/>", 10 + 20 * (k % 4), 10 + 20 * (k / 4))
+        })
+        .collect();
     folder.write("g.svg", svg("80", "80", "0 0 80 80", &(gradient.to_owned() + &dots)));
     folder.ok("fill g.svg --size 100x100 -o a.svg");
     folder.ok("fill g.svg --size 100x100 -o a.png --pixels-per-unit 1");
@@ -114,7 +125,8 @@ fn a_tile_meets_itself_across_its_edges() {
         .filter(|l| l.starts_with("<use"))
         .map(|l| {
             let transform = attributes(l, "transform")[0];
-            let numbers: Vec<f64> = transform.trim_end_matches(')').split(['(', ' ']).filter_map(|v| v.parse().ok()).collect();
+            let numbers: Vec<f64> =
+                transform.trim_end_matches(')').split(['(', ' ']).filter_map(|v| v.parse().ok()).collect();
             (numbers[numbers.len() - 2], numbers[numbers.len() - 1], attributes(l, "id")[0])
         })
         .collect();

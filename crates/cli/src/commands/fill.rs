@@ -151,7 +151,8 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 /// The parameters that `--set` knows, for the long help.
 fn parameters() -> String {
-    let list: String = Params::options().iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
+    let list: String =
+        Params::options().iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
     format!("Parameters for --set, by name:\n{list}\nPresets: {}", Params::PRESETS.join(", "))
 }
 

@@ -68,8 +68,14 @@ fn target(path: &str) -> Result<(file::Target, Format), Failure> {
 
 fn print(report: &Report) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let join = |v: &[f64]| v.iter().map(|x| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()).collect::<Vec<_>>().join(" x ");
-    let unit = report.unit.zip(report.unit_per_user).map_or_else(String::new, |(unit, n)| format!(" (1 unit = {n} {unit})"));
+    let join = |v: &[f64]| {
+        v.iter()
+            .map(|x| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned())
+            .collect::<Vec<_>>()
+            .join(" x ")
+    };
+    let unit =
+        report.unit.zip(report.unit_per_user).map_or_else(String::new, |(unit, n)| format!(" (1 unit = {n} {unit})"));
     writeln!(out, "{}: {}", report.file, report.kind)?;
     writeln!(out, "  frame: {}{unit}", join(&report.frame_size))?;
     writeln!(out, "  elements: {}, of these {} cut at the frame", report.elements, report.cut_at_frame)?;

@@ -31,7 +31,8 @@ impl Man {
 fn named(command: &clap::Command, name: &str) -> Result<clap::Command, Failure> {
     let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
     command.find_subcommand(name).cloned().ok_or_else(|| {
-        let hint = arabesque::nearest(name, known.iter().copied()).map(|n| format!("; did you mean {n}?")).unwrap_or_default();
+        let hint =
+            arabesque::nearest(name, known.iter().copied()).map(|n| format!("; did you mean {n}?")).unwrap_or_default();
         Failure::usage(format!("no subcommand {name} (there are {}){hint}", known.join(", ")))
     })
 }

@@ -37,7 +37,9 @@ impl Run {
         let path = match self.output.or_else(|| recipe.output.path.clone()) {
             Some(path) => path,
             None if std::io::stdout().is_terminal() => {
-                return Err(Failure::usage("the recipe does not say where to write; give -o OUT, or -o - for the terminal"));
+                return Err(Failure::usage(
+                    "the recipe does not say where to write; give -o OUT, or -o - for the terminal",
+                ));
             }
             None => file::STANDARD.to_owned(),
         };

@@ -17,7 +17,9 @@ pub(crate) fn leaves() -> String {
     for k in 0..16 {
         let (x, y) = (10 + 20 * (k % 4), 10 + 20 * (k / 4));
         body += &if k % 2 == 0 {
-            format!("<g class=\"leaf\" transform=\"translate({x} {y})\"><path d=\"M-6 0C-3 -4 3 -4 6 0C3 4 -3 4 -6 0Z\" fill=\"#4a7\"/><path d=\"M-6 0L6 0\" stroke=\"#163\" fill=\"none\"/></g>\n")
+            format!(
+                "<g class=\"leaf\" transform=\"translate({x} {y})\"><path d=\"M-6 0C-3 -4 3 -4 6 0C3 4 -3 4 -6 0Z\" fill=\"#4a7\"/><path d=\"M-6 0L6 0\" stroke=\"#163\" fill=\"none\"/></g>\n"
+            )
         } else {
             format!("<circle class=\"berry\" cx=\"{x}\" cy=\"{y}\" r=\"3\" fill=\"#c22\"/>\n")
         };
@@ -27,7 +29,9 @@ pub(crate) fn leaves() -> String {
 
 /// An SVG document.
 pub(crate) fn svg(width: &str, height: &str, view: &str, body: &str) -> String {
-    format!("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"{width}\" height=\"{height}\" viewBox=\"{view}\">\n{body}</svg>\n")
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"{width}\" height=\"{height}\" viewBox=\"{view}\">\n{body}</svg>\n"
+    )
 }
 
 /// A disc with a hole in a 160 x 160 page.
@@ -42,7 +46,11 @@ pub(crate) fn ring() -> String {
 
 /// A grid of points of two classes.
 pub(crate) fn points() -> String {
-    let lines: String = (0..64).map(|k| format!("{},{},{}\n", 0.1 * f64::from(k % 8), 0.1 * f64::from(k / 8), ["a", "b"][(k + k / 8) as usize % 2])).collect();
+    let lines: String = (0..64)
+        .map(|k| {
+            format!("{},{},{}\n", 0.1 * f64::from(k % 8), 0.1 * f64::from(k / 8), ["a", "b"][(k + k / 8) as usize % 2])
+        })
+        .collect();
     format!("x,y,class\n{lines}")
 }
 

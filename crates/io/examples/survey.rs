@@ -108,7 +108,7 @@ fn kind(message: &str) -> String {
             c => kind.push(c),
         }
     }
-    kind.split('(').next().unwrap_or_default().chars().take(110).collect()
+    kind.chars().take(200).collect()
 }
 
 fn describe(drawing: &Drawing) {

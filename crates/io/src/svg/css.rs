@@ -95,7 +95,7 @@ mod tests {
     fn fills(css: &str, svg: &str) -> Vec<String> {
         let xml = roxmltree::Document::parse(svg).unwrap();
         let sheet = Sheet::new(css);
-        let last = xml.descendants().filter(Xml::is_element).next_back().unwrap();
+        let last = xml.descendants().rfind(Xml::is_element).unwrap();
         sheet.declarations(last).map(|d| d.value.to_owned()).collect()
     }
 

@@ -81,23 +81,30 @@ impl<'d> Matcher<'d> {
     }
 
     fn place(&self, item: &Item, names: &[String]) -> Option<Placement<2>> {
-        let (source, transform) = self.stated(item).or_else(|| self.alike(item, names))?;
+        // A clip around everything takes nothing away from what an element is.
+        let whole = if item.is_cut { item.ink.outline() } else { item.outline.clone() };
+        let (source, transform) = self.stated(item, &whole).or_else(|| self.alike(item, &whole, names))?;
         Some(Placement { source, transform, control: Vec::new(), frozen: None })
     }
 
-    /// The element that a copy says it is, when its ink lies where it then should.
-    fn stated(&self, item: &Item) -> Option<(usize, Similarity<2>)> {
+    /// The element that a copy says it is: by its transform when its ink then lies where it should, else by its outline.
+    fn stated(&self, item: &Item, whole: &Outline<2>) -> Option<(usize, Similarity<2>)> {
         let source = item.meta.source?;
-        let element = self.elements.get(source)?;
-        let [(parent, node)] = item.parts.as_slice() else { return None };
-        let transform = similarity(*parent * node.transform)?;
-        let (want, got) = (element.outline.transformed(&transform), &item.outline);
-        (element.role == Role::Source && lies_on(&want, got)).then_some((source, transform))
+        let element = self.elements.get(source).filter(|e| e.role == Role::Source)?;
+        if let [(parent, node)] = item.parts.as_slice() {
+            let transform = similarity(*parent * node.transform);
+            let fits = transform.filter(|t| lies_on(&element.outline.transformed(t), whole));
+            if let Some(transform) = fits {
+                return Some((source, transform));
+            }
+        }
+        let fit = self.signatures[source].as_ref()?.fit(&Signature::new(whole)?);
+        (fit.distance <= 0.5 * WOBBLE).then_some((source, fit.pose))
     }
 
     /// The element that looks most like the item.
-    fn alike(&self, item: &Item, names: &[String]) -> Option<(usize, Similarity<2>)> {
-        let signature = Signature::new(&item.outline)?;
+    fn alike(&self, item: &Item, whole: &Outline<2>, names: &[String]) -> Option<(usize, Similarity<2>)> {
+        let signature = Signature::new(whole)?;
         let colour = item.ink.colour();
         let named = |e: &Element<2>| names.iter().any(|n| n == self.class_names[e.class]);
         let any_named = self.elements.iter().any(named);

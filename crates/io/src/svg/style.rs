@@ -355,7 +355,7 @@ mod tests {
         with_source(&text, &ReadOptions::new("s.svg"), |source| {
             let mut style = Rc::new(Style::default());
             let mut own = Own::default();
-            let last = source.xml.descendants().filter(Xml::is_element).next_back().unwrap();
+            let last = source.xml.descendants().rfind(Xml::is_element).unwrap();
             let mut chain: Vec<_> = last.ancestors().filter(Xml::is_element).collect();
             chain.reverse();
             for node in chain {

@@ -105,20 +105,14 @@ impl Assignment {
         self.settle()
     }
 
-    /// Pairs the nearest pair first, then the nearest of the rest, and so on [Ma 2011 §3.2]. Returns the sum over the pairs.
-    /// `cost` is row-major. Pairs of infinite cost are never made; rows left over are [`OUTLIER`]s and not counted.
+    /// Enters a full matrix and [settles it greedily](Self::settle_greedily). `cost` is row-major.
+    #[allow(dead_code, reason = "for tests and benchmarks: the search enters its pairs as it meets them")]
     pub(crate) fn greedy(&mut self, rows: usize, columns: usize, cost: &[f32]) -> f32 {
         self.begin(columns);
         for i in 0..rows {
             self.enter_row(&cost[i * columns..(i + 1) * columns], f32::INFINITY);
         }
-        self.reset();
-        let mut total = 0.0;
-        while let Some((row, slot)) = self.nearest_open_pair() {
-            self.take(row, slot);
-            total += self.pairs[slot as usize].1;
-        }
-        total
+        self.settle_greedily()
     }
 
     /// Partner of each row: a column, or [`OUTLIER`].
@@ -127,7 +121,7 @@ impl Assignment {
     }
 
     /// Starts a problem whose pairs come one by one: for each row a [`Assignment::begin_row`], any number of
-    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`].
+    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`] or [`Assignment::settle_greedily`].
     pub(crate) fn begin(&mut self, columns: usize) {
         self.columns = columns;
         self.pairs.clear();
@@ -188,6 +182,18 @@ impl Assignment {
             }
         }
         self.total()
+    }
+
+    /// Settles the problem that was entered by pairing the nearest pair first, then the nearest of the rest, and so on
+    /// [Ma 2011 §3.2]. Returns the sum over the pairs; rows left over are [`OUTLIER`]s and not counted.
+    pub(crate) fn settle_greedily(&mut self) -> f32 {
+        self.reset();
+        let mut total = 0.0;
+        while let Some((row, slot)) = self.nearest_open_pair() {
+            self.take(row, slot);
+            total += self.pairs[slot as usize].1;
+        }
+        total
     }
 
     /// Enters a full row, skipping stretches without a usable pair.

@@ -297,3 +297,10 @@ fn every_example_is_shown() {
         assert!(texts.contains(&name), "{name} is in no command of README.md and docs/gallery.md");
     }
 }
+
+#[test]
+fn the_rust_of_the_readme_is_an_example_that_compiles() {
+    let example = read(&root().join("crates/arabesque/examples/seeds.rs"));
+    let (_, code) = example.split_once("\n\n").unwrap();
+    assert!(read(&root().join("README.md")).contains(&format!("```rust\n{code}```\n")));
+}

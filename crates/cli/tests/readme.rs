@@ -84,6 +84,18 @@ fn the_commands_of_the_gallery_work() {
 }
 
 #[test]
+fn the_recipe_of_the_documentation_works() {
+    let dir = workshop("formats");
+    let text = fs::read_to_string(root().join("docs/formats.md")).unwrap();
+    let (_, after) = text.split_once("```toml\n").unwrap();
+    fs::write(dir.join("recipe.toml"), after.split_once("```").unwrap().0).unwrap();
+    let arguments = ["run", "recipe.toml", "-o", "out.svg"];
+    let result = Command::new(env!("CARGO_BIN_EXE_arabesque")).args(arguments).current_dir(&dir).output().unwrap();
+    assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+    assert!(fs::metadata(dir.join("out.svg")).unwrap().len() > 0);
+}
+
+#[test]
 fn calls_are_found_in_code_blocks_only() {
     let text =
         "arabesque prose\n```sh\ncargo run --release -- fill a.svg \\\n    -o b.svg --variations 2\ncargo test\n```\n";

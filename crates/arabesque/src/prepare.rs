@@ -198,7 +198,7 @@ impl Preparation<'_> {
 
     fn check_room(&self, exemplar: &arabesque_core::Exemplar<2>, domain: &Domain<2>) -> Result<()> {
         let expected = domain.measure() / exemplar.spacing().powi(2);
-        if !(expected <= self.limits.output_elements as f64) {
+        if expected.is_nan() || expected > self.limits.output_elements as f64 {
             return Err(Error::Limit {
                 what: "size of the domain".into(),
                 found: format!("room for about {expected:.0} elements"),

@@ -46,6 +46,12 @@ fn bombs_and_depths_end_quickly() {
 }
 
 #[test]
+fn two_hundred_thousand_points_are_a_limit() {
+    let lines: String = (0..200_000).map(|k| format!("{},{}\n", k % 500, k / 500)).collect();
+    refused(&[("many.csv", format!("x,y\n{lines}"), "limit of 100000")]);
+}
+
+#[test]
 fn bytes_that_are_no_text() {
     let folder = Folder::new();
     folder.write("bytes.svg", [b"<svg>".as_slice(), &[0xC3, 0x28, 0xFE]].concat());

@@ -1,5 +1,7 @@
 //! Every option does what its help says.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 mod common;
 
 use common::{Folder, attributes, drawn, pixels, stderr, stdout};
@@ -194,6 +196,18 @@ fn the_engine_takes_its_options() {
     }
     let value = json(&folder, "fill leaves.svg --size 80x80 --levels 1 --iterations 2");
     assert!(value["energy"].as_array().unwrap().iter().all(|e| e["level"] == 0));
+}
+
+#[test]
+fn elements_bend_only_when_asked_to() {
+    let folder = Folder::new();
+    let exemplar = common::example("feathers.svg");
+    let value = json(&folder, &format!("fill {exemplar} --size 160x160"));
+    assert!(value["placements"].as_array().unwrap().iter().all(|p| p.get("control").is_none()));
+    let value = json(&folder, &format!("fill {exemplar} --size 160x160 --set deform=arap"));
+    assert!(value["placements"].as_array().unwrap().iter().any(|p| p.get("control").is_some()));
+    folder.ok(&format!("fill {exemplar} --size 160x160 --set deform=arap -o a.svg"));
+    assert!(folder.text("a.svg").lines().any(|l| l.starts_with("<g id=") && l.contains("data-arabesque-source")));
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Pictures of whole runs, compared with those under `reference`. `ARABESQUE_BLESS=1` replaces them.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 mod common;
 
 use std::path::Path;

@@ -1,5 +1,7 @@
 //! Files are written whole or not at all.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 mod common;
 
 use std::{process::Stdio, time::Duration};

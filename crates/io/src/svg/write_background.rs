@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Error, Outline, Result, Vector};
+use arabesque_core::{Domain, Error, Outline, Result, Vector, Warning};
 
 use super::{
     Sheet,
@@ -14,16 +14,34 @@ use crate::number::Decimals;
 /// Repeats beyond this number would make a file that nobody can open.
 const MOST_REPEATS: f64 = 100_000.0;
 
-/// Markup that fills the domain of `sheet` with the background `markup` of its exemplar.
-pub(super) fn background(markup: &str, sheet: &Sheet<'_>, prefix: &str, d: Decimals) -> Result<String> {
+/// Markup that fills the domain of `sheet` with the background `markup` of its exemplar, and what is wrong with it.
+pub(super) fn background(
+    markup: &str,
+    sheet: &Sheet<'_>,
+    prefix: &str,
+    d: Decimals,
+) -> Result<(String, Option<Warning>)> {
     let area = sheet.shape.cloned().unwrap_or_else(|| rectangle(&sheet.domain.bounds()));
     let text = wrapped(markup);
     let document = roxmltree::Document::parse(&text)
         .map_err(|e| Error::input("background of the exemplar", e.to_string(), "draw it as a plain rectangle"))?;
     match plain_colour(document.root_element()) {
-        Some(paint) => Ok(format!("<path d=\"{}\" fill-rule=\"evenodd\"{paint}/>", outline_data(&area, d))),
-        None => repeated(markup, sheet, prefix, d),
+        Some(paint) => Ok((format!("<path d=\"{}\" fill-rule=\"evenodd\"{paint}/>", outline_data(&area, d)), None)),
+        None => Ok((repeated(markup, sheet, prefix, d)?, seam(sheet))),
     }
+}
+
+/// A warning when a background that is more than a colour does not fit a tile.
+fn seam(sheet: &Sheet<'_>) -> Option<Warning> {
+    let Domain::Torus(tile) = sheet.domain else { return None };
+    let (window, tile) = (sheet.drawing.exemplar.window.size(), tile.size());
+    let fits = |k: usize| (tile[k] / window[k] - (tile[k] / window[k]).round()).abs() < 1e-6;
+    (!(fits(0) && fits(1))).then(|| {
+        Warning::new(
+            "the background is more than one colour and shows a seam in the tile",
+            format!("make the tile a multiple of {} x {}, or the background one colour", window[0], window[1]),
+        )
+    })
 }
 
 /// The paint attributes of a background that is one shape of one colour.

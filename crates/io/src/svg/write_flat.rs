@@ -49,18 +49,26 @@ const CUT_TOLERANCE: f64 = 0.02;
 pub(super) struct Flattener<'a> {
     drawing: &'a Drawing,
     cutter: Option<Cutter>,
+    /// Id of the clip path of the domain, where there is one.
+    clip: Option<&'a str>,
     decimals: Decimals,
     pieces: Vec<OnceCell<Vec<Piece>>>,
 }
 
 impl<'a> Flattener<'a> {
-    /// A flattener that cuts along `cut`, if given.
-    pub(super) fn new(drawing: &'a Drawing, cut: Option<&Outline<2>>, decimals: Decimals) -> Self {
+    /// A flattener that cuts along `cut`, if given; what cannot be cut is clipped by the clip path with the id `clip`.
+    pub(super) fn new(
+        drawing: &'a Drawing,
+        cut: Option<&Outline<2>>,
+        clip: Option<&'a str>,
+        decimals: Decimals,
+    ) -> Self {
         let spacing = drawing.exemplar.spacing();
         Self {
             cutter: cut.and_then(|outline| Cutter::new(outline, CUT_TOLERANCE * 0.05 * spacing)),
             pieces: drawing.fragments.iter().map(|_| OnceCell::new()).collect(),
             drawing,
+            clip,
             decimals,
         }
     }
@@ -90,7 +98,14 @@ impl<'a> Flattener<'a> {
                 Piece::Path(path) => self.path(path, warp, cutter, &mut flat.markup),
                 Piece::Whole(markup) => {
                     flat.kept_whole += usize::from(style == Style::Expanded);
-                    let _ = write!(flat.markup, "<g transform=\"{}\">{markup}</g>", self.matrix(moved));
+                    let placed = format!("<g transform=\"{}\">{markup}</g>", self.matrix(moved));
+                    match (cutter, self.clip) {
+                        // What cannot be cut is at least not seen beyond the border.
+                        (Some(_), Some(clip)) => {
+                            let _ = write!(flat.markup, "<g clip-path=\"url(#{clip})\">{placed}</g>");
+                        }
+                        _ => flat.markup.push_str(&placed),
+                    }
                 }
             }
         }

@@ -110,14 +110,15 @@ fn visit(node: roxmltree::Node<'_, '_>, above: Affine, handed: &Attributes, out:
     let transform = above * transform_of(node)?;
     let mut merged = handed.clone();
     merged.extend(own.iter().filter(|(n, _)| !OWN.contains(&n.as_str())).map(|(n, v)| (n.clone(), v.clone())));
-    if matches!(name, "g" | "a" | "svg") && !refers && name != "svg" {
+    if matches!(name, "g" | "a") && !refers {
         return group(node, transform, &own, &merged, out);
     }
-    if !refers && is_even(transform, &merged) {
-        if let Some(path) = path_of(node)? {
-            out.push(painted(&(transform * path), transform, &own, merged));
-            return Ok(());
-        }
+    if !refers
+        && is_even(transform, &merged)
+        && let Some(path) = path_of(node)?
+    {
+        out.push(painted(&(transform * path), transform, &own, merged));
+        return Ok(());
     }
     out.push(Piece::Whole(whole(node, above, handed)));
     Ok(())

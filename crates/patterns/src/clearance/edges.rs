@@ -76,7 +76,7 @@ mod tests {
     fn star(points: usize, radius: f64) -> Vec<Vector<2>> {
         let corner = |k: usize| {
             let turn = k as f64 / points as f64 * std::f64::consts::TAU;
-            let r = if k % 2 == 0 { radius } else { 0.4 * radius };
+            let r = if k.is_multiple_of(2) { radius } else { 0.4 * radius };
             Vector::xy(r * turn.cos(), r * turn.sin())
         };
         (0..points).map(corner).collect()

@@ -59,6 +59,7 @@ pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<Exemplar
 /// Mends overlaps and border violations in `placements`; those with a `frozen` entry stay untouched. Order is kept.
 ///
 /// `clearance` is [`measure`]d from the exemplar of the placements.
+#[expect(clippy::ptr_arg, reason = "a vector of another dimension is looked into; what is found loses elements")]
 pub(crate) fn repair<const D: usize>(
     clearance: Option<&ExemplarClearance>,
     request: &Request<D>,

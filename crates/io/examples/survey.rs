@@ -1,5 +1,6 @@
 //! Reads every SVG file under a folder as an exemplar and counts what comes of it: `survey FOLDER [auto|elements]`.
-//! With a single file instead of a folder it prints what was understood.
+//! With a single file instead of a folder it prints what was understood; `survey FILE METHOD OUT.svg` also draws it again from the
+//! fragments, for comparison with the original.
 #![allow(clippy::print_stdout, reason = "the survey is a report for people")]
 
 use std::{
@@ -20,7 +21,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let method = if arguments.get(1).is_some_and(|m| m == "elements") { Method::Elements } else { Method::Auto };
     if path.is_file() {
         let options = ReadOptions { method, ..ReadOptions::new(path.display().to_string()) };
-        describe(&read_exemplar(&fs::read_to_string(&path)?, &options)?);
+        let drawing = read_exemplar(&fs::read_to_string(&path)?, &options)?;
+        describe(&drawing);
+        if let Some(out) = arguments.get(2) {
+            fs::write(out, redrawn(&drawing))?;
+        }
         return Ok(());
     }
     survey(&path, method)
@@ -109,6 +114,24 @@ fn kind(message: &str) -> String {
         }
     }
     kind.chars().take(200).collect()
+}
+
+/// The drawing put together again from its fragments.
+fn redrawn(drawing: &Drawing) -> String {
+    let (min, size) = (drawing.page.view.min, drawing.page.view.size());
+    let scale = drawing.page.unit_per_user * drawing.page.unit.pixels();
+    let fragments: String = drawing.fragments.iter().map(|f| f.markup.as_str()).collect();
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"{} {} {} {}\"><defs>{}</defs>{}{fragments}</svg>",
+        size[0] * scale,
+        size[1] * scale,
+        min[0],
+        min[1],
+        size[0],
+        size[1],
+        drawing.definitions,
+        drawing.background.as_deref().unwrap_or_default()
+    )
 }
 
 fn describe(drawing: &Drawing) {

@@ -113,12 +113,31 @@ fn shapes(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     if let Some((shapes, _)) = told.filter(|(shapes, _)| is_clear_cut(members, shapes, signatures)) {
         return shapes;
     }
-    let sizes = greedy(members, signatures, usize::MAX, Signature::has_size_of);
-    sizes.map_or_else(|| vec![0; members.len()], |(shapes, _)| shapes)
+    by_size(members, signatures)
+}
+
+/// Numbers sizes: those within a factor of two of the median are one, the rest is divided again.
+fn by_size(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
+    let size = |k: usize| signatures[members[k]].as_ref().map_or(0.0, |s| s.size);
+    let mut rest: Vec<usize> = (0..members.len()).collect();
+    rest.sort_by(|&a, &b| size(a).total_cmp(&size(b)).then(a.cmp(&b)));
+    let mut shapes = vec![0; members.len()];
+    let mut shape = 0;
+    while let Some(&middle) = rest.get(rest.len() / 2) {
+        let near = |k: usize| k == middle || (0.5..=2.0).contains(&(size(k) / size(middle)));
+        rest.retain(|&k| {
+            if near(k) {
+                shapes[k] = shape;
+            }
+            !near(k)
+        });
+        shape += 1;
+    }
+    shapes
 }
 
 /// Share of the distance between shapes that members may be off their own shape, in the mean.
-const CLEAR: f64 = 0.4;
+const CLEAR: f64 = 0.3;
 
 /// Whether members are much nearer to the first of their shape than the shapes are to each other. Where they are not, the shapes are
 /// accidents of cutting one cloud of outlines into pieces.

@@ -18,6 +18,9 @@ use super::{
 /// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
 const DEVIATION: f64 = 0.002;
 
+/// Longest spike of a join, in stroke widths.
+const LONGEST_MITER: f64 = 100.0;
+
 /// Dashes of one stroke beyond which it is taken as unbroken.
 const DASHES: f64 = 20_000.0;
 
@@ -165,6 +168,10 @@ impl<'a, 's> Inker<'a, 's> {
     pub(super) fn check(&self, node: &Node, geometry: &Geometry, world: Affine) -> Result<()> {
         let extent = (world * geometry.path.clone()).control_box();
         let width = if node.style.strokes() { node.style.number(P::StrokeWidth) * growth(world) } else { 0.0 };
+        self.check_extent(node, extent, width)
+    }
+
+    fn check_extent(&self, node: &Node, extent: kurbo::Rect, width: f64) -> Result<()> {
         let largest = [extent.x0, extent.y0, extent.x1, extent.y1, width].map(f64::abs);
         if largest.iter().all(|v| *v <= self.source.limits.coordinate) {
             return Ok(());
@@ -180,7 +187,13 @@ impl<'a, 's> Inker<'a, 's> {
             Some(Ok((id, _))) => self.clip_area(id, node, world, 0)?,
             _ => None,
         };
-        let by_viewport = node.viewport_clip.map(|r| filled(&r.to_path(0.1), world, FillRule::NonZero));
+        let by_viewport = match node.viewport_clip {
+            Some(viewport) => {
+                self.check_extent(node, world.transform_rect_bbox(viewport), 0.0)?;
+                Some(filled(&viewport.to_path(0.1), world, FillRule::NonZero))
+            }
+            None => None,
+        };
         Ok(match (by_path, by_viewport) {
             (Some(a), Some(b)) => Some(a.intersection(&b)),
             (a, b) => a.or(b),
@@ -384,7 +397,10 @@ fn pen(style: &Style, width: f64, path: &BezPath) -> Stroke {
         "bevel" => Join::Bevel,
         _ => Join::Miter,
     };
-    let pen = Stroke::new(width).with_caps(cap).with_join(join).with_miter_limit(style.number(P::StrokeMiterlimit));
+    let pen = Stroke::new(width)
+        .with_caps(cap)
+        .with_join(join)
+        .with_miter_limit(style.number(P::StrokeMiterlimit).min(LONGEST_MITER));
     let dashes: Vec<f64> = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse().ok()).collect();
     let period: f64 = dashes.iter().sum();
     if dashes.is_empty() || period <= 0.0 || rough_length(path) / period * dashes.len() as f64 > DASHES {

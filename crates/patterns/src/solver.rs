@@ -119,3 +119,86 @@ fn dot<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
         .collect();
     pieces.into_iter().sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arabesque_core::{Stage, Stream};
+
+    /// A ring of unknowns with chords, random offsets and weights.
+    fn problem(n: usize, seed: u64) -> (Vec<Prediction<2>>, Vec<Pull<2>>) {
+        let mut random = Stream::new(seed, Stage::Test, 0);
+        let mut vector = || Vector::xy(random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+        let offsets: Vec<_> = (0..3 * n).map(|_| vector()).collect();
+        let targets: Vec<_> = (0..n).map(|_| vector()).collect();
+        let mut random = Stream::new(seed, Stage::Test, 1);
+        let predictions = (0..3 * n).map(|k| Prediction {
+            from: (k % n) as u32,
+            to: ((k * 7 + 1 + k / n) % n) as u32,
+            offset: offsets[k],
+            weight: random.range(0.1, 2.0),
+        });
+        let predictions = predictions.filter(|p| p.from != p.to).collect();
+        let pulls = targets.into_iter().map(|target| Pull { target, weight: random.range(0.01, 0.2) }).collect();
+        (predictions, pulls)
+    }
+
+    fn energy(predictions: &[Prediction<2>], pulls: &[Pull<2>], x: &[Vector<2>]) -> f64 {
+        let pairs = predictions.iter().map(|p| p.weight * (x[p.to as usize] - x[p.from as usize] - p.offset).norm2());
+        let alone = pulls.iter().zip(x).map(|(p, v)| p.weight * (*v - p.target).norm2());
+        pairs.sum::<f64>() + alone.sum::<f64>()
+    }
+
+    #[test]
+    fn the_solution_is_that_of_a_library_solver() {
+        for (n, seed) in [(5, 1), (40, 2), (300, 3)] {
+            let (predictions, pulls) = problem(n, seed);
+            let mut matrix = nalgebra::DMatrix::<f64>::zeros(n, n);
+            let mut right = nalgebra::DMatrix::<f64>::zeros(n, 2);
+            for (i, p) in pulls.iter().enumerate() {
+                matrix[(i, i)] += p.weight;
+                (0..2).for_each(|k| right[(i, k)] += p.weight * p.target[k]);
+            }
+            for p in &predictions {
+                let (a, b) = (p.from as usize, p.to as usize);
+                matrix[(a, a)] += p.weight;
+                matrix[(b, b)] += p.weight;
+                matrix[(a, b)] -= p.weight;
+                matrix[(b, a)] -= p.weight;
+                for k in 0..2 {
+                    right[(b, k)] += p.weight * p.offset[k];
+                    right[(a, k)] -= p.weight * p.offset[k];
+                }
+            }
+            let want = matrix.cholesky().unwrap().solve(&right);
+            let got = NormalEquations::new(&predictions, &pulls, vec![false; n]).solve(1e-12, 10_000);
+            for i in 0..n {
+                assert!((0..2).all(|k| (got[i][k] - want[(i, k)]).abs() < 1e-7), "{n} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_energy_never_rises_in_a_solve() {
+        for seed in 0..20 {
+            let (predictions, pulls) = problem(60, seed);
+            let equations = NormalEquations::new(&predictions, &pulls, vec![false; 60]);
+            let mut last = energy(&predictions, &pulls, &[Vector::ZERO; 60]);
+            for steps in 1..20 {
+                let now = energy(&predictions, &pulls, &equations.solve(0.0, steps));
+                assert!(now <= last * (1.0 + 1e-12), "{seed} {steps}: {last} {now}");
+                last = now;
+            }
+        }
+    }
+
+    #[test]
+    fn a_fixed_unknown_does_not_move() {
+        let (predictions, pulls) = problem(12, 5);
+        let mut fixed = vec![false; 12];
+        fixed[4] = true;
+        let x = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-9, 100);
+        assert_eq!(x[4], Vector::ZERO);
+        assert!(x.iter().any(|v| v.norm() > 0.01));
+    }
+}

@@ -68,6 +68,12 @@ fn run_document(name: &str) -> usize {
         for out in outputs(arguments) {
             let size = fs::metadata(dir.join(&out)).map_or(0, |m| m.len());
             assert!(size > 0, "{name}: arabesque {line}\nleft no {out}");
+            if let [command, result, ..] = arguments.as_slice()
+                && command == "run"
+            {
+                let same = fs::read(dir.join(result)).unwrap() == fs::read(dir.join(&out)).unwrap();
+                assert!(same, "{name}: arabesque {line}\n{out} is not {result} again");
+            }
         }
     }
     calls.len()

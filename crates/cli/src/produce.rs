@@ -23,7 +23,7 @@ pub(crate) struct RunOptions {
     /// Make N results with the seeds SEED, SEED+1, ...; OUT gets -1, -2, ... before its extension
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) variations: Option<u32>,
-    /// Stop after this time and write the best so far: seconds, or 1m30s
+    /// Stop each run after this time and write the best so far: seconds, or 1m30s
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub(crate) time_limit: Option<Duration>,
     /// File format, where the extension of OUT does not say: svg, png, json, csv or toml (the recipe alone)
@@ -46,16 +46,16 @@ pub(crate) struct TalkOptions {
     #[arg(short, long, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
     /// Say what was understood and how the run went
-    #[arg(short, long)]
-    pub(crate) verbose: bool,
+    #[arg(short, long, action = clap::ArgAction::Count)]
+    pub(crate) verbose: u8,
 }
 
 impl TalkOptions {
     pub(crate) fn level(&self) -> Level {
         match (self.quiet, self.verbose) {
             (true, _) => Level::Quiet,
-            (false, true) => Level::Verbose,
-            (false, false) => Level::Normal,
+            (false, 1..) => Level::Verbose,
+            (false, 0) => Level::Normal,
         }
     }
 }
@@ -131,10 +131,9 @@ fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &Ru
         let (elements, classes) = prepared.exemplar_size();
         say::note(&format!("exemplar: {elements} elements in {classes} classes"));
     }
-    let deadline = Deadline::after(options.time_limit);
     let mut outputs = Vec::new();
     for plan in &plans {
-        outputs.push(make(&prepared, plan, &recipe.output, (level, deadline))?);
+        outputs.push(make(&prepared, plan, &recipe.output, (level, options.time_limit))?);
         if is_interrupted() {
             break;
         }
@@ -149,9 +148,9 @@ fn make(
     prepared: &Prepared,
     plan: &Plan,
     output: &OutputOptions,
-    (level, deadline): (Level, Deadline),
+    (level, time_limit): (Level, Option<Duration>),
 ) -> Result<Output, Failure> {
-    let mut watch = Watch::new(level, deadline);
+    let mut watch = Watch::new(level, Deadline::after(time_limit));
     let artwork = prepared.run(plan.seed, &mut watch);
     watch.finish();
     let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };

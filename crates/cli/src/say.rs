@@ -32,7 +32,8 @@ pub(crate) fn bar_style() -> &'static str {
 }
 
 fn line(label: &str, code: &str, message: &str) {
-    let label = if is_colourful() { format!("\x1b[1;{code}m{label}\x1b[0m") } else { label.to_owned() };
+    let label =
+        if is_colourful() && !label.is_empty() { format!("\x1b[1;{code}m{label}\x1b[0m") } else { label.to_owned() };
     // Nobody is left to be told when standard error is gone.
     let _ = writeln!(std::io::stderr().lock(), "arabesque: {label}{message}");
 }

@@ -48,6 +48,18 @@ fn millimetres_in_are_millimetres_out() {
 }
 
 #[test]
+fn a_domain_in_millimetres_meets_an_exemplar_in_pixels() {
+    let folder = Folder::new();
+    let ring = common::ring().replace("width=\"160\" height=\"160\" viewBox", "width=\"80mm\" height=\"80mm\" viewBox");
+    folder.write("mm.svg", ring);
+    folder.ok("fill leaves.svg --domain mm.svg -o a.svg");
+    let text = folder.text("a.svg");
+    assert!(text.contains("width=\"80mm\" height=\"80mm\" viewBox=\"0 0 302.362 302.362\""), "{}", &text[..500]);
+    let placed = attributes(drawn(&text), "data-arabesque-source").len();
+    assert!((120..260).contains(&placed), "{placed} elements on 4 times the area of the exemplar and more");
+}
+
+#[test]
 fn a_domain_with_a_hole_is_filled_and_nothing_else() {
     let folder = Folder::new();
     let value = json(&folder, "fill leaves.svg --domain ring.svg --border cross");

@@ -1,4 +1,5 @@
 //! Files that once broke the reader: each is read in every way, and what comes out is well formed.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use std::{fs, path::PathBuf};
 

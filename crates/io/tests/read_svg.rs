@@ -1,4 +1,5 @@
 //! Traits of SVG files as artists save them, each in a tiny file of its own.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Error, Region, Role, Vector};
 use arabesque_io::svg::{Drawing, Method, ReadOptions, Unit, read_exemplar, read_flow, read_placed, read_shape};

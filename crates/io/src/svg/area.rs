@@ -7,10 +7,12 @@ use kurbo::{Affine, BezPath};
 
 use super::{
     Job, Page, ReadOptions, Unit,
-    ink::{self, Inker, flattened},
+    flatten::{self, flattened},
+    ink::Inker,
+    meta::Part,
     notes::Note,
     read::{parts, root},
-    scene::{Content, Node, Part},
+    scene::{Content, Node},
     select::is_closed,
     source::{Source, with_source},
     style::Property as P,
@@ -120,7 +122,7 @@ fn shape(inker: &Inker<'_, '_>, place: &str, nodes: &[(Affine, Rc<Node>)], frame
             open.push(border.name.as_str());
             continue;
         }
-        let area = ink::filled(&border.path, Affine::IDENTITY, border.rule);
+        let area = flatten::filled(&border.path, Affine::IDENTITY, border.rule);
         let area = border.clip.as_ref().map_or_else(|| area.clone(), |clip| area.intersection(clip));
         areas.push(area);
     }
@@ -164,7 +166,7 @@ fn collect(
         inker.check(node, geometry, world)?;
         let path = world * geometry.path.clone();
         let is_filled = node.style.get(P::Fill) != "none";
-        let rule = if is_filled { ink::fill_rule(node.style.get(P::FillRule)) } else { FillRule::EvenOdd };
+        let rule = if is_filled { flatten::fill_rule(node.style.get(P::FillRule)) } else { FillRule::EvenOdd };
         let name = node.meta.label.clone().or_else(|| node.meta.id.clone()).unwrap_or_else(|| node.meta.tag.to_owned());
         let is_open = !is_filled && !path.subpaths().any(is_nearly_closed);
         borders.push(Border { path, rule, clip: both.clone(), is_open, name });

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Class, Similarity};
 
-use super::{css::Sheet, scene::Meta, select::Item, signature::Signature};
+use super::{css::Sheet, item::Item, meta::Meta, signature::Signature};
 
 /// Mean distance of borders up to which two outlines are the same by hand, in radii.
 pub(super) const WOBBLE: f64 = 0.08;
@@ -116,7 +116,7 @@ fn shapes(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     by_size(members, signatures)
 }
 
-/// Numbers sizes: those within a factor of two of the median are one, the rest is divided again.
+/// Numbers sizes: those within a factor of three of the median are one, the rest is divided again.
 fn by_size(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     let size = |k: usize| signatures[members[k]].as_ref().map_or(0.0, |s| s.size);
     let mut rest: Vec<usize> = (0..members.len()).collect();
@@ -124,7 +124,7 @@ fn by_size(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     let mut shapes = vec![0; members.len()];
     let mut shape = 0;
     while let Some(&middle) = rest.get(rest.len() / 2) {
-        let near = |k: usize| k == middle || (0.5..=2.0).contains(&(size(k) / size(middle)));
+        let near = |k: usize| k == middle || (1.0 / 3.0..=3.0).contains(&(size(k) / size(middle)));
         rest.retain(|&k| {
             if near(k) {
                 shapes[k] = shape;

@@ -4,8 +4,8 @@ use roxmltree::Node as Xml;
 use svgtypes::Color;
 
 use super::{
+    paint::{fraction, reference},
     source::Source,
-    style::{fraction, reference},
 };
 
 /// Colour of a paint, sRGB in [0, 1]; of a gradient the mean of its stops; middle grey where nothing better is known.

@@ -15,8 +15,9 @@ use super::{
     length::{Axis, Viewport},
     markup::{number, push_attribute},
     notes::Note,
+    paint::reference,
     source::{Source, clip_text, href},
-    style::{Own, Style, computed, reference},
+    style::{Own, Style, computed},
 };
 
 /// The definitions of one file that are referred to, by their new ids.

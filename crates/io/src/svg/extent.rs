@@ -7,8 +7,8 @@ use kurbo::Affine;
 
 use super::{
     geometry::Painted,
-    ink::growth,
     scene::{Content, Node},
+    stroke::growth,
     style::Property as P,
     touch::{Sets, meeting},
 };

@@ -2,7 +2,7 @@
 
 use arabesque_core::{Bounds, Outline, Role};
 
-use super::select::Item;
+use super::item::Item;
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
 const CUT: f64 = 0.15;

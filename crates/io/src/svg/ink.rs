@@ -2,27 +2,21 @@
 
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Error, FillRule, Outline, Result, Ring, Vector, ring_area};
-use kurbo::{Affine, BezPath, Cap, Join, PathEl, Shape as _, Stroke, StrokeOpts};
+use arabesque_core::{Error, FillRule, Outline, Result, Ring};
+use kurbo::{Affine, Shape as _};
 
 use super::{
     colour,
+    flatten::{fill_rule, filled},
     geometry::{Geometry, Painted},
     length::Viewport,
     notes::Note,
+    paint::{fraction, reference},
     scene::{Content, Node, build_definition},
     source::Source,
-    style::{Property as P, Style, fraction, reference},
+    stroke::{growth, stroked},
+    style::Property as P,
 };
-
-/// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
-const DEVIATION: f64 = 0.002;
-
-/// Longest spike of a join, in stroke widths.
-const LONGEST_MITER: f64 = 100.0;
-
-/// Dashes of one stroke beyond which it is taken as unbroken.
-const DASHES: f64 = 20_000.0;
 
 /// Area covered by something, in user coordinates of the root.
 #[derive(Clone, Debug, Default)]
@@ -263,174 +257,6 @@ fn extent(node: &Node) -> Option<kurbo::Rect> {
             boxes.reduce(|a, b| a.union(b))
         }
     }
-}
-
-/// The fill rule of that name.
-pub(super) fn fill_rule(name: &str) -> FillRule {
-    if name == "evenodd" { FillRule::EvenOdd } else { FillRule::NonZero }
-}
-
-/// Mean factor by which a transform enlarges lengths.
-pub(super) fn growth(transform: Affine) -> f64 {
-    transform.determinant().abs().sqrt()
-}
-
-/// The area that a filled path covers.
-pub(super) fn filled(path: &BezPath, world: Affine, rule: FillRule) -> Outline<2> {
-    covered(&rings(&(world * path.clone())), rule)
-}
-
-/// The union of rings under a rule, with a short cut for one plain ring.
-pub(super) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
-    match rings {
-        [] => Outline::default(),
-        [ring] if is_convex(ring) => {
-            let mut ring = ring.clone();
-            if ring_area(&ring) < 0.0 {
-                ring.reverse();
-            }
-            Outline { rings: vec![ring] }
-        }
-        _ => Outline::union(rings, rule),
-    }
-}
-
-/// Whether a ring turns one way all along, once around: then it cannot cross itself.
-fn is_convex(ring: &[Vector<2>]) -> bool {
-    let n = ring.len();
-    let edge = |k: usize| ring[(k + 1) % n] - ring[k % n];
-    let mut turned = 0.0;
-    let mut sign = 0.0;
-    for k in 0..n {
-        let (a, b) = (edge(k), edge(k + 1));
-        let cross = a.cross(b);
-        if cross * sign < 0.0 || a.norm2() == 0.0 {
-            return false;
-        }
-        if cross != 0.0 {
-            sign = cross.signum();
-        }
-        turned += cross.atan2(a.dot(b));
-    }
-    n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
-}
-
-/// The subpaths of a path as polygons, as fine as their size deserves.
-pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
-    subpaths(path).map(flattened).filter(|ring| ring.len() >= 3).collect()
-}
-
-/// The subpaths of a path.
-pub(super) fn subpaths(path: &BezPath) -> impl Iterator<Item = &[PathEl]> {
-    path.subpaths()
-}
-
-/// A subpath as polyline; a closing point that repeats the first is dropped.
-pub(super) fn flattened(elements: &[PathEl]) -> Ring<2> {
-    let mut points: Ring<2> = Vec::new();
-    let extent = control_box(elements);
-    let tolerance = (DEVIATION * extent.width().hypot(extent.height())).max(f64::MIN_POSITIVE);
-    kurbo::flatten(elements.iter().copied(), tolerance, |element| {
-        if let PathEl::MoveTo(p) | PathEl::LineTo(p) = element {
-            let p = Vector::xy(p.x, p.y);
-            if points.last() != Some(&p) {
-                points.push(p);
-            }
-        }
-    });
-    while points.len() > 1 && points.first() == points.last() {
-        points.pop();
-    }
-    points
-}
-
-fn control_box(elements: &[PathEl]) -> kurbo::Rect {
-    let mut extent: Option<kurbo::Rect> = None;
-    let mut add = |p: kurbo::Point| {
-        let at = kurbo::Rect::from_points(p, p);
-        extent = Some(extent.map_or(at, |e| e.union(at)));
-    };
-    for element in elements {
-        match *element {
-            PathEl::MoveTo(p) | PathEl::LineTo(p) => add(p),
-            PathEl::QuadTo(a, p) => [a, p].into_iter().for_each(&mut add),
-            PathEl::CurveTo(a, b, p) => [a, b, p].into_iter().for_each(&mut add),
-            PathEl::ClosePath => {}
-        }
-    }
-    extent.unwrap_or_default()
-}
-
-/// The area that the stroke of a shape covers.
-pub(super) fn stroked(node: &Node, path: &BezPath, world: Affine) -> Outline<2> {
-    let style = &node.style;
-    let width = style.number(P::StrokeWidth);
-    let scale = growth(world);
-    // A stroke that does not scale has its width in user units of the root.
-    let fixed = node.own.get("vector-effect") == Some("non-scaling-stroke") && scale > 0.0;
-    let (path, world) = if fixed { (world * path.clone(), Affine::IDENTITY) } else { (path.clone(), world) };
-    let extent = path.control_box();
-    let tolerance = (DEVIATION * (extent.width().hypot(extent.height()) + width)).min(0.1 * width);
-    let pen = pen(style, width, &path);
-    let mut outline = BezPath::new();
-    for elements in path.subpaths() {
-        match dot(elements, &pen) {
-            Some(dot) => outline.extend(dot),
-            None => outline.extend(kurbo::stroke(elements.iter().copied(), &pen, &StrokeOpts::default(), tolerance)),
-        }
-    }
-    if !outline.is_finite() {
-        return Outline::default();
-    }
-    let rings = rings(&(world * outline));
-    covered(&rings, FillRule::NonZero)
-}
-
-fn pen(style: &Style, width: f64, path: &BezPath) -> Stroke {
-    let cap = match style.get(P::StrokeLinecap) {
-        "round" => Cap::Round,
-        "square" => Cap::Square,
-        _ => Cap::Butt,
-    };
-    let join = match style.get(P::StrokeLinejoin) {
-        "round" => Join::Round,
-        "bevel" => Join::Bevel,
-        _ => Join::Miter,
-    };
-    let pen = Stroke::new(width)
-        .with_caps(cap)
-        .with_join(join)
-        .with_miter_limit(style.number(P::StrokeMiterlimit).min(LONGEST_MITER));
-    let dashes: Vec<f64> = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse().ok()).collect();
-    let period: f64 = dashes.iter().sum();
-    if dashes.is_empty() || period <= 0.0 || rough_length(path) / period * dashes.len() as f64 > DASHES {
-        return pen;
-    }
-    // A dash of no length still shows its caps.
-    let dashes = dashes.into_iter().map(|d| if d == 0.0 { 1e-3 * width } else { d });
-    let dashes: Vec<f64> = dashes.collect();
-    let doubled = if dashes.len() % 2 == 1 { [dashes.clone(), dashes].concat() } else { dashes };
-    pen.with_dashes(style.number(P::StrokeDashoffset), doubled)
-}
-
-/// Length of the control polygon: no less than the length of the path.
-fn rough_length(path: &BezPath) -> f64 {
-    let ends = |s: kurbo::PathSeg| s.to_cubic();
-    path.segments().map(ends).map(|c| (c.p1 - c.p0).hypot() + (c.p2 - c.p1).hypot() + (c.p3 - c.p2).hypot()).sum()
-}
-
-/// What a subpath of no length shows: a dot with round caps, a square with square ones, nothing with butt ones.
-fn dot(elements: &[PathEl], pen: &Stroke) -> Option<BezPath> {
-    let extent = control_box(elements);
-    if elements.len() < 2 || extent.width() > 0.0 || extent.height() > 0.0 {
-        return None;
-    }
-    let (centre, half) = (extent.origin(), 0.5 * pen.width);
-    Some(match pen.start_cap {
-        Cap::Round => kurbo::Circle::new(centre, half).to_path(0.01 * half),
-        Cap::Square => kurbo::Rect::from_center_size(centre, (pen.width, pen.width)).to_path(0.1),
-        Cap::Butt => BezPath::new(),
-    })
 }
 
 #[cfg(test)]

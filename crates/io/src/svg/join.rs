@@ -8,8 +8,8 @@ use super::{
     Method,
     extent::longer,
     ink::Inker,
+    item::{Item, Kind, Origin, Selection},
     notes::Note,
-    select::{Item, Kind, Origin, Selection},
     touch::{Budget, Edge, Sets, edges_meet, meeting},
 };
 

@@ -6,8 +6,9 @@ use kurbo::Affine;
 
 use super::{
     definitions::Definitions,
+    paint::reference,
     scene::{Content, Node},
-    style::{Style, reference},
+    style::Style,
 };
 
 /// A number in the shortest form with seven decimals, more where it is small.

@@ -125,10 +125,13 @@ impl Notes {
         }
     }
 
-    /// The kinds of trouble so far, in few words, for an error that they may explain.
+    /// The kinds of trouble so far that may explain why nothing was found, in few words.
     pub(super) fn summary(&self) -> String {
         let all = self.0.borrow();
-        all.iter().map(|(note, (count, _))| format!("{} ({count}x)", note.words().0)).collect::<Vec<_>>().join(", ")
+        let telling =
+            |note: &Note| !matches!(note, Note::Corner | Note::NoSize | Note::OldInkscape | Note::NoNamespace);
+        let told = all.iter().filter(|(note, _)| telling(note));
+        told.map(|(note, (count, _))| format!("{} ({count}x)", note.words().0)).collect::<Vec<_>>().join(", ")
     }
 
     /// One warning a kind.

@@ -7,7 +7,7 @@ use arabesque_core::{Bounds, FillRule, Ring, ring_area};
 use kurbo::{BezPath, PathEl};
 
 use super::{
-    ink::flattened,
+    flatten::flattened,
     touch::{Budget, Edge, Sets, edges, edges_meet, meeting, winding},
 };
 

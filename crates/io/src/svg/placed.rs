@@ -8,8 +8,9 @@ use super::{
     classes::{self, WOBBLE},
     definitions::Definitions,
     ink::Inker,
+    item::Item,
     read::{fragment, root},
-    select::{Context, Item, select},
+    select::{Context, select},
     signature::Signature,
     source::with_source,
 };

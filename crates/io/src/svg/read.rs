@@ -12,11 +12,13 @@ use super::{
     extent::{self, bounds},
     frame, guard,
     ink::Inker,
+    item::{Item, Kind, Origin, Selection},
     length::{self, Viewport},
     markup::{push_node, push_transform},
+    meta::Part,
     notes::Note,
-    scene::{self, Node, Part},
-    select::{Context, Item, Kind, Origin, Selection, select},
+    scene::{self, Node},
+    select::{Context, select},
     source::{Source, with_source},
 };
 
@@ -84,7 +86,7 @@ fn scope(inker: &Inker<'_, '_>, root: &Rc<Node>, page: Option<&Page>) -> Result<
     let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
     let share = page.map_or(0.0, |p| content.measure() / p.view.measure());
     let fits = share >= if by_layer { LAYER } else { CORNER };
-    if !fits && marked.is_none() && page.is_some() && !by_layer {
+    if !fits && marked.is_none() && page.is_some() && !by_layer && !content.is_empty() {
         inker.source.notes.add(Note::Corner, String::new);
     }
     if page.is_none() {

@@ -16,61 +16,17 @@ use roxmltree::NodeId;
 use super::{
     Method,
     extent::{bounds, clusters, longer, sole_shape},
+    flatten,
     geometry::{Geometry, Painted},
-    ink::{self, Ink, Inker},
+    ink::Inker,
+    item::{Item, Kind, Origin, Selection},
+    meta::{Mark, Meta, Part},
     notes::Note,
+    paint::fraction,
     pieces,
-    scene::{Content, Mark, Meta, Node},
-    style::{Own, Property as P, fraction},
+    scene::{Content, Node},
+    style::{Own, Property as P},
 };
-
-/// What a selected item is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// To be placed as a whole.
-    Element,
-    /// An open stroke, a closed one too large for an element, or one marked as curve.
-    Curve,
-    /// A fill larger than half of the frame that is no background.
-    Large,
-}
-
-/// How an item came to be, which decides what it may be joined with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Origin {
-    /// A group, `<use>`, or anything marked by hand: never joined.
-    Whole,
-    /// A single filled shape.
-    Fill,
-    /// A single shape without a fill.
-    Stroke,
-    /// A piece of a compound path.
-    Piece,
-}
-
-/// A selected item.
-#[derive(Clone, Debug)]
-pub(super) struct Item {
-    /// What draws it: nodes with the transforms from their parents to the root.
-    pub(super) parts: Vec<(Affine, Rc<Node>)>,
-    pub(super) meta: Rc<Meta>,
-    pub(super) layer: Option<Rc<str>>,
-    /// Opacity of the containers around it.
-    pub(super) opacity: f64,
-    pub(super) outline: Outline<2>,
-    pub(super) ink: Ink,
-    pub(super) kind: Kind,
-    pub(super) origin: Origin,
-    /// Whether a clip of a container takes something away from it.
-    pub(super) is_cut: bool,
-}
-
-/// Everything selected from a drawing.
-#[derive(Debug, Default)]
-pub(super) struct Selection {
-    pub(super) items: Vec<Item>,
-    pub(super) background: Vec<(Affine, Rc<Node>)>,
-}
 
 /// Share of the frame from which on something is too large for an element.
 const HALF: f64 = 0.5;
@@ -173,7 +129,7 @@ impl Selector<'_, '_, '_> {
 
     fn visit(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
         let meta = &node.meta;
-        if matches!(meta.part, Some(part) if part != super::scene::Part::Exemplar) {
+        if matches!(meta.part, Some(part) if part != Part::Exemplar) {
             return Ok(());
         }
         if meta.is_layer || self.opened.contains(&meta.xml) {
@@ -291,7 +247,7 @@ impl Selector<'_, '_, '_> {
         let near = 0.04 * longer(&self.frame);
         let close = |a: f64, b: f64| (a - b).abs() < near;
         let along = (0..2).all(|k| close(extent.min[k], self.frame.min[k]) && close(extent.max[k], self.frame.max[k]));
-        along && ink::filled(&geometry.path, world, FillRule::NonZero).area() >= 0.85 * self.frame.measure()
+        along && flatten::filled(&geometry.path, world, FillRule::NonZero).area() >= 0.85 * self.frame.measure()
     }
 
     fn covers_frame(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Context) -> Result<bool> {
@@ -314,7 +270,7 @@ impl Selector<'_, '_, '_> {
         if all.len() < 2 {
             return Ok(false);
         }
-        let rule = ink::fill_rule(leaf.style.get(P::FillRule));
+        let rule = flatten::fill_rule(leaf.style.get(P::FillRule));
         let Some(pieces) = pieces::pieces(&geometry.path, rule) else {
             self.inker.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
             return Ok(false);
@@ -403,7 +359,7 @@ fn is_filled(leaf: &Node, geometry: &Geometry) -> bool {
         return false;
     }
     let extent = geometry.path.control_box();
-    let rings = ink::rings(&geometry.path);
+    let rings = flatten::rings(&geometry.path);
     let area: f64 = rings.iter().map(|r| arabesque_core::ring_area(r).abs()).sum();
     area > 1e-9 * (extent.width() + extent.height()).powi(2)
 }

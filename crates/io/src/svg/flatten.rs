@@ -1,0 +1,94 @@
+//! Filled paths as polygons.
+
+use arabesque_core::{FillRule, Outline, Ring, Vector, ring_area};
+use kurbo::{Affine, BezPath, PathEl};
+
+/// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
+pub(super) const DEVIATION: f64 = 0.002;
+
+/// The fill rule of that name.
+pub(super) fn fill_rule(name: &str) -> FillRule {
+    if name == "evenodd" { FillRule::EvenOdd } else { FillRule::NonZero }
+}
+
+/// The area that a filled path covers.
+pub(super) fn filled(path: &BezPath, world: Affine, rule: FillRule) -> Outline<2> {
+    covered(&rings(&(world * path.clone())), rule)
+}
+
+/// The union of rings under a rule, with a short cut for one plain ring.
+pub(super) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
+    match rings {
+        [] => Outline::default(),
+        [ring] if is_convex(ring) => {
+            let mut ring = ring.clone();
+            if ring_area(&ring) < 0.0 {
+                ring.reverse();
+            }
+            Outline { rings: vec![ring] }
+        }
+        _ => Outline::union(rings, rule),
+    }
+}
+
+/// Whether a ring turns one way all along, once around: then it cannot cross itself.
+fn is_convex(ring: &[Vector<2>]) -> bool {
+    let n = ring.len();
+    let edge = |k: usize| ring[(k + 1) % n] - ring[k % n];
+    let mut turned = 0.0;
+    let mut sign = 0.0;
+    for k in 0..n {
+        let (a, b) = (edge(k), edge(k + 1));
+        let cross = a.cross(b);
+        if cross * sign < 0.0 || a.norm2() == 0.0 {
+            return false;
+        }
+        if cross != 0.0 {
+            sign = cross.signum();
+        }
+        turned += cross.atan2(a.dot(b));
+    }
+    n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
+}
+
+/// The subpaths of a path as polygons, as fine as their size deserves.
+pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
+    path.subpaths().map(flattened).filter(|ring| ring.len() >= 3).collect()
+}
+
+/// A subpath as polyline; a closing point that repeats the first is dropped.
+pub(super) fn flattened(elements: &[PathEl]) -> Ring<2> {
+    let mut points: Ring<2> = Vec::new();
+    let extent = control_box(elements);
+    let tolerance = (DEVIATION * extent.width().hypot(extent.height())).max(f64::MIN_POSITIVE);
+    kurbo::flatten(elements.iter().copied(), tolerance, |element| {
+        if let PathEl::MoveTo(p) | PathEl::LineTo(p) = element {
+            let p = Vector::xy(p.x, p.y);
+            if points.last() != Some(&p) {
+                points.push(p);
+            }
+        }
+    });
+    while points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    points
+}
+
+/// Box around the control points.
+pub(super) fn control_box(elements: &[PathEl]) -> kurbo::Rect {
+    let mut extent: Option<kurbo::Rect> = None;
+    let mut add = |p: kurbo::Point| {
+        let at = kurbo::Rect::from_points(p, p);
+        extent = Some(extent.map_or(at, |e| e.union(at)));
+    };
+    for element in elements {
+        match *element {
+            PathEl::MoveTo(p) | PathEl::LineTo(p) => add(p),
+            PathEl::QuadTo(a, p) => [a, p].into_iter().for_each(&mut add),
+            PathEl::CurveTo(a, b, p) => [a, b, p].into_iter().for_each(&mut add),
+            PathEl::ClosePath => {}
+        }
+    }
+    extent.unwrap_or_default()
+}

@@ -1,0 +1,90 @@
+//! What a file says about its items: names, marks, parts in a job.
+
+use roxmltree::{Node as Xml, NodeId};
+
+use super::{
+    notes::Note,
+    source::{INKSCAPE, Source, clip_text, href},
+};
+
+/// What the author says an item is, with `data-arabesque`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mark {
+    Element,
+    Curve,
+    Ignore,
+}
+
+/// The part that a layer plays in a job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Exemplar,
+    Domain,
+    Avoid,
+    Flow,
+}
+
+/// Names, marks and place of a node in the file.
+#[derive(Clone, Debug)]
+pub(super) struct Meta {
+    pub(super) xml: NodeId,
+    pub(super) tag: &'static str,
+    pub(super) id: Option<String>,
+    pub(super) label: Option<String>,
+    pub(super) class: Option<String>,
+    /// `data-arabesque-class`: written by arabesque itself.
+    pub(super) kind: Option<String>,
+    /// `data-arabesque-source`: which exemplar element it is a copy of.
+    pub(super) source: Option<usize>,
+    /// Id of what a `<use>` shows.
+    pub(super) shows: Option<String>,
+    pub(super) is_layer: bool,
+    pub(super) part: Option<Part>,
+    pub(super) mark: Option<Mark>,
+}
+
+/// Reads the names and marks of a node.
+pub(super) fn meta(source: &Source<'_>, xml: Xml<'_, '_>, tag: &'static str) -> Meta {
+    let text = |name: &str| xml.attribute(name).map(str::trim).filter(|t| !t.is_empty()).map(str::to_owned);
+    let label = xml.attribute((INKSCAPE, "label")).map(|l| l.trim().to_owned()).filter(|l| !l.is_empty());
+    let is_layer = xml.attribute((INKSCAPE, "groupmode")) == Some("layer");
+    let mark = xml.attribute("data-arabesque").and_then(|value| {
+        let mark = match value.trim().to_ascii_lowercase().as_str() {
+            "element" => Some(Mark::Element),
+            "curve" => Some(Mark::Curve),
+            "ignore" => Some(Mark::Ignore),
+            _ => None,
+        };
+        if mark.is_none() {
+            source.notes.add(Note::Override, || clip_text(value, 40).to_owned());
+        }
+        mark
+    });
+    let stated = xml.attribute("data-arabesque-role").and_then(part);
+    Meta {
+        xml: xml.id(),
+        tag,
+        id: text("id"),
+        class: text("class"),
+        kind: text("data-arabesque-class"),
+        source: xml.attribute("data-arabesque-source").and_then(|s| s.trim().parse().ok()),
+        shows: (tag == "use").then(|| href(xml)).flatten().map(|h| h.trim().to_owned()),
+        is_layer,
+        part: stated.or_else(|| label.as_deref().filter(|_| is_layer).and_then(part)),
+        label,
+        mark,
+    }
+}
+
+/// Layer names that say what a layer is for, in any case.
+const PARTS: [(Part, &[&str]); 4] = [
+    (Part::Exemplar, &["exemplar", "example", "vorlage", "exemplaire", "ejemplar", "esempio"]),
+    (Part::Domain, &["domain", "bereich", "domaine", "dominio"]),
+    (Part::Avoid, &["avoid", "meiden", "éviter", "evitar", "evita"]),
+    (Part::Flow, &["flow", "fluss", "flux", "flujo", "flusso"]),
+];
+
+fn part(name: &str) -> Option<Part> {
+    let name = name.trim().to_lowercase();
+    PARTS.iter().find(|(_, names)| names.contains(&name.as_str())).map(|(part, _)| *part)
+}

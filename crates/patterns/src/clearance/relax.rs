@@ -14,6 +14,12 @@ use super::{
 /// Most rounds over the overlapping pairs.
 const SWEEPS: usize = 12;
 
+/// Rounds without progress after which pushing is given up.
+const PATIENCE: usize = 2;
+
+/// Share of the excess that a round must get below to be progress.
+const PROGRESS: f64 = 0.95;
+
 /// Directions in which the width of an overlap is measured, over half a turn.
 const DIRECTIONS: u32 = 8;
 
@@ -23,8 +29,9 @@ impl Repair<'_> {
         let (mut best, mut best_bodies) = (violations.clone(), Vec::<(usize, Body)>::new());
         let mut original = BTreeMap::<usize, Body>::new();
         let mut active = violations;
+        let mut idle = 0;
         for _ in 0..SWEEPS {
-            if active.is_empty() {
+            if active.is_empty() || idle > PATIENCE {
                 break;
             }
             let mut suspects: BTreeSet<usize> = active.iter().flat_map(|v| [v.0, v.1]).collect();
@@ -36,6 +43,7 @@ impl Repair<'_> {
                 }
             }
             active = self.violations_among(&suspects);
+            idle = if excess(&active) < PROGRESS * excess(&best) { 0 } else { idle + 1 };
             if excess(&active) < excess(&best) {
                 best_bodies = original.keys().map(|&k| (k, self.scene.bodies[k].clone())).collect();
                 best.clone_from(&active);
@@ -50,11 +58,12 @@ impl Repair<'_> {
 
     /// Violations in which a suspect takes part, in order.
     fn violations_among(&self, suspects: &BTreeSet<usize>) -> Vec<Violation> {
-        let suspects: Vec<usize> = suspects.iter().copied().collect();
-        let found: Vec<Vec<Violation>> = suspects.par_iter().map(|&i| self.violations_of(i)).collect();
+        let list: Vec<usize> = suspects.iter().copied().collect();
+        // A pair of suspects is looked at once, from the lower one.
+        let of = |&i: &usize| self.violations_of(i, |j| j > i || !suspects.contains(&j));
+        let found: Vec<Vec<Violation>> = list.par_iter().map(of).collect();
         let mut found = found.concat();
         found.sort_by_key(|v| (v.0, v.1));
-        found.dedup_by_key(|v| (v.0, v.1));
         found
     }
 

@@ -1,8 +1,12 @@
 //! Mending what overlaps too much or lies out of the domain.
 
-use std::collections::{BTreeSet, BinaryHeap};
+use std::{
+    cmp::Reverse,
+    collections::{BTreeMap, BTreeSet, BinaryHeap},
+};
 
 use arabesque_core::{Placement, Request, Similarity, Vector};
+use rayon::prelude::*;
 
 use super::{
     Summary,
@@ -23,6 +27,15 @@ const PLACES: u32 = 12;
 
 /// Smaller elements that are tried in place of one, at most.
 const EXCHANGES: usize = 24;
+
+/// Elements with more overlapping partners than this, counted by size, leave before anything is pushed.
+const HOPELESS: u64 = 4;
+
+/// The same once everything has been pushed apart as far as it goes.
+const CROWDED: u64 = 2;
+
+/// A partner of the same size or larger.
+const ONE: u64 = 1000;
 
 /// Two bodies that overlap too much, the lower index first, and by how much area.
 pub(crate) type Violation = (usize, usize, f64);
@@ -50,9 +63,9 @@ pub(crate) fn repair(limits: &ExemplarClearance, request: &Request<2>, placement
     if violations.is_empty() && outside.is_empty() {
         return summary;
     }
-    let violations = repair.relax(violations);
+    let violations = repair.make_room(violations);
     repair.settle(&violations, &outside);
-    repair.thin_out(&violations);
+    repair.thin_out(violations, 0);
     repair.write_back(placements, &mut summary);
     summary
 }
@@ -130,36 +143,51 @@ impl<'a> Repair<'a> {
         if a.fixed && b.fixed {
             return false;
         }
-        if i != j
-            && (self.limits.must_be_apart(a, b) || self.surplus.contains(&(i.min(j), i.max(j))))
-            && !self.scene.meet(a, b)
-        {
-            return false;
-        }
         self.scene.overlap_area(a, b, i == j) > self.allowed_area((i, j), a, b)
     }
 
-    /// Violations of body `i`, ascending partners.
-    pub(crate) fn violations_of(&self, i: usize) -> Vec<Violation> {
+    /// Violations of body `i` with the partners that `counts` lets through, ascending.
+    pub(crate) fn violations_of(&self, i: usize, counts: impl Fn(usize) -> bool) -> Vec<Violation> {
+        if !self.alive[i] {
+            return Vec::new();
+        }
         let body = &self.scene.bodies[i];
         let excess = |j: usize| {
             let other = &self.scene.bodies[j];
             let area = if body.fixed && other.fixed { 0.0 } else { self.scene.overlap_area(body, other, i == j) };
             (i.min(j), i.max(j), area - self.allowed_area((i, j), body, other))
         };
-        let others = self.scene.neighbours(i, self.slack).into_iter().filter(|&j| self.alive[j]);
+        let others = self.scene.neighbours(i, self.slack).into_iter().filter(|&j| self.alive[j] && counts(j));
         others.chain([i]).map(excess).filter(|v| v.2 > 0.0).collect()
     }
 
-    /// Whether body `i`, changed to `candidate`, breaks no rule.
-    fn is_clean(&self, i: usize, candidate: &Body) -> bool {
+    /// Whether body `i`, changed to `candidate`, breaks no rule. `neighbours` are those of body `i`.
+    fn is_clean(&self, i: usize, candidate: &Body, neighbours: &[usize]) -> bool {
         self.admits(candidate)
             && !self.conflict((i, i), candidate, candidate)
-            && self
-                .scene
-                .neighbours(i, self.slack)
-                .into_iter()
-                .all(|j| !self.alive[j] || !self.conflict((i, j), candidate, &self.scene.bodies[j]))
+            && neighbours.iter().all(|&j| !self.alive[j] || !self.blocks((i, j), candidate))
+    }
+
+    /// Whether body `j` is in the way of `candidate` for body `i`: where nothing may overlap, a touch is enough.
+    fn blocks(&self, (i, j): (usize, usize), candidate: &Body) -> bool {
+        let other = &self.scene.bodies[j];
+        if self.must_be_apart((i, j), candidate, other) {
+            return self.scene.meet(candidate, other);
+        }
+        self.conflict((i, j), candidate, other)
+    }
+
+    fn must_be_apart(&self, (i, j): (usize, usize), a: &Body, b: &Body) -> bool {
+        self.limits.must_be_apart(a, b) || self.surplus.contains(&(i.min(j), i.max(j)))
+    }
+
+    /// Pushes apart what overlaps. Where far too much lies in one place that cannot succeed: there the most crowded leave first.
+    fn make_room(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
+        let violations = self.thin_out(violations, HOPELESS);
+        let violations = self.relax(violations);
+        let before = violations.len();
+        let violations = self.thin_out(violations, CROWDED);
+        if violations.len() < before { self.relax(violations) } else { violations }
     }
 
     /// Body `i` at `centre`, no farther from its start than its reach.
@@ -172,16 +200,19 @@ impl<'a> Repair<'a> {
 
     /// Mends what pushing could not: body by body, with everything else as it is.
     fn settle(&mut self, violations: &[Violation], outside: &[usize]) {
-        for &i in outside {
-            self.alive[i] = self.is_clean(i, &self.scene.bodies[i]) || self.relocate(i) || self.exchange(i);
+        for &i in outside.iter() {
+            let stays = self.is_clean(i, &self.scene.bodies[i], &self.scene.neighbours(i, self.slack));
+            self.alive[i] = stays || self.relocate(i) || self.exchange(i);
         }
         let mut worst_first = violations.to_vec();
         worst_first.sort_by(|x, y| y.2.total_cmp(&x.2).then((x.0, x.1).cmp(&(y.0, y.1))));
+        let mut tried = BTreeSet::new();
         for (i, j, _) in worst_first {
             if self.is_violation(i, j) {
                 let mut free: Vec<_> = [i, j].into_iter().filter(|&k| !self.scene.bodies[k].fixed).collect();
                 free.sort_by(|&a, &b| self.scene.bodies[a].area.total_cmp(&self.scene.bodies[b].area).then(a.cmp(&b)));
-                free.dedup();
+                // What found no place once will hardly find one later: nothing makes room any more.
+                free.retain(|&k| tried.insert(k));
                 let _settled = free.iter().any(|&k| self.relocate(k)) || free.iter().any(|&k| self.exchange(k));
             }
         }
@@ -193,12 +224,13 @@ impl<'a> Repair<'a> {
 
     /// Puts body `i` on the nearest free place within its reach.
     fn relocate(&mut self, i: usize) -> bool {
+        let neighbours = self.scene.neighbours(i, self.slack);
         for ring in 1..=RINGS {
             for place in 0..PLACES {
                 let turn = (f64::from(place) + 0.5 * f64::from(ring % 2)) / f64::from(PLACES) * std::f64::consts::TAU;
                 let shift = Vector::xy(turn.cos(), turn.sin()) * (self.reach[i] * f64::from(ring) / f64::from(RINGS));
                 let candidate = self.scene.bodies[i].moved_to(self.scene.origin(i) + shift);
-                if self.is_clean(i, &candidate) {
+                if self.is_clean(i, &candidate, &neighbours) {
                     self.scene.bodies[i] = candidate;
                     return true;
                 }
@@ -214,13 +246,14 @@ impl<'a> Repair<'a> {
             // A bent element has no counterpart with its bend.
             return false;
         }
+        let neighbours = self.scene.neighbours(i, self.slack);
         let smaller: Vec<_> = self.limits.smaller_sources(body.figure).collect();
         let step = smaller.len().div_ceil(EXCHANGES).max(1);
         for &source in smaller.iter().step_by(step) {
             let centre = self.limits.figures[source].centre;
             let place = Similarity::about(centre, body.centre, body.place.rotation, body.place.scale);
             let candidate = self.limits.body(source, place);
-            if self.is_clean(i, &candidate) {
+            if self.is_clean(i, &candidate, &neighbours) {
                 self.scene.bodies[i] = candidate;
                 return true;
             }
@@ -228,23 +261,23 @@ impl<'a> Repair<'a> {
         false
     }
 
-    /// Takes bodies out until no violation is left: the one with most first, of these the smallest.
-    fn thin_out(&mut self, violations: &[Violation]) {
-        let left: Vec<_> = violations.iter().filter(|v| self.is_violation(v.0, v.1)).map(|v| (v.0, v.1)).collect();
-        let mut partners = std::collections::BTreeMap::<usize, Vec<usize>>::new();
-        for &(i, j) in &left {
+    /// Takes bodies out until none has a crowd of more than `most` around it: the most crowded first, of these the smallest.
+    /// Returns the violations that are left.
+    fn thin_out(&mut self, violations: Vec<Violation>, most: u64) -> Vec<Violation> {
+        let mut violations: Vec<_> = violations.into_par_iter().filter(|v| self.is_violation(v.0, v.1)).collect();
+        let mut partners = BTreeMap::<usize, Vec<usize>>::new();
+        for &(i, j, _) in &violations {
             partners.entry(i).or_default().push(j);
             partners.entry(j).or_default().push(i);
         }
-        let count = |alive: &[bool], i: usize| partners[&i].iter().filter(|&&j| alive[j] && alive[i]).count();
-        // Small area first among equals: bits of a positive number order like the number.
+        // Small area first among equals: the bits of positive numbers are ordered like the numbers.
         let key =
-            |this: &Self, i: usize| (count(&this.alive, i), std::cmp::Reverse(this.scene.bodies[i].area.to_bits()), i);
-        let mut queue: BinaryHeap<_> =
-            partners.keys().filter(|&&i| !self.scene.bodies[i].fixed).map(|&i| key(self, i)).collect();
+            |this: &Self, i: usize| (this.crowd(i, &partners[&i]), Reverse(this.scene.bodies[i].area.to_bits()), i);
+        let free = partners.keys().filter(|&&i| !self.scene.bodies[i].fixed);
+        let mut queue: BinaryHeap<_> = free.map(|&i| key(self, i)).collect();
         while let Some(entry) = queue.pop() {
             let now = key(self, entry.2);
-            if now.0 == 0 {
+            if now.0 <= most * ONE {
                 continue;
             }
             if now == entry {
@@ -253,6 +286,15 @@ impl<'a> Repair<'a> {
                 queue.push(now);
             }
         }
+        violations.retain(|v| self.alive[v.0] && self.alive[v.1]);
+        violations
+    }
+
+    /// Number of partners that are still there, in multiples of [`ONE`]; one that is smaller than body `i` counts by its size.
+    fn crowd(&self, i: usize, partners: &[usize]) -> u64 {
+        let own = self.scene.bodies[i].area.max(f64::MIN_POSITIVE);
+        let weight = |&j: &usize| ((self.scene.bodies[j].area / own).min(1.0) * ONE as f64) as u64;
+        partners.iter().filter(|&&j| self.alive[i] && self.alive[j]).map(|j| weight(j).max(1)).sum()
     }
 
     fn write_back(&self, placements: &mut Vec<Placement<2>>, summary: &mut Summary) {

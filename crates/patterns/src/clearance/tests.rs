@@ -316,8 +316,8 @@ fn points_and_space_have_nothing_to_check() {
     assert_eq!((placements.len(), summary), (2, Summary::default()));
 }
 
-/// Leaves of 24 corners in two sizes, turned at random, on a page with room for them.
-fn crowd(n: usize) -> (Exemplar<2>, Vec<Placement<2>>, Request<2>) {
+/// Leaves of 24 corners in two sizes, turned at random, near the nodes of a grid on a tile.
+fn crowd(n: usize, spacing: f64) -> (Exemplar<2>, Vec<Placement<2>>, Request<2>) {
     let leaf = |size: f64| {
         let corner = |k: u32| {
             let a = f64::from(k) / 24.0 * std::f64::consts::TAU;
@@ -332,12 +332,12 @@ fn crowd(n: usize) -> (Exemplar<2>, Vec<Placement<2>>, Request<2>) {
             })
             .collect(),
     );
-    let side = 3.2 * (n as f64).sqrt();
+    let side = spacing * (n as f64).sqrt().ceil();
     let mut stream = Stream::new(9, Stage::Test, 0);
     let columns = (n as f64).sqrt().ceil() as usize;
     let placements = (0..n).map(|k| {
         let source = stream.below(16);
-        let grid = Vector::xy((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5) * 3.2;
+        let grid = Vector::xy((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5) * spacing;
         let target = grid + Vector::xy(stream.range(-0.6, 0.6), stream.range(-0.6, 0.6));
         let rotation = arabesque_core::Matrix::rotation(stream.range(-0.3, 0.3));
         let transform = Similarity::about(e.elements[source].centre, target, rotation, 1.0);
@@ -349,7 +349,7 @@ fn crowd(n: usize) -> (Exemplar<2>, Vec<Placement<2>>, Request<2>) {
 
 #[test]
 fn a_large_crowd_comes_out_clean_with_few_losses() {
-    let (e, placements, request) = crowd(900);
+    let (e, placements, request) = crowd(900, 3.2);
     assert!(ratio(&e, &placements, &request) > 0.01);
     let (mended, summary) = mend(&e, &request, &placements);
     assert!(summary.pairs > 200, "{summary:?}");
@@ -359,8 +359,29 @@ fn a_large_crowd_comes_out_clean_with_few_losses() {
 }
 
 #[test]
+fn four_times_too_many_are_thinned_to_what_fits() {
+    let (e, placements, request) = crowd(400, 1.6);
+    let (mended, summary) = mend(&e, &request, &placements);
+    assert!(ratio(&e, &mended, &request) < 1e-6);
+    // The tile has room for about as many as there are cells of side 2.5.
+    assert!((110..300).contains(&mended.len()), "{summary:?}");
+}
+
+#[test]
+fn a_leaf_does_not_give_way_to_the_dots_at_its_rim() {
+    let leaf = element(0, 5.0, 5.0, &square(4.0));
+    let dots = (0..15).map(|k| element(1, 10.0 + f64::from(k % 5), 12.0 + f64::from(k / 5), &square(0.4)));
+    let e = exemplar(std::iter::once(leaf).chain(dots).collect());
+    let mut placements = vec![put(&e, 0, 10.0, 10.0)];
+    placements.extend((0..14).map(|k| put(&e, 1, 8.1 + 0.3 * f64::from(k), 12.05)));
+    let (mended, _) = mend(&e, &on_page(20.0), &placements);
+    assert!(mended.iter().any(|p| p.source == 0));
+    assert_eq!(ratio(&e, &mended, &on_page(20.0)), 0.0);
+}
+
+#[test]
 fn the_result_does_not_depend_on_the_number_of_threads() {
-    let (e, placements, request) = crowd(300);
+    let (e, placements, request) = crowd(300, 3.2);
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| mend(&e, &request, &placements))

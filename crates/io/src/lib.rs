@@ -1,7 +1,7 @@
 //! Files to core types and back: SVG, PNG, CSV, JSON.
 //!
 //! One module a format. Everything read is held to [`arabesque_core::Limits`]; everything written is the same bytes for the same result.
-//! Only [`file`] touches the file system: the others turn bytes into values and values into bytes.
+//! Only [`mod@file`] touches the file system: the others turn bytes into values and values into bytes.
 
 pub mod csv;
 pub mod file;

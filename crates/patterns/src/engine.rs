@@ -130,7 +130,7 @@ impl<const D: usize> Prepared<D> {
 
     fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {
         let limit = Limits::default().output_elements;
-        if !(expected <= limit as f64) {
+        if expected.is_nan() || expected > limit as f64 {
             return Err(Error::Limit {
                 what: "elements of the result".into(),
                 found: format!("about {expected:.0}"),

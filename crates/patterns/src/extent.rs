@@ -34,7 +34,7 @@ impl<'a, const D: usize> Extent<'a, D> {
             request,
             exemplar,
             radius,
-            obstacles: obstacles(&request.obstacles),
+            obstacles: obstacles(request),
             margin,
             largest_spacing_scale: scale * thin,
             smallest_spacing_scale,
@@ -120,9 +120,9 @@ impl<'a, const D: usize> Extent<'a, D> {
 }
 
 /// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
-fn obstacles<const D: usize>(outlines: &Vec<Outline<D>>) -> Option<Arc<dyn Region<D>>> {
-    let outlines = (outlines as &dyn Any).downcast_ref::<Vec<Outline<2>>>()?;
-    let rings: Vec<_> = outlines.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>> {
+    let plane = (request as &dyn Any).downcast_ref::<Request<2>>()?;
+    let rings: Vec<_> = plane.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
     let region: Arc<dyn Region<2>> = Arc::new(Shape::new(&rings, FillRule::NonZero)?);
     (&region as &dyn Any).downcast_ref::<Arc<dyn Region<D>>>().cloned()
 }

@@ -16,6 +16,9 @@ use crate::{
     state::{Match, State},
 };
 
+/// A neighbourhood with less than this energy is as good as a copy: no better one is looked for.
+const COPY: f32 = 1e-3;
+
 /// How the search is done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SearchParams {
@@ -122,16 +125,19 @@ fn search_one<const D: usize>(
     let reach = (state.level.radius) * frame.spacing_scale;
     let deep = state.domain().signed_distance(position) > reach;
     let wanted = |offset: Vector<D>| deep || state.extent.may_hold(position + frame.to_output(offset));
+    let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key as usize]).sum();
     let mut best = (f32::INFINITY, u32::MAX);
     for i in candidates(state, s, &around, params) {
         let cost = matcher.cost(&around, i, best.0, &wanted);
         if cost < best.0 || (cost == best.0 && i < best.1) {
             best = (cost, i);
         }
+        if best.0 <= COPY * scale {
+            break;
+        }
     }
     let input = best.1;
     let found = matcher.correspondence(&around, input, &wanted);
-    let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key as usize]).sum();
     let own = state.level.outlier2[state.samples[s as usize].key as usize];
     Some(Match {
         input,

@@ -1,5 +1,7 @@
 //! Whole runs on tiny named exemplars.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic, its helpers as well")]
+
 use std::ops::ControlFlow;
 
 use arabesque_core::{

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use arabesque_core::{
-    Border, Bounds, Domain, Error, Fields, Limits, Matrix, OrientationField, Outline, Placement, Request, Result,
-    ScalarField, Shape, Vector, Warning,
+    Bounds, Domain, Error, Fields, Limits, Matrix, OrientationField, Outline, Request, Result, ScalarField, Shape,
+    Warning,
 };
 use arabesque_io::{
     file,
@@ -22,6 +22,10 @@ const STROKE_NODES: usize = 128;
 const SCALE_RANGE: [f64; 2] = [0.5, 2.0];
 /// Values of black and white in a picture of density.
 const DENSITY_RANGE: [f64; 2] = [0.2, 1.0];
+/// Shortest side of a tile, in mean spacings: in a narrower one every element would meet itself many times.
+const LEAST_TILE_SIDE: f64 = 0.5;
+/// Shortest side of any other domain, in mean spacings.
+const LEAST_SIDE: f64 = 0.01;
 /// Smallest and largest factor that a field may hold.
 const FACTORS: [f64; 2] = [0.01, 100.0];
 
@@ -98,6 +102,7 @@ impl Preparation<'_> {
         for size in sizes.into_iter().flatten() {
             size?;
         }
+        self.check_version();
         let bytes = self.recipe.exemplar.read(self.base, &self.limits)?;
         let subject = Subject::read(&self.recipe.exemplar, &bytes, self.recipe.method, &self.limits)?;
         self.recipe.exemplar = self.recipe.exemplar.carrying(&bytes);
@@ -118,7 +123,7 @@ impl Preparation<'_> {
         let mut request = Request::new(place.domain);
         request.border = self.recipe.border.into();
         request.fields = self.fields(&drawing, &request.domain.bounds())?;
-        request.obstacles = self.avoided(&drawing, &request.domain)?;
+        request.obstacles = self.avoided(&drawing, points.is_some(), &request.domain)?;
         let kept = self.kept(&drawing, points.is_some())?;
         if let Some(kept) = &kept {
             request.frozen.clone_from(&kept.placements);
@@ -137,6 +142,16 @@ impl Preparation<'_> {
         })
     }
 
+    fn check_version(&mut self) {
+        let (theirs, ours) = (&self.recipe.arabesque, env!("CARGO_PKG_VERSION"));
+        if theirs != ours {
+            self.warnings.push(Warning::new(
+                format!("the recipe was written by version {theirs}, and this is {ours}: the result may differ"),
+                format!("use version {theirs} to repeat it exactly"),
+            ));
+        }
+    }
+
     fn place(&mut self, drawing: &Drawing, is_points: bool) -> Result<Place> {
         let recipe = &self.recipe;
         let given = [recipe.size.is_some(), recipe.tile.is_some(), recipe.domain.is_some()];
@@ -153,8 +168,9 @@ impl Preparation<'_> {
             return Ok(Place { domain, shape: None, page });
         }
         if let Some(input) = recipe.domain.clone() {
+            let input = self.embedded(&input)?;
             let (shape, page) = self.shape(&input, drawing, is_points)?;
-            self.recipe.domain = Some(self.embedded(&input)?);
+            self.recipe.domain = Some(input);
             return Ok(shaped(shape, page));
         }
         match &drawing.job.domain {
@@ -167,6 +183,7 @@ impl Preparation<'_> {
         }
     }
 
+    /// The input with its content where that is small: standard input can be read only once.
     fn embedded(&self, input: &Input) -> Result<Input> {
         Ok(input.carrying(&input.read(self.base, &self.limits)?))
     }
@@ -217,6 +234,15 @@ impl Preparation<'_> {
                 "make it larger; sizes without a unit are in the units of the exemplar",
             ));
         }
+        let spacing = exemplar.spacing();
+        let least = spacing * if domain.period().is_some() { LEAST_TILE_SIDE } else { LEAST_SIDE };
+        let side = domain.bounds().size().0.into_iter().fold(f64::INFINITY, f64::min);
+        if side < least {
+            return Err(Error::no_result(
+                format!("the domain is {side} wide, where {least:.4} is the least for elements {spacing:.4} apart"),
+                "make it wider; sizes without a unit are in the units of the exemplar",
+            ));
+        }
         Ok(())
     }
 
@@ -229,8 +255,8 @@ impl Preparation<'_> {
                 return Err(Error::parameter("orient", degrees, "a finite number of degrees"));
             }
             Some(FieldSource::File(source)) => {
-                let field = self.orientation(&source.file, bounds)?;
                 let file = self.embedded(&source.file)?;
+                let field = self.orientation(&file, bounds)?;
                 self.recipe.orient = Some(FieldSource::File(FieldFile { file, ..source }));
                 Some(field)
             }
@@ -289,12 +315,12 @@ impl Preparation<'_> {
     }
 
     /// The areas to keep free: those given, else the layer Avoid of the exemplar.
-    fn avoided(&mut self, drawing: &Drawing, domain: &Domain<2>) -> Result<Vec<Outline<2>>> {
+    fn avoided(&mut self, drawing: &Drawing, is_points: bool, domain: &Domain<2>) -> Result<Vec<Outline<2>>> {
         let mut outlines = Vec::new();
         for k in 0..self.recipe.avoid.len() {
-            let input = self.recipe.avoid[k].clone();
-            outlines.push(self.shape(&input, drawing, false)?.0);
-            self.recipe.avoid[k] = self.embedded(&input)?;
+            let input = self.embedded(&self.recipe.avoid[k])?;
+            outlines.push(self.shape(&input, drawing, is_points)?.0);
+            self.recipe.avoid[k] = input;
         }
         if self.recipe.avoid.is_empty() {
             outlines.extend(drawing.job.avoid.clone());
@@ -319,9 +345,17 @@ impl Preparation<'_> {
                 advice: "give an SVG exemplar".into(),
             });
         }
+        let input = self.embedded(&input)?;
         let mut placed = svg::read_placed(&self.text(&input)?, drawing, &self.options(&input))?;
         self.warnings.append(&mut placed.warnings);
-        self.recipe.keep = Some(self.embedded(&input)?);
+        let units = pixels_per_user(&placed.page) / pixels_per_user(&drawing.page);
+        if (units - 1.0).abs() > 1e-6 {
+            self.warnings.push(Warning::new(
+                format!("{}: one unit of it is {units:.4} units of the exemplar, and is taken for one", input.name()),
+                "draw what is kept in the units of the exemplar",
+            ));
+        }
+        self.recipe.keep = Some(input);
         Ok(Some(placed))
     }
 }
@@ -345,20 +379,5 @@ impl Prepared {
     /// Number of elements and of classes of the exemplar.
     pub fn exemplar_size(&self) -> (usize, usize) {
         (self.drawing.exemplar.elements.len(), self.drawing.exemplar.classes.len())
-    }
-
-    /// The outlines of placements as they would be drawn, for previews.
-    pub fn outlines(&self, placements: &[Placement<2>]) -> Vec<Outline<2>> {
-        placements.iter().map(|p| self.drawing.exemplar.elements[p.source].outline.transformed(&p.transform)).collect()
-    }
-
-    /// Whether elements are cut at the border when they are drawn.
-    pub fn clips(&self) -> bool {
-        self.request.border == Border::Clip
-    }
-
-    /// The page of the result: its lower and upper corner, in user units.
-    pub fn view(&self) -> (Vector<2>, Vector<2>) {
-        (self.page.view.min, self.page.view.max)
     }
 }

@@ -44,6 +44,14 @@ fn a_moved_result_needs_no_other_file() {
 }
 
 #[test]
+fn another_version_is_told() {
+    let folder = Folder::new();
+    folder.write("old.toml", "arabesque = \"0.0.1\"\nexemplar = \"leaves.svg\"\nsize = \"80x80\"\n");
+    let output = folder.ok("run old.toml -o a.svg");
+    assert!(common::stderr(&output).contains("version 0.0.1"), "{}", common::stderr(&output));
+}
+
+#[test]
 fn a_recipe_makes_the_same_in_any_format() {
     let folder = Folder::new();
     folder.ok("fill leaves.svg --size 90x90 --seed 2 -o job.toml");

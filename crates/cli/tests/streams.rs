@@ -52,6 +52,21 @@ fn dash_is_standard_input() {
 }
 
 #[test]
+fn a_shape_may_come_from_standard_input() {
+    let folder = Folder::new();
+    let mut child = folder
+        .command("fill leaves.svg --domain - -o a.svg")
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(common::ring().as_bytes()).unwrap();
+    assert!(child.wait().unwrap().success());
+    folder.ok("run a.svg -o b.svg");
+    assert_eq!(folder.read("a.svg"), folder.read("b.svg"));
+}
+
+#[test]
 fn the_summary_is_one_json_object() {
     let folder = Folder::new();
     let output = folder.ok("fill leaves.svg --size 80x80 -o a.svg --json --quiet");

@@ -265,9 +265,10 @@ impl<'a> Writer<'a> {
         let Some(kept) = self.sheet.kept.filter(|k| !k.obstacle_fragments.is_empty()) else { return };
         let _ =
             writeln!(self.out, "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept\" id=\"{}-kept\">", self.prefix);
-        for fragment in &kept.obstacle_fragments {
-            self.out.push_str(&fragment.markup);
-            self.out.push('\n');
+        for (fragment, outline) in kept.obstacle_fragments.iter().zip(&kept.obstacles) {
+            for shift in self.shifts(&outline.bounds()) {
+                let _ = writeln!(self.out, "<g{}>{}</g>", self.shifted(shift), fragment.markup);
+            }
         }
         self.out.push_str("</g>\n");
     }
@@ -297,11 +298,18 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The shifts under which a placement is seen: one, or on a torus one for every tile that it reaches into.
+    /// The shifts under which a placement is seen.
     fn copies(&self, placement: &Placement<2>) -> Vec<Vector<2>> {
-        let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
+        if !matches!(self.sheet.domain, Domain::Torus(_)) {
+            return vec![Vector::ZERO];
+        }
         let outline = &self.sheet.drawing.exemplar.elements[placement.source].outline;
-        let bounds = Bounds::around(outline.points().map(|p| placement.transform.apply(p)));
+        self.shifts(&Bounds::around(outline.points().map(|p| placement.transform.apply(p))))
+    }
+
+    /// The shifts under which a box is seen: none, or on a torus one for every tile that it reaches into.
+    fn shifts(&self, bounds: &Bounds<2>) -> Vec<Vector<2>> {
+        let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
         if bounds.is_empty() {
             return vec![Vector::ZERO];
         }

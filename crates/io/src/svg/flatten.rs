@@ -27,8 +27,30 @@ pub(super) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
             }
             Outline { rings: vec![ring] }
         }
+        _ if rings.iter().any(|ring| is_thin(ring)) => {
+            let thick: Vec<_> = rings.iter().filter(|ring| !is_thin(ring)).cloned().collect();
+            Outline::union(&thick, rule)
+        }
         _ => Outline::union(rings, rule),
     }
+}
+
+/// Whether all points lie on a line but for rounding: such rings enclose nothing, and cost a union dearly.
+fn is_thin(ring: &[Vector<2>]) -> bool {
+    let n = ring.len().max(1) as f64;
+    let mean = ring.iter().fold(Vector::ZERO, |sum, &p| sum + p) * (1.0 / n);
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for &p in ring {
+        let d = p - mean;
+        xx += d[0] * d[0];
+        xy += d[0] * d[1];
+        yy += d[1] * d[1];
+    }
+    let half = 0.5 * (xx + yy);
+    let along = half + (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
+    // The product of the two principal moments is the determinant; the smaller one itself would be lost in rounding.
+    let across = (xx * yy - xy * xy) / along.max(f64::MIN_POSITIVE);
+    across <= 1e-14 * along
 }
 
 /// Whether a ring turns one way all along, once around: then it cannot cross itself.

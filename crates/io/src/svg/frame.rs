@@ -8,22 +8,28 @@ use super::item::Item;
 const CUT: f64 = 0.15;
 /// How far from the frame a cut may be, as a share of the diagonal of the element.
 const NEAR: f64 = 0.002;
+/// The same two for edges that lie on the frame as exactly as numbers are written: no whole element has such edges by chance.
+const EXACT_CUT: f64 = 0.03;
+const EXACTLY_NEAR: f64 = 1e-5;
 
-/// Whether an element is whole, or cut at the frame by the file.
-pub(super) fn role(item: &Item, frame: &Bounds<2>) -> Role {
-    if item.is_cut || is_cut_along(&item.outline, frame) { Role::Context } else { Role::Source }
+/// Whether an element is whole, or cut by a clip or at the frame; `frame` is `None` where the file states none.
+pub(super) fn role(item: &Item, frame: Option<&Bounds<2>>) -> Role {
+    let is_cut = item.is_cut || frame.is_some_and(|frame| is_cut_along(&item.outline, frame));
+    if is_cut { Role::Context } else { Role::Source }
 }
 
 /// Whether a good part of the outline runs exactly along a side of the frame and nothing reaches over that side.
 fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
     let extent = outline.bounds();
     let diagonal = extent.size().norm();
-    let near = NEAR * diagonal;
-    let sides = (0..2).flat_map(|k| [(k, frame.min[k], extent.min[k]), (k, frame.max[k], extent.max[k])]);
-    sides.filter(|(_, side, reach)| (side - reach).abs() <= near).any(|(k, side, _)| {
-        let on_side = |v: f64| (v - side).abs() <= near;
+    let length = |k: usize, side: f64, near: f64| -> f64 {
+        let on_side = |v: f64| (v - side).abs() <= near * diagonal;
         let along = outline.edges().filter(|(a, b)| on_side(a[k]) && on_side(b[k]));
-        along.map(|(a, b)| (a[1 - k] - b[1 - k]).abs()).sum::<f64>() >= CUT * diagonal
+        along.map(|(a, b)| (a[1 - k] - b[1 - k]).abs()).sum()
+    };
+    let sides = (0..2).flat_map(|k| [(k, frame.min[k], extent.min[k]), (k, frame.max[k], extent.max[k])]);
+    sides.filter(|(_, side, reach)| (side - reach).abs() <= NEAR * diagonal).any(|(k, side, _)| {
+        length(k, side, NEAR) >= CUT * diagonal || length(k, side, EXACTLY_NEAR) >= EXACT_CUT * diagonal
     })
 }
 
@@ -61,6 +67,7 @@ mod tests {
         assert!(is_cut(&arc(0.0, half)));
         let disc: Vec<_> = arc(0.0, 2.0 * half).iter().map(|(x, y)| (x + 1.0, *y)).collect();
         assert!(!is_cut(&disc));
+        assert!(is_cut(&[(2.0, 0.0), (3.0, 0.0), (5.0, 9.0), (1.0, 9.0)]), "only the tip is cut off");
         let over: Vec<_> = arc(0.0, 2.0 * half);
         assert!(!is_cut(&over));
     }

@@ -133,6 +133,9 @@ impl<'a, 's> Inker<'a, 's> {
 
     fn shape(&self, node: &Node, geometry: &Geometry, world: Affine, ink: &mut Ink) -> Result<()> {
         self.check(node, geometry, world)?;
+        if flattens(world) {
+            return Ok(());
+        }
         if geometry.paint == Painted::Picture {
             ink.add(filled(&geometry.path, world, FillRule::NonZero), [0.5; 3]);
             return Ok(());
@@ -224,7 +227,7 @@ impl<'a, 's> Inker<'a, 's> {
 
     fn clip_rings(&self, node: &Node, parent: Affine, rings: &mut Vec<Ring<2>>) -> Result<()> {
         let world = parent * node.transform;
-        if let Content::Shape(geometry) = &node.content {
+        if let (Content::Shape(geometry), false) = (&node.content, flattens(world)) {
             self.check(node, geometry, world)?;
             rings.extend(filled(&geometry.path, world, fill_rule(node.style.get(P::ClipRule))).rings);
         }
@@ -246,6 +249,13 @@ impl<'a, 's> Inker<'a, 's> {
         self.clips.borrow_mut().insert(id.to_owned(), node.clone());
         Ok(node)
     }
+}
+
+/// Whether a transform presses everything onto a line or a point: then nothing is drawn.
+fn flattens(transform: Affine) -> bool {
+    let [a, b, c, d, ..] = transform.as_coeffs();
+    let sound = transform.determinant().abs() > 1e-9 * (a * a + b * b + c * c + d * d);
+    !sound
 }
 
 /// Box around the shapes of a node, strokes left out, in its own coordinates.

@@ -38,7 +38,7 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
         settle(source, &mut found.items, window, options.method)?;
         let job = area::job(&inker, &root)?;
-        let (elements, classes) = elements(source, &found.items, &window);
+        let (elements, classes) = elements(source, &found.items, scope.window.as_ref());
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
@@ -212,7 +212,7 @@ fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
     Error::input(source.name, format!("no element found{why}"), advice)
 }
 
-fn elements(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> (Vec<Element<2>>, Classes) {
+fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> (Vec<Element<2>>, Classes) {
     let roles: Vec<Role> = items.iter().map(|item| frame::role(item, window)).collect();
     let cut = roles.iter().filter(|r| **r == Role::Context).count();
     (0..cut).for_each(|_| source.notes.add(Note::Cut, String::new));

@@ -141,6 +141,32 @@ fn gradients_and_clips_come_along_under_new_ids() {
 }
 
 #[test]
+fn patterns_masks_and_filters_come_along_with_what_they_refer_to() {
+    let d = read(
+        "<defs><circle id='spot' r='1' fill='red'/><pattern id='p' width='10%' height='4' patternUnits='userSpaceOnUse'>
+          <use href='#spot' x='2' y='2'/></pattern><pattern id='q' xlink:href='#p' patternTransform='rotate(9)'/>
+          <mask id='m'><rect width='50' height='50' style='fill:white'/></mask>
+          <filter id='f'><feGaussianBlur stdDeviation='1'/></filter></defs>
+        <g mask='url(#m)' filter='url(#f)'><rect x='10' y='10' width='20' height='20' fill='url(#q)'/></g>
+        <rect x='70' y='70' width='20' height='20' fill='url(#gone) lime'/>",
+    );
+    for part in
+        ["id=\"exemplar-q\" ", "width=\"10\"", "rotate(9)", "id=\"exemplar-spot\"", "<feGaussianBlur stdDeviation"]
+    {
+        assert!(d.definitions.contains(part), "{part} in {}", d.definitions);
+    }
+    assert!(d.fragments[0].markup.contains("mask=\"url(#exemplar-m)\""));
+    assert!(d.fragments[1].markup.contains("fill=\"#00ff00\""), "{}", d.fragments[1].markup);
+    assert!(warns(&d, "does not exist"));
+}
+
+#[test]
+fn what_a_transform_presses_onto_a_line_is_not_drawn() {
+    let d = read(&format!("{DOTS}<rect width='9' height='9' stroke='red' transform='matrix(0 0 6 -1 0 90)'/>"));
+    assert_eq!(d.exemplar.elements.len(), 6);
+}
+
+#[test]
 fn physical_units_are_kept() {
     let body = "<rect x='1' y='1' width='150' height='9'/><rect width='9' height='250' x='100' y='20'/>";
     let text = format!("<svg {NAMESPACES} width='210mm' height='297mm' viewBox='0 0 210 297'>{body}</svg>");

@@ -62,5 +62,5 @@ pub(crate) fn mend<const D: usize>(
     }
     let summary = clearance::repair(limits, request, placements);
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
-    summary.warning().into_iter().collect()
+    summary.warning(placements.len()).into_iter().collect()
 }

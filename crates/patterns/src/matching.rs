@@ -14,6 +14,9 @@ use crate::{
     params::Matching,
 };
 
+/// Cost of a sample that hard matching leaves without a partner, in squared outlier distances.
+const LEFT_OVER: f32 = 4.0;
+
 /// A neighbour of an output sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const D: usize> {
@@ -58,20 +61,11 @@ pub(crate) struct Matcher<'a, const D: usize> {
     missing: f32,
     assignment: Assignment,
     used: Vec<bool>,
-    matrix: Vec<f32>,
 }
 
 impl<'a, const D: usize> Matcher<'a, D> {
     pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, missing: f32) -> Self {
-        Self {
-            level,
-            library,
-            matching,
-            missing,
-            assignment: Assignment::default(),
-            used: Vec::new(),
-            matrix: Vec::new(),
-        }
+        Self { level, library, matching, missing, assignment: Assignment::default(), used: Vec::new() }
     }
 
     /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
@@ -87,7 +81,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             .distance2(&self.library.feature[self.level.element[i as usize] as usize]);
         let pairs = match self.matching {
             Matching::Robust => self.robust(around, i, limit - centre),
-            Matching::Hard => self.hard(around, i),
+            Matching::Hard => self.hard(around, i, limit - centre),
         };
         let cost = centre + pairs;
         if cost > limit || self.matching == Matching::Hard {
@@ -124,27 +118,33 @@ impl<'a, const D: usize> Matcher<'a, D> {
         self.assignment.settle()
     }
 
-    fn hard(&mut self, around: &Surroundings<D>, i: u32) -> f32 {
+    fn hard(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
         let (level, library) = (self.level, self.library);
         let near = level.neighbours(i);
-        self.matrix.clear();
-        self.matrix.resize(around.rows.len() * near.len(), f32::INFINITY);
-        for (r, row) in around.rows.iter().enumerate() {
+        self.assignment.begin(near.len());
+        let mut bound = 0.0;
+        for row in &around.rows {
+            // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
+            let mut least = LEFT_OVER * level.outlier2[row.key as usize];
             let feature = &library.feature[row.source as usize];
+            let offset = row.offset.0.map(|v| v as f32);
+            self.assignment.begin_row(f32::INFINITY);
             for column in level.neighbours_of_key(i, row.key) {
                 let other = &near[column];
-                let d2: f32 = (0..D).map(|k| (row.offset[k] as f32 - other.offset[k]).powi(2)).sum();
+                let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
                 let d2 = d2 + feature.distance2(&library.feature[level.element[other.sample as usize] as usize]);
-                self.matrix[r * near.len() + column] = d2;
+                self.assignment.pair(column as u32, d2);
+                least = least.min(d2);
+            }
+            self.assignment.end_row();
+            bound += least;
+            if bound > limit {
+                return f32::INFINITY;
             }
         }
-        let total = self.assignment.greedy(around.rows.len(), near.len(), &self.matrix);
-        // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
-        let alone: f32 = (around.rows.iter().zip(self.assignment.column_of()))
-            .filter(|(_, column)| **column == OUTLIER)
-            .map(|(row, _)| 4.0 * level.outlier2[row.key as usize])
-            .sum();
-        total + alone
+        let total = self.assignment.settle_greedily();
+        let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| **column == OUTLIER);
+        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key as usize]).sum::<f32>()
     }
 
     fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
@@ -177,7 +177,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
     ) -> Correspondence {
         match self.matching {
             Matching::Robust => self.robust(around, i, f32::INFINITY),
-            Matching::Hard => self.hard(around, i),
+            Matching::Hard => self.hard(around, i, f32::INFINITY),
         };
         let near = self.level.neighbours(i);
         let columns = self.assignment.column_of().iter().enumerate();

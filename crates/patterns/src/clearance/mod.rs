@@ -21,6 +21,9 @@ use arabesque_core::{Domain, Exemplar, Placement, Request, Warning};
 pub(crate) use limits::ExemplarClearance;
 use scene::Scene;
 
+/// Share of the elements whose exchange or removal is nothing to speak of.
+const NORMAL: f64 = 0.02;
+
 /// What a repair did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Summary {
@@ -37,9 +40,9 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// What the user should know: `None` when shifts were enough.
-    pub(crate) fn warning(&self) -> Option<Warning> {
-        if self.removed + self.exchanged == 0 {
+    /// What the user should know about a repair of so many elements: `None` when shifts were nearly always enough.
+    pub(crate) fn warning(&self, elements: usize) -> Option<Warning> {
+        if (self.removed + self.exchanged) as f64 <= NORMAL * elements as f64 {
             return None;
         }
         let Self { pairs, outside, removed, exchanged, .. } = self;

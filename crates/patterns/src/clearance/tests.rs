@@ -204,7 +204,7 @@ fn a_crowd_loses_as_few_as_it_must() {
     assert_eq!(mended.len() + summary.removed, 9);
     assert_eq!(mended.len(), 4);
     assert_eq!(ratio(&e, &mended, &request), 0.0);
-    assert!(summary.warning().unwrap().message.contains("5 left out"));
+    assert!(summary.warning(10).unwrap().message.contains("5 left out"));
 }
 
 #[test]

@@ -6,6 +6,9 @@ use kurbo::{Affine, BezPath, PathEl};
 /// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
 pub(super) const DEVIATION: f64 = 0.002;
 
+/// Smallest deviation that is asked for, in user units: less would only count digits.
+pub(super) const FINEST: f64 = 1e-10;
+
 /// The fill rule of that name.
 pub(super) fn fill_rule(name: &str) -> FillRule {
     if name == "evenodd" { FillRule::EvenOdd } else { FillRule::NonZero }
@@ -82,7 +85,7 @@ pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
 pub(super) fn flattened(elements: &[PathEl]) -> Ring<2> {
     let mut points: Ring<2> = Vec::new();
     let extent = control_box(elements);
-    let tolerance = (DEVIATION * extent.width().hypot(extent.height())).max(f64::MIN_POSITIVE);
+    let tolerance = (DEVIATION * extent.width().hypot(extent.height())).max(FINEST);
     kurbo::flatten(elements.iter().copied(), tolerance, |element| {
         if let PathEl::MoveTo(p) | PathEl::LineTo(p) = element {
             let p = Vector::xy(p.x, p.y);

@@ -46,6 +46,9 @@ impl Geometry {
     }
 }
 
+/// Largest coordinate of a shape before any transform: beyond it, squares run out of numbers.
+const LARGEST: f64 = 1e30;
+
 /// Whether an element of this name is a shape that [`read`] knows.
 pub(super) fn is_shape(name: &str) -> bool {
     matches!(name, "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" | "image")
@@ -66,8 +69,9 @@ pub(super) fn read(source: &Source<'_>, node: Xml<'_, '_>, viewport: Viewport) -
     };
     let Some(geometry) = geometry else { return Ok(None) };
     source.count_segments(geometry.path.elements().len())?;
-    if !geometry.path.is_finite() {
-        return Err(reader.wrong("a coordinate is no finite number"));
+    let extent = geometry.path.control_box();
+    if ![extent.x0, extent.y0, extent.x1, extent.y1].iter().all(|v| v.abs() <= LARGEST) {
+        return Err(reader.wrong("a coordinate is no sensible number"));
     }
     Ok(Some(geometry))
 }

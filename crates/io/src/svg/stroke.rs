@@ -4,7 +4,7 @@ use arabesque_core::{FillRule, Outline};
 use kurbo::{Affine, BezPath, Cap, Join, PathEl, Shape as _, Stroke, StrokeOpts};
 
 use super::{
-    flatten::{DEVIATION, control_box, covered, rings},
+    flatten::{DEVIATION, FINEST, control_box, covered, rings},
     scene::Node,
     style::{Property as P, Style},
 };
@@ -29,7 +29,7 @@ pub(super) fn stroked(node: &Node, path: &BezPath, world: Affine) -> Outline<2> 
     let fixed = node.own.get("vector-effect") == Some("non-scaling-stroke") && scale > 0.0;
     let (path, world) = if fixed { (world * path.clone(), Affine::IDENTITY) } else { (path.clone(), world) };
     let extent = path.control_box();
-    let tolerance = (DEVIATION * (extent.width().hypot(extent.height()) + width)).min(0.1 * width);
+    let tolerance = (DEVIATION * (extent.width().hypot(extent.height()) + width)).min(0.1 * width).max(FINEST);
     let pen = pen(style, width, &path);
     let mut outline = BezPath::new();
     for elements in path.subpaths() {

@@ -1,6 +1,7 @@
 //! Position assignment: where the matched neighbourhoods say that samples should be [Ma 2011 eqs 3, 4; Tu 2020 eqs 14, 15].
 
 use arabesque_core::Vector;
+use rayon::prelude::*;
 
 use crate::{
     level::fall_off,
@@ -45,29 +46,28 @@ fn is_frozen<const D: usize>(state: &State<'_, D>, s: u32) -> bool {
 
 /// Predictions as differences from the present offsets, since the unknowns are displacements.
 fn predictions<const D: usize>(state: &State<'_, D>, slot_of: &[u32]) -> Vec<Prediction<D>> {
-    let mut list = Vec::new();
-    for &s in &state.living {
-        let sample = &state.samples[s as usize];
-        let Some(matched) = &sample.matched else { continue };
-        let frame = state.request.fields.frame(sample.position);
-        let trust = 1.0 / (1.0 + DISCOUNT * matched.energy());
-        let origin = state.level.position[matched.input as usize];
-        for &(o, i) in &matched.pairs {
-            let to = slot_of[o as usize];
-            if to == u32::MAX {
-                continue;
-            }
-            let offset = state.level.position[i as usize] - origin;
-            let present = state.domain().offset(sample.position, state.samples[o as usize].position);
-            list.push(Prediction {
-                from: slot_of[s as usize],
-                to,
-                offset: frame.to_output(offset) - present,
-                weight: trust * f64::from(fall_off(offset, state.level.radius)),
-            });
+    state.living.par_iter().flat_map_iter(|&s| predictions_of(state, slot_of, s)).collect()
+}
+
+/// What the match of sample `s` says about its neighbours.
+fn predictions_of<const D: usize>(state: &State<'_, D>, slot_of: &[u32], s: u32) -> Vec<Prediction<D>> {
+    let sample = &state.samples[s as usize];
+    let Some(matched) = &sample.matched else { return Vec::new() };
+    let frame = state.request.fields.frame(sample.position);
+    let trust = 1.0 / (1.0 + DISCOUNT * matched.energy());
+    let origin = state.level.position[matched.input as usize];
+    let living = matched.pairs.iter().filter(|(o, _)| slot_of[*o as usize] != u32::MAX);
+    let one = |&(o, i): &(u32, u32)| {
+        let offset = state.level.position[i as usize] - origin;
+        let present = state.domain().offset(sample.position, state.samples[o as usize].position);
+        Prediction {
+            from: slot_of[s as usize],
+            to: slot_of[o as usize],
+            offset: frame.to_output(offset) - present,
+            weight: trust * f64::from(fall_off(offset, state.level.radius)),
         }
-    }
-    list
+    };
+    living.map(one).collect()
 }
 
 /// The pin of a sample and, outside the domain, the pull back.

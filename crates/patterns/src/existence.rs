@@ -5,6 +5,8 @@
 
 use arabesque_core::{Matrix, Vector};
 
+use rayon::prelude::*;
+
 use crate::{buckets::Buckets, canvas::Item, state::State};
 
 /// Confidence from which an element exists.
@@ -90,24 +92,25 @@ fn confidences<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
 
 /// Of each pair of elements that are closer than any such pair of the exemplar, the one with the smaller confidence.
 fn crowded<const D: usize>(state: &State<'_, D>, confidence: &[f64]) -> Vec<u32> {
-    let mut losers = Vec::new();
-    for &s in state.living.iter().filter(|&&s| state.samples[s as usize].part == 0) {
-        let i = state.samples[s as usize].item;
-        let live = &state.items[i as usize];
-        let class = state.library.class[live.item.source as usize];
-        let scale = CROWDED * state.request.fields.frame(live.item.position).spacing_scale;
-        state.index.within(state.samples[s as usize].position, scale * state.library.widest(class), |slot, _| {
-            let j = state.samples[state.living[slot] as usize].item;
-            let other = &state.items[j as usize];
-            let least = scale * state.library.closest(class, state.library.class[other.item.source as usize]);
-            let close = state.domain().offset(live.item.position, other.item.position).norm() < least;
-            if j != i && close && (confidence[i as usize], i) < (confidence[j as usize], j) {
-                losers.push(i);
-            }
-        });
-    }
-    losers.dedup();
-    losers
+    let firsts = state.living.par_iter().filter(|&&s| state.samples[s as usize].part == 0);
+    firsts.filter_map(|&s| loses(state, confidence, s)).collect()
+}
+
+/// The item of sample `s`, if it crowds one of larger confidence.
+fn loses<const D: usize>(state: &State<'_, D>, confidence: &[f64], s: u32) -> Option<u32> {
+    let i = state.samples[s as usize].item;
+    let live = &state.items[i as usize];
+    let class = state.library.class[live.item.source as usize];
+    let scale = CROWDED * state.request.fields.frame(live.item.position).spacing_scale;
+    let mut crowded = false;
+    state.index.within(state.samples[s as usize].position, scale * state.library.widest(class), |slot, _| {
+        let j = state.samples[state.living[slot] as usize].item;
+        let other = &state.items[j as usize];
+        let least = scale * state.library.closest(class, state.library.class[other.item.source as usize]);
+        let close = state.domain().offset(live.item.position, other.item.position).norm() < least;
+        crowded |= j != i && close && (confidence[i as usize], i) < (confidence[j as usize], j);
+    });
+    crowded.then_some(i)
 }
 
 /// Makes the neighbours of the dead search again.

@@ -166,15 +166,12 @@ impl<'a, const D: usize> Grower<'a, D> {
             return None;
         }
         let view = View::new(self, site, frame, canvas, coverage);
-        let mut best: Option<(f64, Vector<D>)> = None;
-        for centre in view.candidates(self.params.anchors, random) {
-            let noise = NOISE * random.unit();
-            let cost = view.cost(centre) + noise;
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, centre));
-            }
-        }
-        let (_, centre) = best?;
+        let candidates: Vec<_> =
+            view.candidates(self.params.anchors, random).into_iter().map(|c| (c, NOISE * random.unit())).collect();
+        // Also in parallel within a site: at seams and in holes there are few sites at a time.
+        let costs: Vec<f64> = candidates.par_iter().with_min_len(16).map(|(c, noise)| view.cost(*c) + noise).collect();
+        let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
+        let centre = candidates[best].0;
         let centre = view.registered(centre);
         Some(Patch { site, centre, elements: view.additions(centre) })
     }

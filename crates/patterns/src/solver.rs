@@ -34,6 +34,9 @@ pub(crate) struct NormalEquations<const D: usize> {
 /// Unknowns handled as one piece of parallel work; sums are taken piece by piece, so that they do not depend on the number of threads.
 const PIECE: usize = 4096;
 
+/// Fewest rows worth a piece of parallel work of their own.
+const ROWS: usize = 512;
+
 impl<const D: usize> NormalEquations<D> {
     /// Equations for `n` displacements; `pulls[i]` belongs to unknown `i`, unknowns with `fixed[i]` stay at zero.
     pub(crate) fn new(predictions: &[Prediction<D>], pulls: &[Pull<D>], fixed: Vec<bool>) -> Self {
@@ -72,7 +75,7 @@ impl<const D: usize> NormalEquations<D> {
 
     fn residual(&self, x: &[Vector<D>]) -> Vec<Vector<D>> {
         let one = |i: usize| if self.fixed[i] { Vector::ZERO } else { self.right[i] - self.row(i, x) };
-        (0..x.len()).into_par_iter().with_min_len(PIECE).map(one).collect()
+        (0..x.len()).into_par_iter().with_min_len(ROWS).map(one).collect()
     }
 
     /// Solves by conjugate gradients with the diagonal as preconditioner, from zero, until the residual is `tolerance` of the start or after
@@ -89,26 +92,28 @@ impl<const D: usize> NormalEquations<D> {
             if rz <= stop || rz <= f64::MIN_POSITIVE {
                 break;
             }
-            let q: Vec<_> = (0..n).into_par_iter().with_min_len(PIECE).map(|i| self.row(i, &p)).collect();
+            let q: Vec<_> = (0..n).into_par_iter().with_min_len(ROWS).map(|i| self.row(i, &p)).collect();
             let alpha = rz / dot(&p, &q).max(f64::MIN_POSITIVE);
-            for i in 0..n {
-                x[i] += p[i] * alpha;
-                r[i] -= q[i] * alpha;
-            }
+            add_scaled(&mut x, &p, alpha);
+            add_scaled(&mut r, &q, -alpha);
             z = self.preconditioned(&r);
             let next = dot(&r, &z);
             let beta = next / rz;
             rz = next;
-            for i in 0..n {
-                p[i] = z[i] + p[i] * beta;
-            }
+            p.par_iter_mut().with_min_len(ROWS).zip(&z).for_each(|(p, &z)| *p = z + *p * beta);
         }
         x
     }
 
     fn preconditioned(&self, r: &[Vector<D>]) -> Vec<Vector<D>> {
-        r.iter().zip(&self.diagonal).map(|(&v, &d)| v * (1.0 / d.max(f64::MIN_POSITIVE))).collect()
+        let scaled = |(&v, &d): (&Vector<D>, &f64)| v * (1.0 / d.max(f64::MIN_POSITIVE));
+        r.par_iter().with_min_len(ROWS).zip(&self.diagonal).map(scaled).collect()
     }
+}
+
+/// `x += y * factor`, entry by entry.
+fn add_scaled<const D: usize>(x: &mut [Vector<D>], y: &[Vector<D>], factor: f64) {
+    x.par_iter_mut().with_min_len(ROWS).zip(y).for_each(|(x, &y)| *x += y * factor);
 }
 
 fn dot<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {

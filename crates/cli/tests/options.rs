@@ -296,9 +296,10 @@ fn a_file_can_be_a_whole_job() {
 #[test]
 fn a_time_limit_is_told() {
     let folder = Folder::new();
-    let output = folder.ok("fill points.csv --size 8x8 --iterations 400 --time-limit 1s -o a.csv");
+    // Too short for any machine: the run stops at its first report.
+    let output = folder.ok("fill points.csv --size 8x8 --time-limit 0.000001s -o a.csv");
     assert!(stderr(&output).contains("stopped early (time limit)"), "{}", stderr(&output));
-    assert!(folder.text("a.csv").lines().count() > 100);
+    assert!(folder.text("a.csv").lines().count() > 2);
 }
 
 #[test]

@@ -98,6 +98,8 @@ impl<const D: usize> Domain<D> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -113,5 +115,25 @@ mod tests {
         assert_eq!(d.nearest_inside(Vector::xy(5.0, 1.0)), Vector::xy(4.0, 1.0));
         assert!((d.signed_distance(Vector::xy(7.0, 6.0)) + 5.0).abs() < 1e-12);
         assert_eq!(d.signed_distance(Vector::xy(1.0, 1.0)), 1.0);
+    }
+
+    fn plane() -> impl Strategy<Value = Vector<2>> {
+        (-1e3..1e3, -1e3..1e3).prop_map(|(x, y)| Vector::xy(x, y))
+    }
+
+    proptest! {
+        #[test]
+        fn a_torus_knows_no_inside(a in plane(), b in plane(), w in 0.5..50.0, h in 0.5..50.0, i in -5..5, j in -5..5) {
+            let size = Vector::xy(w, h);
+            let d = Domain::Torus(Bounds::new(Vector::xy(-1.0, 2.0), Vector::xy(-1.0, 2.0) + size));
+            let there = d.offset(a, b);
+            // The same way back, never longer than half around, and the same for every copy of the points.
+            prop_assert!((there + d.offset(b, a)).zip(size, |s, l| (s / l).round() * l - s).norm() < 1e-9);
+            prop_assert!(there[0].abs() <= 0.5 * w + 1e-9 && there[1].abs() <= 0.5 * h + 1e-9);
+            let copy = b + Vector::xy(w * f64::from(i), h * f64::from(j));
+            prop_assert!(d.offset(b, copy).norm() < 1e-9 && d.offset(d.wrap(copy), b).norm() < 1e-9);
+            prop_assert!(d.bounds().contains(d.wrap(a)));
+            prop_assert!(d.offset(d.wrap(d.wrap(a)), a).norm() < 1e-9);
+        }
     }
 }

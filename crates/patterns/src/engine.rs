@@ -16,6 +16,7 @@ use crate::{
     layout::{Items, Layout},
     level::Level,
     library::Library,
+    matching::Prices,
     params::{Attributes, Existence, Initialisation, Matching, Params, Search},
     positions,
     samples::ElementSamples,
@@ -273,7 +274,7 @@ impl<const D: usize> Run<'_, D> {
         SearchParams {
             search: params.search,
             matching: params.matching,
-            missing: params.missing as f32,
+            prices: Prices { missing: params.missing as f32, outside: params.boundary as f32 },
             coherence: params.coherence,
             random: if iteration == 0 { 8 } else { 2 },
             rounds: match (params.search, iteration) {

@@ -9,7 +9,7 @@ use arabesque_core::Vector;
 
 use crate::{
     assignment::{Assignment, OUTLIER},
-    level::Level,
+    level::{Level, Near},
     library::Library,
     params::Matching,
 };
@@ -52,20 +52,28 @@ pub(crate) struct Correspondence {
     pub(crate) missing: Vec<u32>,
 }
 
+/// What is charged besides the pairs, relative to the cost of a surplus sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prices {
+    /// An exemplar sample inside the radius without a partner.
+    pub(crate) missing: f32,
+    /// An exemplar sample inside the radius that would come to lie outside the domain [Ma 2011 §5, eq. 6].
+    pub(crate) outside: f32,
+}
+
 /// Compares neighbourhoods; keeps its buffers between calls.
 pub(crate) struct Matcher<'a, const D: usize> {
     level: &'a Level<D>,
     library: &'a Library<D>,
     matching: Matching,
-    /// Cost of a missing sample relative to that of a surplus one.
-    missing: f32,
+    prices: Prices,
     assignment: Assignment,
     used: Vec<bool>,
 }
 
 impl<'a, const D: usize> Matcher<'a, D> {
-    pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, missing: f32) -> Self {
-        Self { level, library, matching, missing, assignment: Assignment::default(), used: Vec::new() }
+    pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, prices: Prices) -> Self {
+        Self { level, library, matching, prices, assignment: Assignment::default(), used: Vec::new() }
     }
 
     /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
@@ -84,10 +92,10 @@ impl<'a, const D: usize> Matcher<'a, D> {
             Matching::Hard => self.hard(around, i, limit - centre),
         };
         let cost = centre + pairs;
-        if cost > limit || self.matching == Matching::Hard {
+        if cost > limit {
             return cost;
         }
-        cost + self.missing_cost(i, wanted)
+        cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted)
     }
 
     fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
@@ -148,6 +156,9 @@ impl<'a, const D: usize> Matcher<'a, D> {
     }
 
     fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
+        if self.prices.missing == 0.0 || self.matching == Matching::Hard {
+            return 0.0;
+        }
         let near = self.level.neighbours(i);
         self.mark_used(near.len());
         let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
@@ -155,7 +166,18 @@ impl<'a, const D: usize> Matcher<'a, D> {
             .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
             .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize])
             .sum();
-        self.missing * sum
+        self.prices.missing * sum
+    }
+
+    fn outside_cost(&self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
+        if self.prices.outside == 0.0 {
+            return 0.0;
+        }
+        let near = self.level.neighbours(i).iter().filter(|other| other.weight > 0.0);
+        let outside = near.filter(|other| !wanted(Vector(other.offset.map(f64::from))));
+        let price =
+            |other: &Near<D>| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize];
+        self.prices.outside * outside.map(price).sum::<f32>()
     }
 
     fn mark_used(&mut self, columns: usize) {

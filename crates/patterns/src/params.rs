@@ -135,6 +135,9 @@ pub struct Params {
     pub coherence: usize,
     /// Cost of a missing element relative to that of a surplus one, 0 to 10; 0 as in the papers. Default: 1.
     pub missing: f64,
+    /// Cost of an exemplar neighbourhood that would reach out of the domain, per element outside relative to a surplus one, 0 to 10: where
+    /// elements of the exemplar keep to its border, they will keep to that of the domain [Ma 2011 eq. 6]. Default: 0.
+    pub boundary: f64,
     /// Elements in a patch of the first layout, 1 to 1000. Default: 14.
     pub patch: f64,
     /// Largest radius of such a patch, relative to the shorter side of the exemplar, 0.01 to 1: keeps copies short. Default: 0.22.
@@ -163,6 +166,7 @@ impl Default for Params {
             samples: None,
             coherence: 4,
             missing: 1.0,
+            boundary: 0.0,
             patch: 14.0,
             patch_share: 0.22,
             novelty: 0.6,
@@ -324,6 +328,14 @@ const KNOBS: &[Knob] = &[
         f64::to_string
     ),
     knob!(
+        boundary,
+        "boundary",
+        "0 to 10",
+        "Cost of exemplar elements that would fall outside the domain. Default: 0.",
+        |n: &str, v: &str| real(n, v, 0.0, 10.0),
+        f64::to_string
+    ),
+    knob!(
         patch,
         "patch",
         "1 to 1000",
@@ -388,6 +400,7 @@ impl Params {
                 initialisation: Initialisation::RandomCopy,
                 levels: 1,
                 iterations: 10,
+                boundary: 1.0,
                 ..published
             }),
             "tu2020" => {

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::{
     level::{Level, fall_off},
     library::Library,
-    matching::{Matcher, Row, Surroundings},
+    matching::{Matcher, Prices, Row, Surroundings},
     params::{Matching, Params, Search},
     state::{Match, State},
 };
@@ -24,8 +24,7 @@ const COPY: f32 = 1e-3;
 pub(crate) struct SearchParams {
     pub(crate) search: Search,
     pub(crate) matching: Matching,
-    /// Cost of a missing sample relative to that of a surplus one.
-    pub(crate) missing: f32,
+    pub(crate) prices: Prices,
     /// Members of a similarity set.
     pub(crate) coherence: usize,
     /// Random candidates a sample.
@@ -45,7 +44,7 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
             .living
             .par_iter()
             .map_init(
-                || Matcher::new(state.level, state.library, params.matching, params.missing),
+                || Matcher::new(state.level, state.library, params.matching, params.prices),
                 |matcher, &s| search_one(state, s, &params, matcher),
             )
             .collect();
@@ -71,7 +70,7 @@ pub(crate) fn similarity_sets<const D: usize>(
     (0..level.position.len() as u32)
         .into_par_iter()
         .map_init(
-            || Matcher::new(level, library, params.matching, 0.0),
+            || Matcher::new(level, library, params.matching, Prices { missing: 0.0, outside: 0.0 }),
             |matcher, i| {
                 let others = &level.of_key[level.key[i as usize] as usize];
                 let around = exemplar_surroundings(level, i);

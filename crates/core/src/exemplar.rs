@@ -1,6 +1,6 @@
 //! The small example, already simplified.
 
-use crate::{Bounds, Domain, Error, GridIndex, Outline, Result, Similarity, Vector};
+use crate::{Bounds, Domain, Error, GridIndex, Outline, Path, Result, Similarity, Vector};
 
 /// What an element of the exemplar may be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,37 +28,74 @@ pub struct Element<const D: usize> {
     pub role: Role,
 }
 
-/// Elements that count as the same kind of thing.
+/// One stroke of a continuous pattern: it may be cut anywhere, joined to others, and go on for ever.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve<const D: usize> {
+    /// The line that the stroke follows.
+    pub path: Path<D>,
+    /// Index into [`Exemplar::styles`].
+    pub style: usize,
+    /// Width of the stroke.
+    pub width: f64,
+    /// Colour of the stroke, sRGB in [0, 1].
+    pub colour: [f64; 3],
+}
+
+/// Elements that count as the same kind of thing, or curves painted alike.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Class {
     /// Name for people: from the file where it has one, else made up (`class 3`).
     pub name: String,
 }
 
-/// A set of elements in a window.
+/// A set of elements and curves in a window.
 ///
-/// Promises: at least one element with [`Role::Source`]; every coordinate finite; every class index valid.
+/// Promises: at least one element with [`Role::Source`] or one curve; every coordinate finite; every class and style index valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exemplar<const D: usize> {
     /// The elements, in drawing order.
     pub elements: Vec<Element<D>>,
     /// The classes.
     pub classes: Vec<Class>,
+    /// The curves, in drawing order.
+    pub curves: Vec<Curve<D>>,
+    /// Ways in which curves are painted.
+    pub styles: Vec<Class>,
     /// The frame: inside it every element is known, outside it nothing is, but for elements that reach in.
     pub window: Bounds<D>,
 }
 
 impl<const D: usize> Exemplar<D> {
+    /// An exemplar of elements alone.
+    ///
+    /// # Errors
+    /// As [`Exemplar::with_curves`].
+    pub fn new(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>, window: Bounds<D>) -> Result<Self> {
+        Self::with_curves(place, (elements, classes), (Vec::new(), Vec::new()), window)
+    }
+
     /// Checks the promises.
     ///
     /// # Errors
     /// [`Error::Input`] with `place` when a promise is broken.
-    pub fn new(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>, window: Bounds<D>) -> Result<Self> {
+    pub fn with_curves(
+        place: &str,
+        (elements, classes): (Vec<Element<D>>, Vec<Class>),
+        (curves, styles): (Vec<Curve<D>>, Vec<Class>),
+        window: Bounds<D>,
+    ) -> Result<Self> {
         let fail = |problem: &str, advice: &str| Err(Error::input(place, problem, advice));
-        if elements.is_empty() {
+        if elements.is_empty() && curves.is_empty() {
             return fail("no element found", "draw a few shapes or groups that should be repeated");
         }
-        if elements.iter().all(|e| e.role == Role::Context) {
+        let broken = |c: &Curve<D>| {
+            let bad = c.path.cubics.iter().flatten().any(|p| !p.is_finite());
+            bad || c.path.is_empty() || c.style >= styles.len() || !c.width.is_finite()
+        };
+        if curves.iter().any(broken) {
+            return fail("a curve has no length or no style", "remove curves with NaN or infinite coordinates");
+        }
+        if curves.is_empty() && elements.iter().all(|e| e.role == Role::Context) {
             return fail(
                 "every element is cut by the frame",
                 "make the frame larger, or leave at least one element whole",
@@ -70,7 +107,7 @@ impl<const D: usize> Exemplar<D> {
         if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
             return fail("the frame has no area", "give the exemplar a width and a height");
         }
-        Ok(Self { elements, classes, window })
+        Ok(Self { elements, classes, curves, styles, window })
     }
 
     /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.

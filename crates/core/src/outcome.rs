@@ -1,6 +1,6 @@
 //! What a run gives back.
 
-use crate::{Similarity, Vector};
+use crate::{Path, Similarity, Vector};
 
 /// One element of the output.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,19 @@ pub struct Placement<const D: usize> {
     /// output coordinates. Empty for a rigid element.
     pub control: Vec<(Vector<D>, Vector<D>)>,
     /// Index into [`crate::Request::frozen`] when this is an element that the user placed.
+    pub frozen: Option<usize>,
+}
+
+/// One stroke of the output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn<const D: usize> {
+    /// The line, in output coordinates. On a torus it may reach beyond the box: what lies there is drawn on the other side.
+    pub path: Path<D>,
+    /// Index into [`crate::Exemplar::curves`]: how the stroke is painted.
+    pub source: usize,
+    /// Factor by which its width differs from that of its source.
+    pub scale: f64,
+    /// Index into [`crate::Request::frozen_curves`] when this is a stroke that the user drew.
     pub frozen: Option<usize>,
 }
 
@@ -59,6 +72,8 @@ impl Warning {
 pub struct Outcome<const D: usize> {
     /// The output elements, frozen ones included, in drawing order. On a torus each element appears once.
     pub placements: Vec<Placement<D>>,
+    /// The output strokes, frozen ones included.
+    pub curves: Vec<Drawn<D>>,
     /// Mean energy after each iteration.
     pub energy: Vec<EnergyPoint>,
     /// What the user should know.

@@ -1,6 +1,6 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
-use crate::{Domain, Fields, Outline, Placement};
+use crate::{Domain, Drawn, Fields, Outline, Placement};
 
 /// What happens where elements meet the border of the domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub struct Request<const D: usize> {
     pub fields: Fields<D>,
     /// Elements that stay exactly where they are; the rest is fitted around them. Their `frozen` entry is ignored on input.
     pub frozen: Vec<Placement<D>>,
+    /// Strokes that stay exactly where they are; new ones join them. Their `frozen` entry is ignored on input.
+    pub frozen_curves: Vec<Drawn<D>>,
     /// Ink that is in the way but is no element of the exemplar, in output coordinates: nothing may overlap it.
     pub obstacles: Vec<Outline<D>>,
     /// Seed of all random choices. Default 0.
@@ -39,6 +41,7 @@ impl<const D: usize> Request<D> {
             border: Border::default(),
             fields: Fields::default(),
             frozen: Vec::new(),
+            frozen_curves: Vec::new(),
             obstacles: Vec::new(),
             seed: 0,
         }

@@ -126,7 +126,7 @@ impl<const D: usize> Prepared<D> {
             ));
         }
         let stopped = if flow.is_break() { StopReason::Observer } else { StopReason::Finished };
-        Ok(Outcome { placements, energy: run.trace, warnings, stopped })
+        Ok(Outcome { placements, curves: Vec::new(), energy: run.trace, warnings, stopped })
     }
 
     fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {

@@ -1,19 +1,19 @@
 //! Results, and the files they are written as.
 
-use arabesque_core::{Error, Limits, Observer, Outcome, Result, StopReason, Warning};
+use arabesque_core::{Drawn, Error, Limits, Observer, Outcome, Result, StopReason, Warning};
 use arabesque_io::{
     csv, json,
     png::{Plate, Resolution, write_png},
-    svg::{Sheet, Style, Written, write_svg},
+    svg::{Sheet, Style, Written, simplified, write_svg},
 };
 
-use crate::{Format, OutputOptions, Prepared, Recipe, size::unit_name};
+use crate::{Format, OutputOptions, Prepared, Recipe, size::unit_name, spacing::spacing};
 
 /// The result of one run.
 #[derive(Clone, Debug)]
 pub struct Artwork<'a> {
     prepared: &'a Prepared,
-    /// Placements, energy trace, warnings, and why the run ended.
+    /// Placements, strokes, energy trace, warnings, and why the run ended.
     pub outcome: Outcome<2>,
     /// Seed of the run.
     pub seed: u64,
@@ -37,25 +37,48 @@ impl Prepared {
         let mut request = self.request.clone();
         request.seed = seed;
         let mut outcome = self.engine.run(&request, observer)?;
-        if outcome.placements.is_empty() && outcome.stopped == StopReason::Observer {
+        let is_empty = outcome.placements.is_empty() && outcome.curves.is_empty();
+        if is_empty && outcome.stopped == StopReason::Observer {
             return Err(Error::no_result("stopped before anything was placed", "give it more time"));
         }
-        if outcome.placements.is_empty() {
+        if is_empty {
             return Err(Error::no_result(
-                "no element fits the domain under the given constraints",
+                "nothing fits the domain under the given constraints",
                 "make the domain larger or the avoided shapes smaller, or let elements cross the border with --border cross or clip",
             ));
         }
+        self.simplify(&mut outcome.curves);
         outcome.warnings.splice(0..0, self.warnings.iter().cloned());
         Ok(Artwork { prepared: self, outcome, seed })
     }
+
+    /// Leaves strokes with as few nodes as their width and spacing allow; what the user drew stays as it is.
+    fn simplify(&self, curves: &mut [Drawn<2>]) {
+        let exemplar = &self.drawing.exemplar;
+        let spacing = spacing(exemplar);
+        for drawn in curves.iter_mut().filter(|d| d.frozen.is_none()) {
+            let width = exemplar.curves[drawn.source].width * drawn.scale;
+            drawn.path = simplified(&drawn.path, (NODE_SPACING * spacing).max(NODE_WIDTH * width));
+        }
+    }
 }
+
+/// How far a simplified stroke may lie from the true one, in mean spacings.
+const NODE_SPACING: f64 = 0.001;
+/// The same in stroke widths.
+const NODE_WIDTH: f64 = 0.02;
 
 impl Artwork<'_> {
     /// The name of the class of each placement, in drawing order.
     pub fn classes(&self) -> impl Iterator<Item = &str> {
         let exemplar = &self.prepared.drawing.exemplar;
         self.outcome.placements.iter().map(|p| exemplar.classes[exemplar.elements[p.source].class].name.as_str())
+    }
+
+    /// The name of the style of each stroke, in drawing order.
+    pub fn styles(&self) -> impl Iterator<Item = &str> {
+        let exemplar = &self.prepared.drawing.exemplar;
+        self.outcome.curves.iter().map(|c| exemplar.styles[exemplar.curves[c.source].style].name.as_str())
     }
 
     /// The recipe of this very result, as its file carries it.
@@ -99,10 +122,25 @@ impl Artwork<'_> {
                 json::write_json(exemplar, &self.outcome, &frame).map(plain)
             }
             Format::Csv => {
-                Ok(plain(csv::write_points(exemplar, &self.outcome.placements, size[0].max(size[1]), carried)))
+                let text = csv::write_points(exemplar, &self.outcome.placements, size[0].max(size[1]), carried);
+                Ok(Encoded { bytes: text.into_bytes(), warnings: self.left_out()? })
             }
             Format::Toml => Ok(plain(recipe)),
         }
+    }
+
+    /// What a file of points cannot hold.
+    fn left_out(&self) -> Result<Vec<Warning>> {
+        let count = self.outcome.curves.len();
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let what = format!("{count} curves as a file of points");
+        let advice = "write SVG or JSON, which hold curves";
+        if self.outcome.placements.is_empty() {
+            return Err(Error::Unsupported { what, advice: advice.into() });
+        }
+        Ok(vec![Warning::new(format!("{what} cannot be written: left out"), advice)])
     }
 
     fn svg(&self, output: &OutputOptions, recipe: Option<&str>) -> Result<Written> {
@@ -112,6 +150,7 @@ impl Artwork<'_> {
         write_svg(&Sheet {
             drawing: &prepared.drawing,
             placements,
+            curves: &self.outcome.curves,
             kept: prepared.kept.as_ref(),
             page: prepared.page,
             domain: &prepared.request.domain,

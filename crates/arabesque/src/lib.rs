@@ -27,6 +27,7 @@ mod pool;
 mod prepare;
 mod recipe;
 mod size;
+mod spacing;
 mod subject;
 
 pub use arabesque_core as core;

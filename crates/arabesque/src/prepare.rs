@@ -14,7 +14,10 @@ use arabesque_io::{
 };
 use arabesque_patterns::{Params, Prepared as Engine};
 
-use crate::{FieldSource, Input, Recipe, Size, Subject, recipe::FieldFile, size::pixels_per_user, subject::dots};
+use crate::{
+    FieldSource, Input, Recipe, Size, Subject, recipe::FieldFile, size::pixels_per_user, spacing::spacing,
+    subject::dots,
+};
 
 /// Nodes along the longer side of a direction field that comes from strokes.
 const STROKE_NODES: usize = 128;
@@ -214,7 +217,8 @@ impl Preparation<'_> {
     }
 
     fn check_room(&self, exemplar: &arabesque_core::Exemplar<2>, domain: &Domain<2>) -> Result<()> {
-        let expected = domain.measure() / exemplar.spacing().powi(2);
+        let spacing = spacing(exemplar);
+        let expected = domain.measure() / spacing.powi(2);
         if expected.is_nan() || expected > self.limits.output_elements as f64 {
             return Err(Error::Limit {
                 what: "size of the domain".into(),
@@ -224,17 +228,16 @@ impl Preparation<'_> {
             });
         }
         let smallest = exemplar.elements.iter().map(|e| e.outline.area()).fold(f64::INFINITY, f64::min);
-        if domain.measure() < smallest || expected < 0.5 {
+        if (smallest.is_finite() && domain.measure() < smallest) || expected < 0.5 {
             return Err(Error::no_result(
                 format!(
                     "the domain ({:.4} square units) is smaller than one element takes ({:.4})",
                     domain.measure(),
-                    smallest.max(exemplar.spacing().powi(2))
+                    if smallest.is_finite() { smallest.max(spacing.powi(2)) } else { spacing.powi(2) }
                 ),
                 "make it larger; sizes without a unit are in the units of the exemplar",
             ));
         }
-        let spacing = exemplar.spacing();
         let least = spacing * if domain.period().is_some() { LEAST_TILE_SIDE } else { LEAST_SIDE };
         let side = domain.bounds().size().0.into_iter().fold(f64::INFINITY, f64::min);
         if side < least {
@@ -379,5 +382,10 @@ impl Prepared {
     /// Number of elements and of classes of the exemplar.
     pub fn exemplar_size(&self) -> (usize, usize) {
         (self.drawing.exemplar.elements.len(), self.drawing.exemplar.classes.len())
+    }
+
+    /// Number of curves and of styles of the exemplar.
+    pub fn exemplar_curves(&self) -> (usize, usize) {
+        (self.drawing.exemplar.curves.len(), self.drawing.exemplar.styles.len())
     }
 }

@@ -125,12 +125,12 @@ impl From<BorderRule> for Border {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// The exemplar decides; curves in it are an error for now.
+    /// The exemplar decides: filled shapes and groups are elements, open strokes and the net that they belong to are curves.
     #[default]
     Auto,
     /// Every connected piece is an element.
     Elements,
-    /// Curves; not yet handled.
+    /// Every stroke without a fill is a curve; what is filled is an element.
     Curves,
     /// Repetitive structures; not yet handled.
     Structures,

@@ -4,7 +4,7 @@ use arabesque_core::{Exemplar, Limits, Outline, Result, Vector, Warning};
 use arabesque_io::{
     csv::{self, Points},
     file,
-    svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Unit},
+    svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Stacking, Unit},
 };
 
 use crate::{Error, Input, recipe::Method};
@@ -39,10 +39,10 @@ impl Subject {
         let method = match method {
             Method::Auto => svg::Method::Auto,
             Method::Elements => svg::Method::Elements,
-            Method::Curves | Method::Structures => {
-                let value = if method == Method::Curves { "curves" } else { "structures" };
-                let expected = format!("auto or elements; {value} are not handled yet");
-                return Err(Error::parameter("method", value, expected));
+            Method::Curves => svg::Method::Curves,
+            Method::Structures => {
+                let expected = "auto, elements or curves; structures are not handled yet";
+                return Err(Error::parameter("method", "structures", expected));
             }
         };
         if arabesque_io::png::is_png(bytes) {
@@ -88,6 +88,8 @@ pub(crate) fn dots(points: &Exemplar<2>) -> Drawing {
     });
     Drawing {
         fragments: fragments.collect(),
+        strokes: Vec::new(),
+        stacking: Stacking::default(),
         background: None,
         definitions: String::new(),
         page: Page { view: exemplar.window, unit: Unit::Px, unit_per_user: DOT_SPACING_PIXELS / spacing },
@@ -123,8 +125,9 @@ mod tests {
 
     #[test]
     fn later_methods_are_refused_by_name() {
-        let err = Subject::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Curves, &Limits::default()).unwrap_err();
-        assert!(err.to_string().contains("curves are not handled yet"));
+        let err =
+            Subject::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Limits::default()).unwrap_err();
+        assert!(err.to_string().contains("structures are not handled yet"));
     }
 
     #[test]

@@ -128,8 +128,9 @@ fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &Ru
     let level = options.talk.level();
     let prepared = recipe.prepare(base)?;
     if level == Level::Verbose {
-        let (elements, classes) = prepared.exemplar_size();
-        say::note(&format!("exemplar: {elements} elements in {classes} classes"));
+        let ((elements, classes), (curves, styles)) = (prepared.exemplar_size(), prepared.exemplar_curves());
+        let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
+        say::note(&format!("exemplar: {elements} elements in {classes} classes{of_curves}"));
     }
     let mut outputs = Vec::new();
     for plan in &plans {
@@ -174,12 +175,18 @@ fn describe(
     for class in artwork.classes() {
         *classes.entry(class.to_owned()).or_insert(0) += 1;
     }
+    let mut styles = BTreeMap::new();
+    for style in artwork.styles() {
+        *styles.entry(style.to_owned()).or_insert(0) += 1;
+    }
     Output {
         path: plan.path.clone(),
         format: output.format.unwrap_or(Format::Svg).name(),
         seed: plan.seed,
         elements: artwork.outcome.placements.len(),
         classes,
+        curves: artwork.outcome.curves.len(),
+        styles,
         energy: artwork.outcome.energy.last().map(|e| e.energy),
         stopped: match artwork.outcome.stopped {
             StopReason::Finished => "finished",
@@ -205,7 +212,17 @@ fn tell(made: &Output, artwork: &Artwork<'_>, warnings: &[Warning], level: Level
     let stopped =
         if made.stopped == "finished" { String::new() } else { format!(", stopped early ({})", made.stopped) };
     let name = if made.path == file::STANDARD { "standard output" } else { &made.path };
-    say::note(&format!("{name}: {} elements in {:.2} s{stopped}", made.elements, made.seconds));
+    say::note(&format!("{name}: {} in {:.2} s{stopped}", counted(made), made.seconds));
+}
+
+/// What was made, in words.
+fn counted(made: &Output) -> String {
+    let many = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    match (made.curves, made.elements) {
+        (0, n) => format!("{n} elements"),
+        (n, 0) => many(n, "curve"),
+        (c, e) => format!("{} and {}", many(c, "curve"), many(e, "element")),
+    }
 }
 
 #[cfg(test)]

@@ -22,6 +22,8 @@ pub(crate) struct Output {
     pub(crate) seed: u64,
     pub(crate) elements: usize,
     pub(crate) classes: BTreeMap<String, usize>,
+    pub(crate) curves: usize,
+    pub(crate) styles: BTreeMap<String, usize>,
     pub(crate) energy: Option<f64>,
     /// `finished`, `interrupted` or `time limit`.
     pub(crate) stopped: &'static str,

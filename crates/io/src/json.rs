@@ -1,9 +1,9 @@
-//! JSON: placements with their sources, and how the run went.
+//! JSON: placements and strokes with their sources, and how the run went.
 
-use arabesque_core::{Bounds, EnergyPoint, Exemplar, Outcome, Placement, StopReason};
+use arabesque_core::{Bounds, Drawn, EnergyPoint, Exemplar, Measured, Outcome, Placement, StopReason};
 use serde::Serialize;
 
-use crate::number::Decimals;
+use crate::{number::Decimals, path_data::path_data};
 
 /// What the file says beside the placements.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,10 @@ struct File<'a> {
     page: PageRecord<'a>,
     classes: Vec<&'a str>,
     placements: Vec<PlacementRecord<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    styles: Vec<&'a str>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    curves: Vec<CurveRecord<'a>>,
     energy: Vec<EnergyRecord>,
     warnings: Vec<WarningRecord<'a>>,
     stopped: &'static str,
@@ -53,6 +57,19 @@ struct PlacementRecord<'a> {
 }
 
 #[derive(Serialize)]
+struct CurveRecord<'a> {
+    source: usize,
+    style: &'a str,
+    d: String,
+    closed: bool,
+    width: f64,
+    scale: f64,
+    length: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kept: Option<usize>,
+}
+
+#[derive(Serialize)]
 struct EnergyRecord {
     level: usize,
     iteration: usize,
@@ -68,6 +85,7 @@ struct WarningRecord<'a> {
 
 /// Writes an outcome as one JSON object.
 ///
+/// `d` is SVG path data, in space with three numbers a point; `width` is that of the stroke as it is drawn, `length` that of its line.
 /// `transform` is column by column, the shift last: `[a, b, c, d, e, f]` in the plane, as SVG's `matrix()` has it.
 ///
 /// # Errors
@@ -90,6 +108,8 @@ pub fn write_json<const D: usize>(
         },
         classes: exemplar.classes.iter().map(|c| c.name.as_str()).collect(),
         placements: outcome.placements.iter().map(|p| placement(exemplar, p, decimals)).collect(),
+        styles: exemplar.styles.iter().map(|s| s.name.as_str()).collect(),
+        curves: outcome.curves.iter().map(|c| curve(exemplar, c, decimals)).collect(),
         energy: outcome.energy.iter().map(energy).collect(),
         warnings: outcome.warnings.iter().map(|w| WarningRecord { message: &w.message, advice: &w.advice }).collect(),
         stopped: match outcome.stopped {
@@ -120,6 +140,20 @@ fn placement<'a, const D: usize>(
         transform: columns.chain(p.transform.translation.0).map(|v| fine.round(v)).collect(),
         control: p.control.iter().map(|(a, b)| [rounded(a.0), rounded(b.0)]).collect(),
         kept: p.frozen,
+    }
+}
+
+fn curve<'a, const D: usize>(exemplar: &'a Exemplar<D>, drawn: &Drawn<D>, decimals: Decimals) -> CurveRecord<'a> {
+    let source = &exemplar.curves[drawn.source];
+    CurveRecord {
+        source: drawn.source,
+        style: &exemplar.styles[source.style].name,
+        d: path_data(&drawn.path, decimals),
+        closed: drawn.path.closed,
+        width: decimals.plus(3).round(source.width * drawn.scale),
+        scale: decimals.plus(3).round(drawn.scale),
+        length: decimals.round(Measured::new(drawn.path.clone(), decimals.step()).length()),
+        kept: drawn.frozen,
     }
 }
 

@@ -6,6 +6,7 @@
 pub mod csv;
 pub mod file;
 pub mod json;
+pub mod path_data;
 pub mod number;
 pub mod picture;
 pub mod png;

@@ -18,6 +18,17 @@ impl Decimals {
         Self((self.0 + count).min(15))
     }
 
+    /// One unit of the last decimal.
+    pub fn step(self) -> f64 {
+        10_f64.powi(-(self.0 as i32))
+    }
+
+    /// `count` decimals fewer: for the points of lines, which no one sees as sharply as the edges of shapes.
+    #[must_use]
+    pub fn minus(self, count: usize) -> Self {
+        Self(self.0.saturating_sub(count))
+    }
+
     /// `value` rounded to these decimals, without trailing zeros and without `-0`.
     pub fn format(self, value: f64) -> String {
         let mut text = format!("{value:.*}", self.0);

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Error, Region, Role, Vector};
-use arabesque_io::svg::{Drawing, Method, ReadOptions, Unit, read_exemplar, read_flow, read_placed, read_shape};
+use arabesque_io::svg::{
+    Drawing, Method, ReadOptions, Stacking, Unit, read_exemplar, read_flow, read_placed, read_shape,
+};
 
 const NAMESPACES: &str = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
      xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'";
@@ -205,13 +207,92 @@ fn pieces_cut_by_a_tile_are_joined_again() {
 }
 
 #[test]
-fn open_strokes_are_curves_and_are_named() {
-    let stem = "<path id='stem' d='M34 12 C34 30 36 50 34 95' fill='none' stroke='green'/>";
+fn open_strokes_are_curves() {
+    let stem = "<path class='stem' d='M34 12 C34 30 36 50 34 95' fill='none' stroke='green'/>";
     let body = format!("{DOTS}{stem}<line x1='2' x2='90' y1='5' y2='7' stroke='red'/>");
-    let message = error(&page(&body));
-    assert!(message.contains("2 curves: \"stem\", <line> in line 2"), "{message}");
-    assert!(message.contains("--method elements"), "{message}");
+    let d = read(&body);
+    assert_eq!((d.exemplar.elements.len(), d.exemplar.curves.len(), d.strokes.len()), (6, 2, 2));
+    assert_eq!(d.exemplar.styles.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["stem", "style 2"]);
+    assert_eq!(
+        d.exemplar.curves[0].path.cubics,
+        [[(34., 12.), (34., 30.), (36., 50.), (34., 95.)].map(|(x, y)| Vector::xy(x, y))]
+    );
+    assert_eq!(d.stacking, Stacking::CurvesAbove);
     assert_eq!(read_with(&page(&body), Method::Elements).unwrap().exemplar.elements.len(), 8);
+}
+
+#[test]
+fn curves_need_no_element() {
+    let d = read("<path d='M0 50H100M50 0V100' fill='none' stroke='red' stroke-width='2'/>");
+    assert_eq!((d.exemplar.elements.len(), d.exemplar.curves.len()), (0, 2));
+    assert_eq!((d.exemplar.curves[0].width, d.exemplar.curves[0].colour), (2.0, [1.0, 0.0, 0.0]));
+}
+
+#[test]
+fn transforms_go_into_the_line_and_its_lengths() {
+    let d = read(
+        "<g transform='translate(10 0) scale(2)' opacity='.5'><path d='M0 10h30q5 0 5 5' fill='none' stroke='#00f' \
+         stroke-width='1.5' stroke-dasharray='3 1' stroke-dashoffset='1' stroke-linecap='round'/></g>",
+    );
+    let path = &d.exemplar.curves[0].path;
+    assert_eq!((path.start(), path.end()), (Some(Vector::xy(10.0, 20.0)), Some(Vector::xy(80.0, 30.0))));
+    let stroke = &d.strokes[0];
+    assert_eq!((stroke.width, stroke.dashes.as_slice(), stroke.dash_offset), (3.0, &[6.0, 2.0][..], 2.0));
+    assert_eq!(stroke.paint, " fill=\"none\" stroke=\"#0000ff\" stroke-linecap=\"round\"");
+    assert_eq!(stroke.effects, " opacity=\"0.5\"");
+}
+
+#[test]
+fn uneven_transforms_take_the_mean_width_and_say_so() {
+    let d = read("<path transform='scale(1 4)' d='M0 1H90' fill='none' stroke='red' stroke-width='2'/>");
+    assert_eq!(d.exemplar.curves[0].width, 4.0);
+    assert!(warns(&d, "stretched more one way"));
+}
+
+#[test]
+fn closed_strokes_beside_open_ones_are_curves_too() {
+    let ring = "<circle cx='50' cy='80' r='9' fill='none' stroke='red'/>";
+    let pair = "<g stroke='blue'><path d='M60 60l9 9'/><path d='M69 60l-9 9'/></g>";
+    let alone = read(&format!("{DOTS}{ring}{pair}"));
+    assert_eq!((alone.exemplar.elements.len(), alone.exemplar.curves.len()), (8, 0));
+    let beside = read(&format!("{DOTS}{ring}{pair}<path d='M0 90H100' stroke='red'/>"));
+    assert_eq!((beside.exemplar.elements.len(), beside.exemplar.curves.len()), (7, 2));
+    assert!(beside.exemplar.curves[0].path.closed);
+    let all = read_with(&page(&format!("{DOTS}{ring}{pair}")), Method::Curves).unwrap();
+    assert_eq!((all.exemplar.elements.len(), all.exemplar.curves.len()), (6, 3));
+}
+
+#[test]
+fn degenerate_strokes_are_left_out_with_a_warning() {
+    let net = "<path id='p' d='M0 50H100' fill='none' stroke='red'/>";
+    let dot = "<path d='M5 5h0' fill='none' stroke='red' stroke-linecap='round'/>";
+    let d = read(&format!(
+        "{net}{dot}<path d='M100 50H0' fill='none' stroke='red'/><path d='M10 10L10 10L60 10L60 10' fill='none' stroke='red'/>"
+    ));
+    assert_eq!(d.exemplar.curves.iter().map(|c| c.path.cubics.len()).collect::<Vec<_>>(), [1, 1]);
+    assert!(warns(&d, "stroke without length") && warns(&d, "on top of one like it"));
+}
+
+#[test]
+fn strokes_are_cut_by_the_clips_around_them() {
+    let clip = "<clipPath id='c'><rect width='100' height='40'/></clipPath>";
+    let d = read(&format!(
+        "{clip}<g inkscape:groupmode='layer' clip-path='url(#c)'><path d='M10 10V90' stroke='red'/><path d='M0 20H100' stroke='red'/></g>"
+    ));
+    let ends: Vec<_> = d.exemplar.curves.iter().map(|c| c.path.end().unwrap()).collect();
+    assert_eq!(ends, [Vector::xy(10.0, 40.0), Vector::xy(100.0, 20.0)]);
+}
+
+#[test]
+fn outlines_of_whole_networks_are_refused_by_name() {
+    let mut net = "M0 0H100V100H0Z".to_owned();
+    for k in 0..16 {
+        let (x, y) = (4 + 24 * (k % 4), 4 + 24 * (k / 4));
+        net += &format!("M{x} {y}v20h20v-20z");
+    }
+    let message = error(&page(&format!("<path id='net' fill-rule='evenodd' d='{net}M120 120h1v1h-1z'/>")));
+    assert!(message.contains("outline of a whole network of lines (\"net\")"), "{message}");
+    assert!(message.contains("--method elements"), "{message}");
 }
 
 #[test]
@@ -236,7 +317,9 @@ fn overrides_beat_the_rules() {
     let marked = |mark: &str| format!("<rect id='r' data-arabesque='{mark}' width='9' height='9' y='80'/>");
     let stroke = "<path data-arabesque='element' d='M10 40h20' stroke='red'/>";
     assert_eq!(read(&format!("{DOTS}{stroke}{}", marked("ignore"))).exemplar.elements.len(), 7);
-    assert!(error(&page(&format!("{DOTS}{}", marked("curve")))).contains("1 curve: \"r\""));
+    assert!(error(&page(&format!("{DOTS}{}", marked("curve")))).contains("filled shape without a stroke"));
+    let outlined = format!("{DOTS}{}", marked("curve").replace("width=", "stroke='red' width="));
+    assert_eq!(read(&outlined).exemplar.curves.len(), 1);
     assert!(warns(&read(&format!("{DOTS}{}", marked("thing"))), "unknown data-arabesque"));
 }
 
@@ -255,7 +338,7 @@ fn what_the_file_cuts_at_the_frame_is_context_and_what_reaches_over_is_not() {
     let d = read(&format!("{DOTS}<path d='M0 80a8 8 0 0 1 0 16z' fill='red'/><circle cx='100' cy='90' r='8'/>"));
     assert_eq!(roles(&d)[6..], [Role::Context, Role::Source]);
     let clipped = read(
-        "<clipPath id='c'><rect width='100' height='100'/></clipPath><g clip-path='url(#c)'>
+        "<clipPath id='c'><rect width='100' height='100'/></clipPath><g inkscape:groupmode='layer' clip-path='url(#c)'>
         <circle cx='50' cy='50' r='8'/><circle cx='100' cy='10' r='8'/><circle cx='10' cy='90' r='8'/></g>",
     );
     assert_eq!(roles(&clipped), [Role::Source, Role::Context, Role::Source]);
@@ -398,7 +481,7 @@ fn bad_input_says_what_and_where() {
         ("hello", "t.svg:1:1: not well-formed"),
         ("<html/>", "expected <svg>"),
         ("<svg xmlns='http://www.w3.org/2000/svg'><g>", "not well-formed"),
-        ("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'/>", "no element found"),
+        ("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'/>", "no element and no curve found"),
     ];
     for (text, part) in cases {
         let message = error(text);

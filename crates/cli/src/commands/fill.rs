@@ -121,11 +121,11 @@ enum Border {
 /// What the exemplar is made of.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum MethodName {
-    /// The exemplar decides
+    /// The exemplar decides: filled shapes and groups are elements, open strokes and their net are curves
     Auto,
     /// Every connected piece is an element
     Elements,
-    /// Curves (not yet)
+    /// Every stroke without a fill is a curve
     Curves,
     /// Repetitive structures (not yet)
     Structures,

@@ -45,6 +45,51 @@ pub struct Fragment {
     pub label: Option<String>,
 }
 
+/// The appearance of one curve: everything that paints a path alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    /// Presentation attributes for a `<path>`, each with a blank before it, but for those that scale with the stroke;
+    /// references only to [`Drawing::definitions`].
+    pub paint: String,
+    /// Attributes of the path alone, which a group around it must not have in its stead: opacity, filter, blending.
+    pub effects: String,
+    /// Width, in user units.
+    pub width: f64,
+    /// Lengths of dashes and gaps in turn, in user units; empty for an unbroken line.
+    pub dashes: Vec<f64>,
+    /// Where in the dashes the line starts, in user units.
+    pub dash_offset: f64,
+    /// Name of the layer it came from, for round trips.
+    pub layer: Option<String>,
+    /// Its own name: `inkscape:label`.
+    pub label: Option<String>,
+}
+
+impl Stroke {
+    /// A text that is the same for strokes that look the same, whatever file and layer they come from.
+    pub(crate) fn key(&self) -> String {
+        // References have their file's prefix before the id.
+        let mut key = format!("{}{}", self.paint, self.effects);
+        for prefix in ["kept-", "exemplar-"] {
+            while let Some(at) = key.find(&format!("url(#{prefix}")) {
+                key.replace_range(at + 5..at + 5 + prefix.len(), "");
+            }
+        }
+        let lengths = std::iter::once(&self.width).chain(&self.dashes).chain(std::iter::once(&self.dash_offset));
+        lengths.fold(key, |key, length| format!("{key} {length:.3e}"))
+    }
+}
+
+/// Which of the two lies above the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stacking {
+    /// Elements lie on the curves.
+    #[default]
+    ElementsAbove,
+    /// Curves lie on the elements.
+    CurvesAbove,
+}
+
 /// The other parts of a file that is a whole job: what layers labelled Domain, Avoid, Flow and Keep hold.
 #[derive(Clone, Debug, Default)]
 pub struct Job {
@@ -63,6 +108,10 @@ pub struct Drawing {
     pub exemplar: Exemplar<2>,
     /// How element `i` of the exemplar looks.
     pub fragments: Vec<Fragment>,
+    /// How curve `i` of the exemplar is painted.
+    pub strokes: Vec<Stroke>,
+    /// Whether the exemplar draws curves or elements first.
+    pub stacking: Stacking,
     /// Markup that fills the frame behind everything, in exemplar coordinates: repeated over the output page as it is where it is a plain
     /// colour. `None` without a background.
     pub background: Option<String>,

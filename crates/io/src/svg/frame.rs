@@ -2,7 +2,7 @@
 
 use arabesque_core::{Bounds, Outline, Role};
 
-use super::item::Item;
+use super::item::{Item, Kind};
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
 const CUT: f64 = 0.15;
@@ -33,10 +33,10 @@ fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
     })
 }
 
-/// The box around all items, with half the usual gap around it: the frame that the artist had in mind.
+/// The box around all items, with half the usual gap around it: the frame that the artist had in mind. Curves end at it.
 pub(super) fn around(items: &[Item]) -> Bounds<2> {
     let tight = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.outline.bounds()));
-    if items.len() < 2 {
+    if items.len() < 2 || items.iter().any(|item| item.kind == Kind::Curve) {
         return tight;
     }
     let spacing = (tight.measure() / items.len() as f64).sqrt();

@@ -12,7 +12,7 @@ use super::{ink::Ink, meta::Meta, scene::Node};
 pub(super) enum Kind {
     /// To be placed as a whole.
     Element,
-    /// An open stroke, a closed one too large for an element, or one marked as curve.
+    /// An open stroke, a closed one too large for an element or of the same net, or one marked as curve.
     Curve,
     /// A fill larger than half of the frame that is no background.
     Large,
@@ -44,7 +44,9 @@ pub(super) struct Item {
     pub(super) ink: Ink,
     pub(super) kind: Kind,
     pub(super) origin: Origin,
-    /// Whether a clip of a container takes something away from it.
+    /// What the clips of the containers around it leave visible.
+    pub(super) clip: Option<Rc<Outline<2>>>,
+    /// Whether that takes something away from it.
     pub(super) is_cut: bool,
 }
 

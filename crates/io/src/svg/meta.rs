@@ -84,7 +84,8 @@ const PARTS: [(Part, &[&str]); 4] = [
     (Part::Flow, &["flow", "fluss", "flux", "flujo", "flusso"]),
 ];
 
-fn part(name: &str) -> Option<Part> {
+/// The part that a layer of that name plays.
+pub(super) fn part(name: &str) -> Option<Part> {
     let name = name.trim().to_lowercase();
     PARTS.iter().find(|(_, names)| names.contains(&name.as_str())).map(|(part, _)| *part)
 }

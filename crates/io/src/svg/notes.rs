@@ -51,6 +51,16 @@ pub(super) enum Note {
     Corner,
     /// Path data that stops in the middle.
     CutShort,
+    /// A stroke without length.
+    ZeroLength,
+    /// A stroke on top of one like it.
+    Twice,
+    /// A stroke whose transform stretches it unevenly.
+    UnevenWidth,
+    /// The fill of a shape that is marked as a curve.
+    CurveFill,
+    /// A mask on a curve.
+    CurveMask,
 }
 
 impl Note {
@@ -97,6 +107,14 @@ impl Note {
                 "resize the page to the drawing, or draw a rectangle with the id \"frame\"",
             ),
             Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
+            Self::ZeroLength => ("stroke without length ignored", "delete it, or draw a dot as a filled circle"),
+            Self::Twice => ("stroke exactly on top of one like it ignored", "delete one of the two"),
+            Self::UnevenWidth => (
+                "stroke that is stretched more one way than the other; its mean width is used",
+                "apply the transform to the path, or convert the stroke to a path",
+            ),
+            Self::CurveFill => ("fill of a curve ignored", "draw the fill as a shape of its own"),
+            Self::CurveMask => ("mask on a curve ignored", "cut the curve instead"),
             Self::DomainBackground => {
                 ("shape around all others taken for a background, not for the domain", "choose a shape by its id")
             }

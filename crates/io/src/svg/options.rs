@@ -5,9 +5,12 @@ use arabesque_core::Limits;
 /// What open strokes are taken for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Closed shapes, groups, `<use>` and filled pieces are elements, other strokes are curves; curves are an error that names them.
+    /// Filled shapes, groups and `<use>` are elements, and so are small closed strokes where no stroke is open; all other strokes are
+    /// curves.
     #[default]
     Auto,
+    /// Every stroke without a fill is a curve; what is filled is an element.
+    Curves,
     /// Every connected piece is one element; strokes that touch are one piece.
     Elements,
 }

@@ -6,8 +6,9 @@ use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role, Vector};
 use kurbo::Affine;
 
 use super::{
-    Drawing, Fragment, Method, Page, ReadOptions, Unit, area,
+    Drawing, Fragment, Method, Page, ReadOptions, Stacking, Unit, area,
     classes::{self, Classes},
+    curves::{Curves, Gatherer},
     definitions::Definitions,
     extent::{self, bounds},
     frame, guard,
@@ -25,8 +26,8 @@ use super::{
 /// Reads an exemplar, and the rest of the job where the file holds one.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG or holds no whole element, [`Error::Limit`] when it is too large,
-/// [`Error::Unsupported`] when it holds curves and the method is [`Method::Auto`].
+/// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
+/// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
 pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
     with_source(text, options, |source| {
         let (root, page) = root(source)?;
@@ -38,22 +39,34 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
         settle(source, &mut found.items, window, options.method)?;
         let job = area::job(&inker, &root)?;
-        let (elements, classes) = elements(source, &found.items, scope.window.as_ref());
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
-        if elements.is_empty() {
+        let is_curve = |item: &Item| item.kind == Kind::Curve && options.method != Method::Elements;
+        let stacking = stacking(&found.items, is_curve);
+        let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
+        let mut definitions = Definitions::new(source, "exemplar");
+        let mut gatherer = Gatherer::new(&inker, &mut definitions, window);
+        lines.iter().try_for_each(|item| gatherer.add(item))?;
+        let Curves { curves, styles, strokes } = gatherer.finish();
+        let (elements, classes) = elements(source, &items, scope.window.as_ref());
+        if elements.is_empty() && curves.is_empty() {
             return Err(nothing_found(source, &found));
         }
-        let exemplar = Exemplar::new(source.name, elements, classes.classes, window)?;
-        let mut definitions = Definitions::new(source, "exemplar");
-        let fragments = found.items.iter().map(|item| fragment(item, &mut definitions)).collect();
+        let exemplar = Exemplar::with_curves(source.name, (elements, classes.classes), (curves, styles), window)?;
+        let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
         let background = background(&found, &mut definitions);
         let definitions = definitions.finish();
         let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
         let warnings = source.notes.warnings(source.name);
-        Ok(Drawing { exemplar, fragments, background, definitions, page, job, warnings })
+        Ok(Drawing { exemplar, fragments, strokes, stacking, background, definitions, page, job, warnings })
     })
+}
+
+fn stacking(items: &[Item], is_curve: impl Fn(&Item) -> bool) -> Stacking {
+    let curve = items.iter().position(&is_curve);
+    let element = items.iter().position(|item| !is_curve(item));
+    if element < curve && element.is_some() { Stacking::CurvesAbove } else { Stacking::ElementsAbove }
 }
 
 /// The drawing and its page, `None` where the file states no size.
@@ -156,8 +169,8 @@ fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method:
     if items.len() > source.limits.elements {
         return Err(guard::too_much(format!("{}: elements", source.name), items.len(), source.limits.elements as u64));
     }
-    if method == Method::Auto {
-        refuse_curves(source, items, &window)?;
+    if method != Method::Elements {
+        refuse_networks(source, items, &window)?;
     }
     for item in items.iter().filter(|item| item.kind == Kind::Large) {
         source.notes.add(Note::LargeElement, || name(source, item));
@@ -173,33 +186,31 @@ fn name(source: &Source<'_>, item: &Item) -> String {
     own.unwrap_or_else(|| format!("<{}> in line {}", meta.tag, line().unwrap_or(1)))
 }
 
-fn refuse_curves(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> Result<()> {
-    // A fill that reaches over several sides of the frame is a network of lines turned into an outline.
-    let reaches_over = |item: &Item| -> usize {
-        let b = item.outline.bounds();
-        let near = 1e-3 * extent::longer(window);
-        (0..2)
-            .map(|k| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near))
-            .sum()
-    };
-    let is_curve = |item: &&Item| match item.kind {
-        Kind::Curve => true,
-        Kind::Large => item.origin == Origin::Piece && reaches_over(item) >= 2,
-        Kind::Element => false,
-    };
-    let curves: Vec<&Item> = items.iter().filter(is_curve).collect();
-    if curves.is_empty() {
+/// Refuses lines that the drawing program has turned into one outline, which are too large for an element.
+fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> Result<()> {
+    let networks: Vec<&Item> = items.iter().filter(|item| is_network(item, window)).collect();
+    if networks.is_empty() {
         return Ok(());
     }
-    let named: Vec<_> = curves.iter().take(5).map(|item| name(source, item)).collect();
-    let more = if curves.len() > named.len() { ", ..." } else { "" };
-    let (count, s) = (curves.len(), if curves.len() == 1 { "" } else { "s" });
+    let named: Vec<_> = networks.iter().take(5).map(|item| name(source, item)).collect();
+    let more = if networks.len() > named.len() { ", ..." } else { "" };
+    let (count, s) = (networks.len(), if networks.len() == 1 { "" } else { "s" });
     Err(Error::Unsupported {
-        what: format!("{}: filling with curves ({count} curve{s}: {}{more})", source.name, named.join(", ")),
-        advice: "use --method elements to treat every connected piece as one element, or mark items with \
-                 data-arabesque=\"element\" or \"ignore\""
-            .into(),
+        what: format!("{}: {count} outline{s} of a whole network of lines ({}{more})", source.name, named.join(", ")),
+        advice:
+            "draw the lines as strokes, use --method elements to treat every connected piece as one element, or mark \
+                 items with data-arabesque=\"element\" or \"ignore\""
+                .into(),
     })
+}
+
+/// Whether an item is a fill that reaches over several sides of the frame.
+fn is_network(item: &Item, window: &Bounds<2>) -> bool {
+    let b = item.outline.bounds();
+    let near = 1e-3 * extent::longer(window);
+    let reaches =
+        |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
+    item.kind == Kind::Large && item.origin == Origin::Piece && reaches(0) + reaches(1) >= 2
 }
 
 /// What to say when no element is left, with what may explain it.
@@ -208,8 +219,8 @@ fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
     let background = if found.background.is_empty() { "" } else { "what covers the whole frame is background" };
     let why: Vec<&str> = [background, seen.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
     let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join(", ")) };
-    let advice = "draw a few closed shapes or groups that should be repeated";
-    Error::input(source.name, format!("no element found{why}"), advice)
+    let advice = "draw a few shapes, groups or strokes that should be repeated";
+    Error::input(source.name, format!("no element and no curve found{why}"), advice)
 }
 
 fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> (Vec<Element<2>>, Classes) {

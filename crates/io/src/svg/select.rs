@@ -1,6 +1,8 @@
 //! What of a drawing is an element, what a curve, what background.
 //!
-//! - Closed shapes, groups, `<use>` and filled pieces smaller than half of the frame are elements; other strokes are curves.
+//! - Filled shapes, groups, `<use>` and filled pieces smaller than half of the frame are elements.
+//! - A stroke without a fill is a curve where it is open, or larger than half of the frame. Where the drawing holds any such curve, its
+//!   closed strokes outside groups are curves too, for they belong to the same net; else they are elements.
 //! - Layers, groups that cover half of the frame, and groups of several things far apart are containers: their content is looked at.
 //! - A filled compound path is taken apart into connected pieces unless it is small and its pieces lie close together (a paw print);
 //!   pieces in the holes of another piece stay with it, and pieces of the same colour that abut are joined again.
@@ -15,6 +17,7 @@ use roxmltree::NodeId;
 
 use super::{
     Method,
+    curves::is_all_closed,
     extent::{bounds, clusters, longer, sole_shape},
     flatten,
     geometry::{Geometry, Painted},
@@ -58,6 +61,7 @@ impl Context {
 struct Selector<'a, 's, 'i> {
     inker: &'i Inker<'a, 's>,
     frame: Bounds<2>,
+    method: Method,
     /// Groups to be opened whatever they look like.
     opened: Vec<NodeId>,
     found: Selection,
@@ -72,7 +76,7 @@ pub(super) fn select(
 ) -> Result<Selection> {
     let mut opened: Vec<NodeId> = Vec::new();
     loop {
-        let mut selector = Selector { inker, frame, opened: opened.clone(), found: Selection::default() };
+        let mut selector = Selector { inker, frame, method, opened: opened.clone(), found: Selection::default() };
         for (context, root) in roots {
             selector.open(root, context)?;
         }
@@ -82,8 +86,28 @@ pub(super) fn select(
         };
         match lonely.filter(|one| is_spread(&one.parts)).map(|one| one.meta.xml) {
             Some(id) if !opened.contains(&id) => opened.push(id),
-            _ => return super::join::join(selector.found, inker, frame, method),
+            _ => {
+                if method == Method::Auto {
+                    promote(&mut selector.found.items);
+                }
+                return super::join::join(selector.found, inker, frame, method);
+            }
         }
+    }
+}
+
+/// Makes closed strokes curves where there are others.
+fn promote(items: &mut [Item]) {
+    if items.iter().any(|item| item.kind == Kind::Curve) {
+        items.iter_mut().filter(|item| item.origin == Origin::Stroke).for_each(|item| item.kind = Kind::Curve);
+    }
+}
+
+/// Whether a node draws strokes without fills, and nothing else.
+fn is_all_strokes(node: &Node) -> bool {
+    match &node.content {
+        Content::Group(children) => children.iter().all(|child| is_all_strokes(child)),
+        Content::Shape(geometry) => geometry.paint == Painted::Style && !is_filled(node, geometry),
     }
 }
 
@@ -149,6 +173,9 @@ impl Selector<'_, '_, '_> {
         if extent.is_empty() {
             return Ok(());
         }
+        if self.method == Method::Curves && is_all_strokes(node) {
+            return self.open(node, at);
+        }
         if self.is_container(node, &extent, at) {
             return self.open(node, at);
         }
@@ -189,6 +216,7 @@ impl Selector<'_, '_, '_> {
             ink: self.inker.ink(node, at.parent)?,
             kind,
             origin,
+            clip: at.clip.clone(),
             is_cut: false,
         };
         self.push(item, at);
@@ -224,7 +252,7 @@ impl Selector<'_, '_, '_> {
             self.found.background.push((at.parent, Rc::clone(node)));
             return Ok(());
         }
-        let closed = geometry.path.subpaths().all(is_closed);
+        let closed = is_all_closed(&geometry.path);
         let origin = if filled { Origin::Fill } else { Origin::Stroke };
         if filled {
             if geometry.paint == Painted::Style && self.split(node, leaf, parent, at)? {
@@ -237,7 +265,8 @@ impl Selector<'_, '_, '_> {
             self.inker.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
             return Ok(());
         }
-        let kind = if closed && self.share(&extent) < HALF { Kind::Element } else { Kind::Curve };
+        let is_small = closed && self.share(&extent) < HALF && self.method != Method::Curves;
+        let kind = if is_small { Kind::Element } else { Kind::Curve };
         self.take(node, at, kind, origin)
     }
 

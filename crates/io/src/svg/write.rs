@@ -5,11 +5,12 @@
 
 use std::{collections::BTreeSet, fmt::Write as _};
 
-use arabesque_core::{Border, Bounds, Domain, Outline, Placement, Result, Vector, Warning};
+use arabesque_core::{Border, Bounds, Domain, Drawn, Outline, Placement, Result, Vector, Warning};
 
 use super::{
-    Drawing, Page, Placed, Unit,
+    Drawing, Page, Placed, Stacking, Unit,
     write_background::background,
+    write_curves::curves,
     write_flat::{Flattener, Warp},
 };
 use crate::number::Decimals;
@@ -36,6 +37,8 @@ pub struct Sheet<'a> {
     pub drawing: &'a Drawing,
     /// Where they lie.
     pub placements: &'a [Placement<2>],
+    /// The strokes.
+    pub curves: &'a [Drawn<2>],
     /// The looks of frozen placements and of what else is kept.
     pub kept: Option<&'a Placed>,
     /// Page of the result.
@@ -194,6 +197,9 @@ impl<'a> Writer<'a> {
         let cut = self.cut_outline();
         let clip = self.sheet.shape.map(|_| format!("{}-domain", self.prefix));
         let flattener = Flattener::new(self.sheet.drawing, cut.as_ref(), clip.as_deref(), self.decimals);
+        if self.sheet.drawing.stacking == Stacking::ElementsAbove {
+            self.curves();
+        }
         let mut clipped = 0;
         for (index, placement) in self.sheet.placements.iter().enumerate() {
             for (copy, shift) in self.copies(placement).into_iter().enumerate() {
@@ -205,6 +211,9 @@ impl<'a> Writer<'a> {
                 clipped += self.element(&flattener, index, &id, shift)?;
             }
         }
+        if self.sheet.drawing.stacking == Stacking::CurvesAbove {
+            self.curves();
+        }
         self.out.push_str("</g>\n");
         if clipped > 0 {
             self.warnings.push(Warning::new(
@@ -213,6 +222,11 @@ impl<'a> Writer<'a> {
             ));
         }
         Ok(())
+    }
+
+    fn curves(&mut self) {
+        let text = curves(self.sheet, &self.prefix, self.decimals.minus(1), &|bounds| self.shifts(bounds));
+        self.out.push_str(&text);
     }
 
     /// Writes one copy of one placement; returns how many of its pieces could not be flattened.
@@ -431,6 +445,8 @@ mod tests {
         };
         Drawing {
             fragments: centres.iter().map(dot).collect(),
+            strokes: Vec::new(),
+            stacking: Stacking::default(),
             background: Some("<rect width=\"10\" height=\"10\" fill=\"#fed\"/>".into()),
             definitions: String::new(),
             page: Page { view: exemplar.window, unit: Unit::Mm, unit_per_user: 2.0 },
@@ -452,6 +468,7 @@ mod tests {
         let sheet = Sheet {
             drawing: &drawing,
             placements: &[at(0, -2.0, 8.0), at(0, 5.0, 5.0)],
+            curves: &[],
             kept: None,
             page,
             domain,

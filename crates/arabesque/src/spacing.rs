@@ -1,0 +1,41 @@
+//! The mean distance scale of an exemplar of any kind.
+
+use arabesque_core::{Exemplar, Measured, Path};
+
+/// Mean distance of elements, or of the lines of a net, whichever is smaller.
+///
+/// A square net of lines `s` apart has a length of `2 / s` for each unit of area.
+pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
+    let of_elements = exemplar.spacing();
+    if exemplar.curves.is_empty() {
+        return of_elements;
+    }
+    let size = exemplar.window.size().norm();
+    let length: f64 = exemplar.curves.iter().map(|c| length(&c.path, 1e-3 * size)).sum();
+    let of_curves = (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).min(size);
+    if exemplar.elements.is_empty() { of_curves } else { of_elements.min(of_curves) }
+}
+
+/// Length of a path, its chords within `tolerance` of it.
+pub(crate) fn length<const D: usize>(path: &Path<D>, tolerance: f64) -> f64 {
+    Measured::new(path.clone(), tolerance).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arabesque_core::{Bounds, Class, Curve, Vector};
+
+    #[test]
+    fn a_square_net_has_the_spacing_of_its_lines() {
+        let line = |a, b| Curve { path: Path::polyline(&[a, b]), style: 0, width: 1.0, colour: [0.0; 3] };
+        let at = |k: u8| 10.0 * f64::from(k) + 5.0;
+        let rows = (0..10).map(|k| line(Vector::xy(0.0, at(k)), Vector::xy(100.0, at(k))));
+        let columns = (0..10).map(|k| line(Vector::xy(at(k), 0.0), Vector::xy(at(k), 100.0)));
+        let window = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
+        let styles = vec![Class { name: "s".into() }];
+        let net = (rows.chain(columns).collect(), styles);
+        let exemplar = Exemplar::with_curves("t", (Vec::new(), Vec::new()), net, window).unwrap();
+        assert!((spacing(&exemplar) - 10.0).abs() < 1e-9);
+    }
+}

@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use arabesque::{Observer, Progress, core::Placement};
+use arabesque::{Observer, Progress, core::Preview};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::{
@@ -48,7 +48,7 @@ impl Watch {
 }
 
 impl Observer<2> for Watch {
-    fn step(&mut self, progress: &Progress, _: &dyn Fn() -> Vec<Placement<2>>) -> ControlFlow<()> {
+    fn step(&mut self, progress: &Progress, _: &dyn Fn() -> Preview<2>) -> ControlFlow<()> {
         if !self.bar.is_hidden() {
             self.bar.set_position((progress.fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
             self.bar.set_message(describe(progress, self.started.elapsed()));

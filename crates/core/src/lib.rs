@@ -37,7 +37,7 @@ pub use exemplar::{Class, Curve, Element, Exemplar, Role};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use grid_index::GridIndex;
 pub use limits::Limits;
-pub use observer::{Observer, Progress, Unobserved};
+pub use observer::{Observer, Preview, Progress, Unobserved};
 pub use outcome::{Drawn, EnergyPoint, Outcome, Placement, StopReason, Warning};
 pub use outline::{FillRule, Outline, Ring, ring_area};
 pub use path::{Cubic, Path, cubic_at, cubic_part, straight};

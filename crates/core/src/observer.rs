@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::Placement;
+use crate::{Drawn, Placement};
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,11 +23,26 @@ pub struct Progress {
     pub elements: usize,
 }
 
+/// The present state of a run, as it would be drawn.
+#[derive(Clone, Debug)]
+pub struct Preview<const D: usize> {
+    /// Elements.
+    pub placements: Vec<Placement<D>>,
+    /// Strokes.
+    pub curves: Vec<Drawn<D>>,
+}
+
+impl<const D: usize> Default for Preview<D> {
+    fn default() -> Self {
+        Self { placements: Vec::new(), curves: Vec::new() }
+    }
+}
+
 /// Receives progress and decides whether the run goes on.
 pub trait Observer<const D: usize> {
-    /// Called after each step. `preview` builds the present placements; building it costs time, so call it only to show it.
+    /// Called after each step. `preview` builds the present state; building it costs time, so call it only to show it.
     /// [`ControlFlow::Break`] ends the run early, with the best so far as its outcome.
-    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Vec<Placement<D>>) -> ControlFlow<()>;
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Preview<D>) -> ControlFlow<()>;
 }
 
 /// An observer that watches nothing and never stops the run.
@@ -35,7 +50,7 @@ pub trait Observer<const D: usize> {
 pub struct Unobserved;
 
 impl<const D: usize> Observer<D> for Unobserved {
-    fn step(&mut self, _: &Progress, _: &dyn Fn() -> Vec<Placement<D>>) -> ControlFlow<()> {
+    fn step(&mut self, _: &Progress, _: &dyn Fn() -> Preview<D>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }

@@ -11,6 +11,7 @@ pub(crate) struct Extent<'a, const D: usize> {
     request: &'a Request<D>,
     exemplar: &'a Exemplar<D>,
     radius: &'a [f64],
+    base: u32,
     /// The ink that is in the way.
     obstacles: Option<Arc<dyn Region<D>>>,
     /// How far outside the domain centres may lie.
@@ -22,23 +23,35 @@ pub(crate) struct Extent<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Extent<'a, D> {
-    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a [f64]) -> Self {
+    /// `base`: first pseudo element, see [`crate::level::Level::base`].
+    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a [f64], base: u32) -> Self {
         let largest = |field: &ScalarField<D>| field.range().1;
         let scale = largest(&request.fields.scale);
-        let thin = request.fields.density.range().0.powf(-1.0 / D as f64);
         let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
         let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
         let smallest_spacing_scale = request.fields.scale.range().0 * dense;
-        let margin = if request.border == Border::Clip { reach } else { 0.0 };
+        let strokes = radius[base as usize..].iter().copied().fold(0.0, f64::max) * scale;
+        let margin = if request.border == Border::Clip { reach } else { strokes };
         Self {
             request,
             exemplar,
             radius,
             obstacles: obstacles(request),
             margin,
-            largest_spacing_scale: scale * thin,
+            base,
+            largest_spacing_scale: Self::largest_spacing_scale(request),
             smallest_spacing_scale,
         }
+    }
+
+    /// Largest factor by which gaps are wider than in the exemplar.
+    pub(crate) fn largest_spacing_scale(request: &Request<D>) -> f64 {
+        request.fields.scale.range().1 * request.fields.density.range().0.powf(-1.0 / D as f64)
+    }
+
+    /// The rule of the border for element `i`. Strokes reach over the border in any case, so that they can be cut there.
+    fn border(&self, i: u32) -> Border {
+        if i >= self.base { Border::Clip } else { self.request.border }
     }
 
     /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
@@ -48,7 +61,7 @@ impl<'a, const D: usize> Extent<'a, D> {
         if self.is_blocked(p, 0.7 * reach) {
             return false;
         }
-        match self.request.border {
+        match self.border(i) {
             Border::Cross => distance >= 0.0,
             Border::Clip if distance >= 0.0 => true,
             Border::Clip => {
@@ -75,7 +88,7 @@ impl<'a, const D: usize> Extent<'a, D> {
     pub(crate) fn way_back(&self, i: u32, p: Vector<D>) -> Vector<D> {
         let domain = &self.request.domain;
         let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
-        let allowed = match self.request.border {
+        let allowed = match self.border(i) {
             Border::Cross | Border::Inside => 0.0,
             Border::Clip => -reach,
         };

@@ -11,11 +11,12 @@ use crate::{
     state::{LiveItem, State},
 };
 
-/// How the item lies, in terms of its exemplar element.
+/// How the items lie, in terms of their exemplar elements. Those from `base` on are curve samples and left out.
 pub(crate) fn placements<const D: usize>(
     items: &Items<D>,
     request: &Request<D>,
     extent: &Extent<'_, D>,
+    base: u32,
 ) -> Vec<Placement<D>> {
     let one = |(item, turn): &(Item<D>, Matrix<D>)| match item.frozen {
         Some(n) => Placement { frozen: Some(n as usize), ..request.frozen[n as usize].clone() },
@@ -26,7 +27,7 @@ pub(crate) fn placements<const D: usize>(
             frozen: None,
         },
     };
-    items.iter().map(one).collect()
+    items.iter().filter(|(item, _)| item.source < base).map(one).collect()
 }
 
 /// Control points of one item, see [`Placement::control`].
@@ -34,8 +35,14 @@ pub(crate) type Bend<const D: usize> = Vec<(Vector<D>, Vector<D>)>;
 
 /// Control points of the living items of a state whose samples go their own ways, one a sample; `None` where elements stay rigid.
 pub(crate) fn bends<const D: usize>(state: &State<'_, D>) -> Option<Vec<Bend<D>>> {
-    (state.deform == Deform::AsRigidAsPossible)
-        .then(|| state.items.iter().filter(|live| live.alive).map(|live| bend(state, live)).collect())
+    (state.deform == Deform::AsRigidAsPossible).then(|| {
+        state
+            .items
+            .iter()
+            .filter(|live| live.alive && live.item.source < state.level.base)
+            .map(|live| bend(state, live))
+            .collect()
+    })
 }
 
 fn bend<const D: usize>(state: &State<'_, D>, live: &LiveItem<D>) -> Bend<D> {

@@ -12,6 +12,7 @@ use crate::{
     library::Library,
     noise,
     params::{Initialisation, Params},
+    state::State,
 };
 
 /// Patch radius of the context relative to that of the patch.
@@ -23,8 +24,22 @@ const CELL: f64 = 0.3;
 /// A hole is laid out anew when its radius exceeds this share of the largest one in the exemplar.
 const HOLE: f64 = 0.9;
 
-/// Items with their turns, as they are handed from level to level.
+/// Items with their turns.
 pub(crate) type Items<const D: usize> = Vec<(Item<D>, Matrix<D>)>;
+
+/// What is handed from level to level.
+#[derive(Clone, Debug)]
+pub(crate) struct Draft<const D: usize> {
+    pub(crate) items: Items<D>,
+    /// Pairs of items, curve samples both, that an edge joins.
+    pub(crate) links: Vec<(u32, u32)>,
+}
+
+impl<const D: usize> Default for Draft<D> {
+    fn default() -> Self {
+        Self { items: Vec::new(), links: Vec::new() }
+    }
+}
 
 /// Lays out one output.
 pub(crate) struct Layout<'a, const D: usize> {
@@ -32,50 +47,48 @@ pub(crate) struct Layout<'a, const D: usize> {
     pub(crate) params: &'a Params,
     pub(crate) request: &'a Request<D>,
     pub(crate) extent: &'a Extent<'a, D>,
+    /// First pseudo element, see [`crate::level::Level::base`].
+    pub(crate) base: u32,
 }
 
 /// What the layout tells while it works: the state, and the share that is done.
 pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -> ControlFlow<()>;
 
 impl<const D: usize> Layout<'_, D> {
-    /// The first state: frozen items, and everything else by the chosen initialisation.
-    pub(crate) fn initialise(&self, watch: Watch<'_, D>) -> (Items<D>, ControlFlow<()>) {
-        let frozen = self.frozen();
+    /// The first state: what is frozen, and everything else by the chosen initialisation.
+    pub(crate) fn initialise(&self, frozen: Draft<D>, watch: Watch<'_, D>) -> (Draft<D>, ControlFlow<()>) {
         let mut canvas = self.canvas();
-        frozen.iter().for_each(|(item, _)| canvas.push(*item));
+        frozen.items.iter().for_each(|(item, _)| canvas.push(*item));
         let mut flow = ControlFlow::Continue(());
         if self.params.initialisation == Initialisation::WhiteNoise {
             noise::scatter(self.library, self.request, self.extent, &mut canvas);
         } else {
             let mut coverage = self.coverage();
+            // What the user drew is complete as it is: patches join it, they do not fill it up.
+            let drawn = frozen.items.iter().filter(|(item, _)| item.source >= self.base);
+            self.cover(&mut coverage, drawn.map(|(item, _)| item.position));
             flow = self.grower().fill(&mut canvas, &mut coverage, watch);
         }
-        (self.with_turns(canvas, &frozen), flow)
+        (Draft { items: self.with_turns(canvas, &frozen.items), links: frozen.links }, flow)
     }
 
     /// Lays out anew what is emptier than anything in the exemplar.
-    pub(crate) fn fill_holes(&self, items: &Items<D>) -> Items<D> {
+    pub(crate) fn fill_holes(&self, state: &mut State<'_, D>) {
         let mut canvas = self.canvas();
         let mut coverage = self.coverage();
-        items.iter().for_each(|(item, _)| canvas.push(*item));
-        let reach = HOLE * self.library.emptiness;
-        let fields = &self.request.fields;
-        coverage.cover_around(canvas.items.iter().map(|i| i.position), |p| reach * fields.frame(p).spacing_scale);
+        state.items.iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
+        let known = canvas.items.len();
+        self.cover(&mut coverage, canvas.items.iter().map(|i| i.position));
         // Holes are few and small: they are filled without asking whether to go on.
         let _ = self.grower().fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
-        self.with_turns(canvas, items)
+        canvas.items[known..].iter().for_each(|&item| state.push(item, Matrix::identity()));
+        state.reindex();
     }
 
-    /// The user's items, with their turns relative to the local frame.
-    fn frozen(&self) -> Items<D> {
-        let one = |(n, placement): (usize, &arabesque_core::Placement<D>)| {
-            let source = placement.source as u32;
-            let position = placement.transform.apply(self.library.centre[placement.source]);
-            let frame = self.request.fields.frame(position);
-            let turn = frame.rotation.transpose().compose(&placement.transform.rotation);
-            (Item { source, position, frozen: Some(n as u32) }, turn)
-        };
-        self.request.frozen.iter().enumerate().map(one).collect()
+    /// Takes for complete what lies around `places`.
+    fn cover(&self, coverage: &mut Coverage<D>, places: impl Iterator<Item = arabesque_core::Vector<D>>) {
+        let (reach, fields) = (HOLE * self.library.emptiness, &self.request.fields);
+        coverage.cover_around(places, |p| reach * fields.frame(p).spacing_scale);
     }
 
     fn with_turns(&self, canvas: Canvas<D>, known: &Items<D>) -> Items<D> {

@@ -2,7 +2,11 @@
 
 use arabesque_core::{Domain, GridIndex, Vector};
 
-use crate::{library::Library, samples::ElementSamples};
+use crate::{
+    curves::{Net, Star},
+    library::Library,
+    samples::ElementSamples,
+};
 
 /// A neighbour of an exemplar sample.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +18,10 @@ pub(crate) struct Near<const D: usize> {
     /// Its weight by distance; 0 beyond the radius: there only to be matched.
     pub(crate) weight: f32,
 }
+
+/// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample with an edge too few or too
+/// many an outlier; half of that lets it be matched and told to gain or lose the edge.
+const SINGLE: f64 = 0.5;
 
 /// A run of neighbours with the same key.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +58,14 @@ pub(crate) struct Level<const D: usize> {
     runs: Vec<Run>,
     /// Most similar samples of each sample, best first [Ma 2011 §4.2].
     pub(crate) alike: Vec<Vec<u32>>,
+    /// The sample graph of the curves, where there are any.
+    pub(crate) net: Option<Net<D>>,
+    /// First pseudo element: those before it are true elements, each of the others is a node of the net.
+    pub(crate) base: u32,
+    /// Edge set of each sample; empty for samples of elements, and for all where edges take no part in the comparison.
+    pub(crate) stars: Vec<Star<D>>,
+    /// Cost of an edge without a counterpart [Tu 2020 eq. 5].
+    pub(crate) single2: f32,
 }
 
 impl<const D: usize> Level<D> {
@@ -84,6 +100,10 @@ impl<const D: usize> Level<D> {
             run_starts: vec![0],
             runs: Vec::new(),
             alike: Vec::new(),
+            net: None,
+            base: library.len() as u32,
+            stars: Vec::new(),
+            single2: 0.0,
             parts,
         };
         for e in 0..library.len() {
@@ -97,6 +117,7 @@ impl<const D: usize> Level<D> {
                 level.position.push(library.centre[e] + offset);
             }
         }
+        level.stars = vec![Star::EMPTY; level.position.len()];
         level
     }
 
@@ -125,6 +146,26 @@ impl<const D: usize> Level<D> {
         }
         self.starts.push(self.near.len() as u32);
         self.run_starts.push(self.runs.len() as u32);
+    }
+
+    /// Makes everything from element `base` on the nodes of `net`. Edge sets are compared when `with_edges`.
+    pub(crate) fn with_net(mut self, net: Net<D>, base: u32, with_edges: bool) -> Self {
+        self.base = base;
+        self.single2 = (SINGLE * net.spacing * net.spacing) as f32;
+        if with_edges {
+            for i in 0..self.position.len() as u32 {
+                if let Some(node) = self.node_of(i) {
+                    self.stars[i as usize] = net.star(node);
+                }
+            }
+        }
+        self.net = Some(net);
+        self
+    }
+
+    /// The node of the net that sample `i` is, `None` for a sample of an element.
+    pub(crate) fn node_of(&self, i: u32) -> Option<u32> {
+        self.element[i as usize].checked_sub(self.base)
     }
 
     /// Neighbours of sample `i`, sorted by key.

@@ -9,6 +9,7 @@ use arabesque_core::Vector;
 
 use crate::{
     assignment::{Assignment, OUTLIER},
+    curves::Star,
     level::{Level, Near},
     library::Library,
     params::Matching,
@@ -32,6 +33,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) weight: f32,
     /// Whether it may be an outlier: frozen samples may not.
     pub(crate) frozen: bool,
+    /// Its edges, in exemplar directions and units.
+    pub(crate) star: Star<D>,
 }
 
 /// The neighbourhood of one output sample.
@@ -39,6 +42,8 @@ pub(crate) struct Row<const D: usize> {
 pub(crate) struct Surroundings<const D: usize> {
     /// Exemplar element that is drawn at the centre now.
     pub(crate) source: u32,
+    /// Edges of the centre.
+    pub(crate) star: Star<D>,
     /// The neighbours.
     pub(crate) rows: Vec<Row<D>>,
 }
@@ -85,8 +90,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         limit: f32,
         wanted: &dyn Fn(Vector<D>) -> bool,
     ) -> f32 {
-        let centre = self.library.feature[around.source as usize]
-            .distance2(&self.library.feature[self.level.element[i as usize] as usize]);
+        let centre = self.difference((around.source, &around.star), i);
         let pairs = match self.matching {
             Matching::Robust => self.robust(around, i, limit - centre),
             Matching::Hard => self.hard(around, i, limit - centre),
@@ -96,6 +100,15 @@ impl<'a, const D: usize> Matcher<'a, D> {
             return cost;
         }
         cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted)
+    }
+
+    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
+    fn difference(&self, (source, star): (u32, &Star<D>), i: u32) -> f32 {
+        let element = self.level.element[i as usize];
+        if element >= self.level.base {
+            return star.distance2(&self.level.stars[i as usize], self.level.single2);
+        }
+        self.library.feature[source as usize].distance2(&self.library.feature[element as usize])
     }
 
     fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
@@ -109,13 +122,12 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let seen = library.window.contains(origin + row.offset);
             let alone = if seen { outlier2 } else { 0.5 * outlier2 };
             self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
-            let feature = &library.feature[row.source as usize];
             let offset = row.offset.0.map(|v| v as f32);
             for column in level.neighbours_of_key(i, row.key) {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
                 if d2 < outlier2 || row.frozen {
-                    let d2 = d2 + feature.distance2(&library.feature[level.element[other.sample as usize] as usize]);
+                    let d2 = d2 + self.difference((row.source, &row.star), other.sample);
                     self.assignment.pair(column as u32, row.weight * d2);
                 }
             }
@@ -127,20 +139,19 @@ impl<'a, const D: usize> Matcher<'a, D> {
     }
 
     fn hard(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
-        let (level, library) = (self.level, self.library);
+        let level = self.level;
         let near = level.neighbours(i);
         self.assignment.begin(near.len());
         let mut bound = 0.0;
         for row in &around.rows {
             // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
             let mut least = LEFT_OVER * level.outlier2[row.key as usize];
-            let feature = &library.feature[row.source as usize];
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);
             for column in level.neighbours_of_key(i, row.key) {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                let d2 = d2 + feature.distance2(&library.feature[level.element[other.sample as usize] as usize]);
+                let d2 = d2 + self.difference((row.source, &row.star), other.sample);
                 self.assignment.pair(column as u32, d2);
                 least = least.min(d2);
             }

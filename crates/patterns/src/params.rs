@@ -102,6 +102,16 @@ named! {
     }
 }
 
+named! {
+    /// Whether a component takes part.
+    Switch {
+        /// It is left out.
+        Off = "off",
+        /// It takes part.
+        On = "on",
+    }
+}
+
 /// Parameters of the engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
@@ -138,6 +148,16 @@ pub struct Params {
     /// Cost of an exemplar neighbourhood that would reach out of the domain, per element outside relative to a surplus one, 0 to 10: where
     /// elements of the exemplar keep to its border, they will keep to that of the domain [Ma 2011 eq. 6]. Default: 0.
     pub boundary: f64,
+    /// Sampling distance of curves at the finest level, exemplar units; `None` picks it from the distance of neighbouring strokes.
+    pub spacing: Option<f64>,
+    /// Whether edge sets take part in the comparison of curve samples [Tu 2020 eq. 5]. Default: on.
+    pub edges: Switch,
+    /// Whether assigned tangents decide which edges make one stroke, rather than the edges themselves [Tu 2020 §4.4.2]. Default: on.
+    pub orientations: Switch,
+    /// Whether each stretch of an output stroke takes the shape of the exemplar, rather than a smooth line through its samples. Default: on.
+    pub shapes: Switch,
+    /// Whether ends that the exemplar would not show are joined or trimmed. Default: on.
+    pub mending: Switch,
     /// Elements in a patch of the first layout, 1 to 1000. Default: 14.
     pub patch: f64,
     /// Largest radius of such a patch, relative to the shorter side of the exemplar, 0.01 to 1: keeps copies short. Default: 0.22.
@@ -167,6 +187,11 @@ impl Default for Params {
             coherence: 4,
             missing: 1.0,
             boundary: 0.0,
+            spacing: None,
+            edges: Switch::On,
+            orientations: Switch::On,
+            shapes: Switch::On,
+            mending: Switch::On,
             patch: 14.0,
             patch_share: 0.22,
             novelty: 0.6,
@@ -336,6 +361,46 @@ const KNOBS: &[Knob] = &[
         f64::to_string
     ),
     knob!(
+        spacing,
+        "spacing",
+        "auto, or a length in the exemplar's units",
+        "Distance of curve samples at the finest level. Default: auto.",
+        |n: &str, v: &str| optional(n, v, |n, v| real(n, v, 1e-9, 1e9)),
+        shown::<f64>
+    ),
+    knob!(
+        edges,
+        "edges",
+        "off, on",
+        "Whether edges take part in comparing curve samples. Default: on.",
+        Switch::parse,
+        |v: &Switch| v.name().into()
+    ),
+    knob!(
+        orientations,
+        "orientations",
+        "off, on",
+        "Whether tangents decide which edges make one stroke. Default: on.",
+        Switch::parse,
+        |v: &Switch| v.name().into()
+    ),
+    knob!(
+        shapes,
+        "shapes",
+        "off, on",
+        "Whether strokes take the exemplar's shape between samples. Default: on.",
+        Switch::parse,
+        |v: &Switch| v.name().into()
+    ),
+    knob!(
+        mending,
+        "mending",
+        "off, on",
+        "Whether dangling ends are joined or trimmed. Default: on.",
+        Switch::parse,
+        |v: &Switch| v.name().into()
+    ),
+    knob!(
         patch,
         "patch",
         "1 to 1000",
@@ -401,11 +466,19 @@ impl Params {
                 levels: 1,
                 iterations: 10,
                 boundary: 1.0,
+                edges: Switch::Off,
+                shapes: Switch::Off,
+                mending: Switch::Off,
                 ..published
             }),
-            "tu2020" => {
-                Ok(Self { search: Search::PatchMatch, coarse_neighbours: 30.0, fine_neighbours: 20.0, ..published })
-            }
+            "tu2020" => Ok(Self {
+                search: Search::PatchMatch,
+                coarse_neighbours: 30.0,
+                fine_neighbours: 20.0,
+                shapes: Switch::Off,
+                mending: Switch::Off,
+                ..published
+            }),
             _ => Err(unknown("preset", name, Self::PRESETS)),
         }
     }

@@ -30,6 +30,13 @@ impl<const D: usize> ElementSamples<D> {
         Self { offsets: offsets.collect() }
     }
 
+    /// The same with `count` more elements of a single sample: curve samples.
+    pub(crate) fn with_points(&self, count: usize) -> Self {
+        let mut offsets = self.offsets.clone();
+        offsets.extend(std::iter::repeat_n(vec![Vector::ZERO], count));
+        Self { offsets }
+    }
+
     /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints of every
     /// second sample and the centre.
     pub(crate) fn at_detail(&self, e: usize, detail: f64) -> Vec<Vector<D>> {

@@ -102,10 +102,11 @@ fn exemplar_surroundings<const D: usize>(level: &Level<D>, i: u32) -> Surroundin
             offset: Vector(n.offset.map(f64::from)),
             weight: n.weight,
             frozen: false,
+            star: level.stars[n.sample as usize],
         })
         .collect();
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
-    Surroundings { source: level.element[i as usize], rows }
+    Surroundings { source: level.element[i as usize], star: level.stars[i as usize], rows }
 }
 
 fn search_one<const D: usize>(
@@ -171,12 +172,13 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
             offset,
             weight: fall_off(offset, radius),
             frozen: item.frozen.is_some(),
+            star: state.star(other),
         });
     });
     // Nearest first: the bound of the matcher then grows fastest.
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
     let source = state.items[sample.item as usize].item.source;
-    (Surroundings { source, rows }, dirty)
+    (Surroundings { source, star: state.star(s), rows }, dirty)
 }
 
 /// Exemplar samples to try for sample `s`, the likeliest first.

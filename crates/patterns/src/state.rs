@@ -2,7 +2,10 @@
 
 use arabesque_core::{Domain, GridIndex, Matrix, Request, Similarity, Vector};
 
-use crate::{canvas::Item, extent::Extent, level::Level, library::Library, params::Deform, samples::pose_of};
+use crate::{
+    canvas::Item, curves::Star, extent::Extent, layout::Draft, level::Level, library::Library, params::Deform,
+    samples::pose_of,
+};
 
 /// What the search found for one output sample.
 #[derive(Clone, Debug)]
@@ -58,6 +61,7 @@ pub(crate) struct LiveItem<const D: usize> {
 }
 
 /// The output at one level.
+#[derive(Clone)]
 pub(crate) struct State<'a, const D: usize> {
     pub(crate) library: &'a Library<D>,
     pub(crate) level: &'a Level<D>,
@@ -67,6 +71,10 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) deform: Deform,
     pub(crate) items: Vec<LiveItem<D>>,
     pub(crate) samples: Vec<Sample<D>>,
+    /// The samples that each curve sample is joined to; empty for samples of elements.
+    pub(crate) links: Vec<Vec<u32>>,
+    /// Directions in which strokes leave each curve sample, unit vectors in output coordinates.
+    pub(crate) tangents: Vec<Vec<Vector<D>>>,
     /// Living samples, parallel to the points of `index`.
     pub(crate) living: Vec<u32>,
     pub(crate) index: GridIndex<D>,
@@ -78,7 +86,7 @@ impl<'a, const D: usize> State<'a, D> {
         level: &'a Level<D>,
         request: &'a Request<D>,
         extent: &'a Extent<'a, D>,
-        (items, deform): (&[(Item<D>, Matrix<D>)], Deform),
+        (draft, deform): (&Draft<D>, Deform),
     ) -> Self {
         let mut state = Self {
             library,
@@ -86,12 +94,21 @@ impl<'a, const D: usize> State<'a, D> {
             request,
             extent,
             deform,
-            items: Vec::with_capacity(items.len()),
-            samples: Vec::with_capacity(items.len()),
+            items: Vec::with_capacity(draft.items.len()),
+            samples: Vec::with_capacity(draft.items.len()),
+            links: Vec::new(),
+            tangents: Vec::new(),
             living: Vec::new(),
             index: GridIndex::new(&[], 1.0, &request.domain),
         };
-        items.iter().for_each(|&(item, turn)| state.push(item, turn));
+        draft.items.iter().for_each(|&(item, turn)| state.push(item, turn));
+        for &(a, b) in &draft.links {
+            let [a, b] = [a, b].map(|i| state.items[i as usize].first);
+            if a != b && !state.links[a as usize].contains(&b) {
+                state.links[a as usize].push(b);
+                state.links[b as usize].push(a);
+            }
+        }
         state.reindex();
         state
     }
@@ -114,6 +131,8 @@ impl<'a, const D: usize> State<'a, D> {
                 dirty: true,
                 matched: None,
             });
+            self.links.push(Vec::new());
+            self.tangents.push(Vec::new());
         }
     }
 
@@ -202,6 +221,60 @@ impl<'a, const D: usize> State<'a, D> {
             }
         }
         any
+    }
+
+    /// Source of the item of a sample.
+    pub(crate) fn source(&self, s: u32) -> u32 {
+        self.items[self.samples[s as usize].item as usize].item.source
+    }
+
+    /// The node of the net that a curve sample was copied from; `None` for a sample of an element.
+    pub(crate) fn node(&self, s: u32) -> Option<u32> {
+        self.source(s).checked_sub(self.level.base)
+    }
+
+    /// Whether the user placed the sample.
+    pub(crate) fn is_frozen(&self, s: u32) -> bool {
+        self.items[self.samples[s as usize].item as usize].item.frozen.is_some()
+    }
+
+    /// Whether the sample is part of the output.
+    pub(crate) fn is_alive(&self, s: u32) -> bool {
+        self.items[self.samples[s as usize].item as usize].alive
+    }
+
+    /// From one sample to another by the shortest way.
+    pub(crate) fn offset(&self, from: u32, to: u32) -> Vector<D> {
+        self.request.domain.offset(self.samples[from as usize].position, self.samples[to as usize].position)
+    }
+
+    /// Distance of two samples in exemplar units.
+    pub(crate) fn reach(&self, a: u32, b: u32) -> f64 {
+        self.offset(a, b).norm() / self.request.fields.frame(self.samples[a as usize].position).spacing_scale
+    }
+
+    /// The edges of a sample in exemplar directions and units; none where edges take no part in the comparison.
+    pub(crate) fn star(&self, s: u32) -> Star<D> {
+        let links = &self.links[s as usize];
+        if links.is_empty() || self.level.stars[self.level.first[self.source(s) as usize] as usize].len() == 0 {
+            return Star::EMPTY;
+        }
+        let frame = self.request.fields.frame(self.samples[s as usize].position);
+        Star::new(links.iter().map(|&o| frame.to_exemplar(self.offset(s, o))))
+    }
+
+    /// Removes the item of a sample, and its edges.
+    pub(crate) fn kill(&mut self, s: u32) {
+        self.items[self.samples[s as usize].item as usize].alive = false;
+        self.unlink(s);
+    }
+
+    /// Removes the edges of a sample.
+    pub(crate) fn unlink(&mut self, s: u32) {
+        for o in std::mem::take(&mut self.links[s as usize]) {
+            self.links[o as usize].retain(|&p| p != s);
+            self.samples[o as usize].dirty = true;
+        }
     }
 
     /// The domain of the output.

@@ -13,8 +13,9 @@ pub(crate) fn class_targets<const D: usize>(
     library: &Library<D>,
     request: &Request<D>,
     extent: &Extent<'_, D>,
+    base: u32,
 ) -> Vec<f64> {
-    let reach = border_reach(library, request.border);
+    let reach = border_reach(library, request.border, base);
     let bounds = match request.domain.period() {
         Some(_) => request.domain.bounds(),
         None => request.domain.bounds().grown(extent.margin),
@@ -48,12 +49,13 @@ pub(crate) fn class_targets<const D: usize>(
 }
 
 /// How far inside the border the centres of each class lie; negative outside.
-fn border_reach<const D: usize>(library: &Library<D>, border: Border) -> Vec<f64> {
+fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32) -> Vec<f64> {
     (0..library.classes() as u32)
         .map(|c| {
             let members = library.members(c);
             let mean = members.iter().map(|&e| library.radius[e as usize]).sum::<f64>() / members.len().max(1) as f64;
-            match border {
+            let is_stroke = members.first().is_some_and(|&e| e >= base);
+            match if is_stroke { Border::Clip } else { border } {
                 Border::Inside => mean,
                 Border::Cross => 0.0,
                 Border::Clip => -0.8 * mean,

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use arabesque_core::{
     Border, Bounds, Domain, Exemplar, Fields, FillRule, Matrix, Observer, OrientationField, Outcome, Placement,
-    Progress, Region, Request, ScalarField, Shape, Similarity, StopReason, Unobserved, Vector,
+    Preview, Progress, Region, Request, ScalarField, Shape, Similarity, StopReason, Unobserved, Vector,
 };
 use arabesque_patterns::{Params, Prepared};
 
@@ -190,9 +190,9 @@ struct Stopper {
 }
 
 impl Observer<2> for Stopper {
-    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Vec<Placement<2>>) -> ControlFlow<()> {
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Preview<2>) -> ControlFlow<()> {
         self.steps += 1;
-        self.preview = preview().len();
+        self.preview = preview().placements.len();
         assert!((0.0..=1.0).contains(&progress.fraction));
         if progress.energy.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }

@@ -1,0 +1,113 @@
+//! Clean-up: ends that the exemplar would not show are joined to what they just miss, or trimmed.
+
+use arabesque_core::Vector;
+
+use super::{net::Net, votes::Votes};
+use crate::state::State;
+
+/// How far an end looks for something to join, in sampling distances.
+const REACH: f64 = 1.7;
+
+/// An end is out of place when this many edges are expected at it.
+const EXPECTED: f64 = 1.5;
+
+/// Cost of a joint that makes a new junction, in sampling distances.
+const NEW_JUNCTION: f64 = 0.6;
+
+/// Cost of a joint at a right angle to the end's direction, in sampling distances.
+const ANGLE: f64 = 0.8;
+
+/// Joins and trims. Returns how many samples changed.
+pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> usize {
+    let level = state.level;
+    let Some(net) = &level.net else { return 0 };
+    let mut changed = 0;
+    for _ in 0..3 {
+        let ends: Vec<u32> = state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, s)).collect();
+        let joined = join(state, net, votes, &ends);
+        changed += joined;
+        if joined == 0 {
+            break;
+        }
+    }
+    changed + trim(state, net, votes)
+}
+
+/// Number of edges that a sample should have.
+fn expected<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> f64 {
+    let told = votes.degree.get(s as usize).copied().filter(|d| d.is_finite());
+    told.unwrap_or_else(|| state.node(s).map_or(0.0, |e| net.degree(e) as f64))
+}
+
+/// Whether a stroke ends at `s` that should go on. Beyond the border of the domain anything may end.
+fn is_false_end<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> bool {
+    let p = state.samples[s as usize].position;
+    state.node(s).is_some()
+        && state.links[s as usize].len() == 1
+        && state.domain().signed_distance(p) > 0.0
+        && expected(state, net, votes, s) > EXPECTED
+}
+
+fn join<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, ends: &[u32]) -> usize {
+    let mut wishes: Vec<(f64, u32, u32)> = ends.iter().flat_map(|&s| partners(state, net, votes, s)).collect();
+    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut taken = vec![false; state.samples.len()];
+    let mut joined = 0;
+    for (_, a, b) in wishes {
+        if taken[a as usize] || taken[b as usize] {
+            continue;
+        }
+        (taken[a as usize], taken[b as usize]) = (true, true);
+        state.links[a as usize].push(b);
+        state.links[b as usize].push(a);
+        joined += 1;
+    }
+    joined
+}
+
+/// What the end `s` could be joined to, with the cost in sampling distances.
+fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> Vec<(f64, u32, u32)> {
+    let position = state.samples[s as usize].position;
+    let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
+    let Some(&before) = state.links[s as usize].first() else { return Vec::new() };
+    let way = direction(state.offset(before, s));
+    let mut found = Vec::new();
+    state.index.within(position, REACH * unit, |slot, offset| {
+        let o = state.living[slot];
+        let is_near = o == s || o == before || state.links[before as usize].contains(&o);
+        if is_near || state.samples[o as usize].key != state.samples[s as usize].key || state.node(o).is_none() {
+            return;
+        }
+        let degree = state.links[o as usize].len();
+        if degree == 0 {
+            return;
+        }
+        let wants = expected(state, net, votes, o) - degree as f64 > 0.4;
+        let turn = 1.0 - way.dot(direction(offset));
+        let cost = offset.norm() / unit + ANGLE * turn + if wants { 0.0 } else { NEW_JUNCTION };
+        let is_crowded = degree >= 4 || (!wants && degree >= 3);
+        if cost <= REACH && !is_crowded {
+            found.push((cost, s, o));
+        }
+    });
+    found
+}
+
+fn direction<const D: usize>(v: Vector<D>) -> Vector<D> {
+    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
+}
+
+/// Takes away false ends that are a single edge long, and samples without any edge.
+fn trim<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes) -> usize {
+    let is_stub = |s: u32| {
+        let ended = is_false_end(state, net, votes, s);
+        ended && state.links[s as usize].first().is_some_and(|&o| state.links[o as usize].len() != 2)
+    };
+    let alone = |s: u32| state.node(s).is_some() && state.links[s as usize].is_empty();
+    let gone: Vec<u32> =
+        state.living.iter().copied().filter(|&s| !state.is_frozen(s) && (alone(s) || is_stub(s))).collect();
+    for &s in &gone {
+        state.kill(s);
+    }
+    gone.len()
+}

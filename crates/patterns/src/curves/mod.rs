@@ -1,0 +1,45 @@
+//! Continuous curves [Tu 2020]: the samples of a stroke are items of the engine like any others, each of one sample; what makes them curves
+//! is here.
+//!
+//! A curve sample is an item whose source is a node of the exemplar's sample graph. Layout, search, positions, attributes and existence
+//! treat it as they treat a small element; the difference of edge sets enters the comparison of neighbourhoods, and after each step edges
+//! and tangents are assigned. At the end of a level, edges are chained into strokes, each with the stretch of exemplar line that was voted
+//! for it; the next level samples these more densely, and after the last one they are the result.
+//!
+//! | step | file | source |
+//! |---|---|---|
+//! | lines, junctions, ends, corners | `skeleton`, `contact` | §4.1.1 |
+//! | sample graph, edge sets | `net` | §4.1, eq. 5 |
+//! | pseudo elements for the engine | `cast` | |
+//! | edge assignment | `votes`, `edges` | eqs 17 to 22 |
+//! | orientation assignment | `tangents` | §4.3.4, fig. 9 |
+//! | dangling ends, near misses | `mend` | beyond the paper |
+//! | chaining | `chains` | §4.4.2, fig. 11 |
+//! | shape of a stroke | `shape` | beyond the paper: the exemplar's own line, bent to its ends |
+//! | next level | `resample` | §4.3.5 |
+//!
+//! Beyond the paper: the samples between two knots carry the true line of the exemplar, so that corners stay corners and arcs stay arcs; an edge
+//! that the window of the exemplar cuts off counts as one, so that nothing ends where merely the example ends.
+
+mod cast;
+mod chains;
+mod contact;
+mod edges;
+mod mend;
+mod net;
+mod resample;
+mod shape;
+mod skeleton;
+mod tangents;
+mod votes;
+
+pub(crate) use cast::Cast;
+pub(crate) use chains::{Chain, chains};
+pub(crate) use edges::{assign as assign_edges, link_sources};
+pub(crate) use mend::mend;
+pub(crate) use net::{Net, Star};
+pub(crate) use resample::resample;
+pub(crate) use shape::{polish, strokes as draw};
+pub(crate) use skeleton::{Line, Skeleton};
+pub(crate) use tangents::assign as assign_tangents;
+pub(crate) use votes::collect_votes;

@@ -1,0 +1,90 @@
+//! What the user drew, in the words of the engine.
+
+use std::sync::Arc;
+
+use arabesque_core::{Matrix, Measured, Path, Request, Vector};
+
+use crate::{
+    canvas::Item,
+    curves::{Line, Net, Skeleton},
+    layout::{Draft, Items},
+    library::Library,
+    setting::Setting,
+};
+
+/// Stands for a frozen stroke where items name the frozen placement they are.
+pub(crate) const STROKE: u32 = u32::MAX;
+
+/// Frozen elements and samples of frozen strokes.
+pub(crate) fn draft<const D: usize>(request: &Request<D>, setting: &Setting<D>) -> Draft<D> {
+    let mut draft = Draft { items: elements(request, &setting.library), links: Vec::new() };
+    if let Some(net) = &setting.level.net {
+        strokes(request, setting, net, &mut draft);
+    }
+    draft
+}
+
+fn elements<const D: usize>(request: &Request<D>, library: &Library<D>) -> Items<D> {
+    let one = |(n, placement): (usize, &arabesque_core::Placement<D>)| {
+        let source = placement.source as u32;
+        let position = placement.transform.apply(library.centre[placement.source]);
+        let frame = request.fields.frame(position);
+        let turn = frame.rotation.transpose().compose(&placement.transform.rotation);
+        (Item { source, position, frozen: Some(n as u32) }, turn)
+    };
+    request.frozen.iter().enumerate().map(one).collect()
+}
+
+/// Samples the frozen strokes near the domain as densely as the exemplar.
+fn strokes<const D: usize>(request: &Request<D>, setting: &Setting<D>, net: &Net<D>, draft: &mut Draft<D>) {
+    if request.frozen_curves.is_empty() {
+        return;
+    }
+    let scale = request.fields.frame(request.domain.bounds().centre()).spacing_scale;
+    let side = setting.library.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+    let lines = request.frozen_curves.iter().enumerate().map(|(n, drawn)| {
+        let curve = &setting.exemplar.curves[drawn.source];
+        line(n as u32, drawn.path.clone(), curve.width * drawn.scale, 5e-4 * side)
+    });
+    let skeleton = Arc::new(Skeleton::of_lines(lines.collect(), side));
+    let drawn = Net::new(&skeleton, net.spacing * scale);
+    // Farther out nothing sees them.
+    let reach = 2.0 * setting.level.radius * scale;
+    let mut item_of = vec![None; drawn.nodes.len()];
+    for (n, node) in drawn.nodes.iter().enumerate() {
+        if request.domain.signed_distance(node.position) < -reach {
+            continue;
+        }
+        let ways = node.arms.iter().map(|a| a.tangent);
+        let style = request.frozen_curves[node.curve as usize].source;
+        let source = alike(setting, net, &ways.collect::<Vec<_>>(), setting.exemplar.curves[style].style);
+        item_of[n] = Some(draft.items.len() as u32);
+        let item = Item { source: setting.level.base + source, position: node.position, frozen: Some(STROKE) };
+        draft.items.push((item, Matrix::identity()));
+    }
+    for (n, node) in drawn.nodes.iter().enumerate() {
+        for arm in node.arms.iter().filter(|arm| arm.to as usize > n) {
+            if let (Some(a), Some(b)) = (item_of[n], item_of[arm.to as usize]) {
+                draft.links.push((a, b));
+            }
+        }
+    }
+}
+
+fn line<const D: usize>(number: u32, path: Path<D>, width: f64, tolerance: f64) -> Line<D> {
+    Line { measured: Measured::new(path, tolerance), curve: number, width, is_cut: [false; 2], stops: Vec::new() }
+}
+
+/// The node of the exemplar whose strokes leave it most alike; one of the same style where there is any.
+fn alike<const D: usize>(setting: &Setting<D>, net: &Net<D>, ways: &[Vector<D>], style: usize) -> u32 {
+    let misfit = |n: u32| -> f64 {
+        let node = &net.nodes[n as usize];
+        let own: Vec<Vector<D>> = node.arms.iter().map(|a| a.tangent).chain(node.beyond.iter().copied()).collect();
+        let nearest = |w: &Vector<D>| own.iter().map(|t| 1.0 - t.dot(*w)).fold(2.0, f64::min);
+        let other = if setting.exemplar.curves[node.curve as usize].style == style { 0.0 } else { 100.0 };
+        // An end of the drawing may be an end or the border of what was drawn: fewer ways cost little.
+        ways.iter().map(nearest).sum::<f64>() + 0.3 * (own.len() as f64 - ways.len() as f64).abs() + other
+    };
+    let nodes = 0..net.nodes.len() as u32;
+    nodes.map(|n| (misfit(n), n)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map_or(0, |b| b.1)
+}

@@ -1,0 +1,284 @@
+//! One run: initialise, then level by level search and assign, then place and draw.
+
+use std::ops::ControlFlow;
+
+use arabesque_core::{Drawn, EnergyPoint, Matrix, Observer, Preview, Progress, Request};
+
+use crate::{
+    attributes,
+    canvas::Item,
+    curves,
+    engine::Prepared,
+    existence::{self, Changes},
+    extent::Extent,
+    finish, frozen,
+    layout::{Draft, Layout},
+    matching::Prices,
+    params::{Attributes, Existence, Initialisation, Search, Switch},
+    positions,
+    search::{self, SearchParams},
+    setting::Setting,
+    state::State,
+};
+
+/// Share of the progress that the first layout counts for.
+const LAYOUT_SHARE: f64 = 0.2;
+
+/// From white noise, elements are removed down to this share of their number at first: what is wrong everywhere is better thinned
+/// out and grown again.
+const NOISE_FLOOR: f64 = 0.3;
+
+/// Elements are never removed below this share of their number at the end, and not at all below it after patch copy.
+const FLOOR: f64 = 0.95;
+
+/// Moves below this share of the mean spacing do not make the neighbours search again.
+const NOTICEABLE: f64 = 0.01;
+
+/// A level, with what it means for the request.
+pub(crate) struct Stand<'a, const D: usize> {
+    pub(crate) setting: &'a Setting<D>,
+    pub(crate) extent: &'a Extent<'a, D>,
+    /// Elements of each class that the output should have.
+    pub(crate) targets: &'a [f64],
+}
+
+/// What one run works on.
+pub(crate) struct Run<'a, const D: usize> {
+    pub(crate) prepared: &'a Prepared<D>,
+    pub(crate) request: &'a Request<D>,
+    /// The levels that are used, coarsest first.
+    pub(crate) stands: Vec<Stand<'a, D>>,
+    /// Iterations a level.
+    pub(crate) iterations: usize,
+}
+
+/// A level as it ended.
+struct Finished<const D: usize> {
+    /// What the next level starts from, or after the last one, the elements.
+    draft: Draft<D>,
+    bends: Option<Vec<finish::Bend<D>>>,
+    curves: Vec<Drawn<D>>,
+}
+
+impl<const D: usize> Run<'_, D> {
+    /// Everything up to the clearance check, in the state in which the observer left it.
+    pub(crate) fn synthesise(
+        &self,
+        trace: &mut Vec<EnergyPoint>,
+        observer: &mut dyn Observer<D>,
+    ) -> (Preview<D>, ControlFlow<()>) {
+        let mut flow = ControlFlow::Continue(());
+        let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
+        if let Some(stand) = self.stands.first() {
+            let frozen = frozen::draft(self.request, stand.setting);
+            let layout = self.layout(stand);
+            (done.draft, flow) = layout.initialise(frozen, &mut |items, share| {
+                observer.step(&self.laid_out(items.len(), share), &|| self.layout_preview(stand, items))
+            });
+        }
+        for k in 0..self.stands.len() {
+            if flow.is_break() && k > 0 {
+                break;
+            }
+            (done, flow) = self.level((k, &done.draft), flow, trace, observer);
+        }
+        (self.result(&done), flow)
+    }
+
+    fn layout<'s>(&'s self, stand: &Stand<'s, D>) -> Layout<'s, D> {
+        Layout {
+            library: &stand.setting.library,
+            params: &self.prepared.params,
+            request: self.request,
+            extent: stand.extent,
+            base: stand.setting.level.base,
+        }
+    }
+
+    fn result(&self, done: &Finished<D>) -> Preview<D> {
+        let Some(stand) = self.stands.last() else { return Preview::default() };
+        let mut placements =
+            finish::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
+        for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
+            placement.control.clone_from(control);
+        }
+        Preview { placements, curves: done.curves.clone() }
+    }
+
+    fn laid_out(&self, elements: usize, share: f64) -> Progress {
+        Progress {
+            level: 0,
+            levels: self.stands.len(),
+            iteration: 0,
+            iterations: self.iterations,
+            fraction: LAYOUT_SHARE * share,
+            energy: None,
+            elements,
+        }
+    }
+    fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
+        let params = &self.prepared.params;
+        SearchParams {
+            search: params.search,
+            matching: params.matching,
+            prices: Prices { missing: params.missing as f32, outside: params.boundary as f32 },
+            coherence: params.coherence,
+            random: if iteration == 0 { 8 } else { 2 },
+            rounds: match (params.search, iteration) {
+                (Search::PatchMatch, 0) => 5,
+                (Search::PatchMatch, _) => 2,
+                _ => 1,
+            },
+            step: (k * 10_000 + iteration) as u64,
+        }
+    }
+
+    /// Share of the target numbers below which no element is removed.
+    fn floor(&self, k: usize, iteration: usize) -> f64 {
+        if self.prepared.params.initialisation != Initialisation::WhiteNoise {
+            return FLOOR;
+        }
+        let done = (k as f64 + iteration as f64 / self.iterations.max(1) as f64) / self.stands.len() as f64;
+        (NOISE_FLOOR + done).min(FLOOR)
+    }
+
+    fn progress(&self, k: usize, iteration: usize, state: &State<'_, D>) -> Progress {
+        let (levels, iterations) = (self.stands.len(), self.iterations);
+        let within = (iteration + 1) as f64 / iterations.max(1) as f64;
+        Progress {
+            level: k,
+            levels,
+            iteration: iteration + 1,
+            iterations,
+            fraction: LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * (k as f64 + within) / levels as f64,
+            energy: Some(state.energy()),
+            elements: state.count(),
+        }
+    }
+
+    /// The elements alone: strokes are not known before the samples are joined.
+    fn layout_preview(&self, stand: &Stand<'_, D>, items: &[Item<D>]) -> Preview<D> {
+        let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
+        let placements = finish::placements(&items, self.request, stand.extent, stand.setting.level.base);
+        let state = self.state(stand, &Draft { items, links: Vec::new() });
+        Preview { placements, curves: self.strokes(state) }
+    }
+
+    fn state<'s>(&'s self, stand: &Stand<'s, D>, draft: &Draft<D>) -> State<'s, D> {
+        let setting = stand.setting;
+        State::new(&setting.library, &setting.level, self.request, stand.extent, (draft, self.prepared.params.deform))
+    }
+
+    /// Search and assign at one level, then mend and hand over to the next.
+    fn level(
+        &self,
+        (k, draft): (usize, &Draft<D>),
+        flow: ControlFlow<()>,
+        trace: &mut Vec<EnergyPoint>,
+        observer: &mut dyn Observer<D>,
+    ) -> (Finished<D>, ControlFlow<()>) {
+        let stand = &self.stands[k];
+        let mut state = self.state(stand, draft);
+        curves::link_sources(&mut state);
+        let flow = if flow.is_break() { flow } else { self.refine(k, &mut state, trace, observer) };
+        let params = &self.prepared.params;
+        if params.existence == Existence::Voted && flow.is_continue() {
+            self.layout(stand).fill_holes(&mut state);
+            curves::link_sources(&mut state);
+        }
+        (self.finish(k, state, flow), flow)
+    }
+
+    fn refine(
+        &self,
+        k: usize,
+        state: &mut State<'_, D>,
+        trace: &mut Vec<EnergyPoint>,
+        observer: &mut dyn Observer<D>,
+    ) -> ControlFlow<()> {
+        for iteration in 0..self.iterations {
+            let searched = search::search(state, &self.search_params(k, iteration));
+            trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
+            let changed = self.assign(state, &self.stands[k], self.floor(k, iteration));
+            observer.step(&self.progress(k, iteration, state), &|| self.snapshot(&self.stands[k], state))?;
+            if !changed || searched == 0 {
+                break;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// One assignment step: attributes, positions, existence, edges, tangents. Returns whether anything changed.
+    fn assign(&self, state: &mut State<'_, D>, stand: &Stand<'_, D>, floor: f64) -> bool {
+        let exchanged = match self.prepared.params.attributes {
+            Attributes::Selected => attributes::assign(state),
+            Attributes::Kept => 0,
+        };
+        let mut position = positions::assign(state);
+        let changes = match self.prepared.params.existence {
+            Existence::Voted => existence::assign(state, stand.targets, floor),
+            Existence::Fixed => Changes::default(),
+        };
+        position.extend(state.samples[position.len()..].iter().map(|s| s.position));
+        state.follow_samples(&position);
+        let (_, joined) = curves::assign_edges(state);
+        curves::assign_tangents(state);
+        let moved = state.announce_moves(NOTICEABLE * state.library.spacing * stand.extent.smallest_spacing_scale);
+        state.reindex();
+        moved || exchanged + joined > 0 || changes != Changes::default()
+    }
+
+    /// What a level leaves: elements and, for the next level, denser samples along its strokes; after the last level, the strokes.
+    fn finish(&self, k: usize, mut state: State<'_, D>, flow: ControlFlow<()>) -> Finished<D> {
+        let base = state.level.base;
+        let bends = finish::bends(&state);
+        let next = self.stands.get(k + 1).filter(|_| flow.is_continue());
+        let finer = next.and_then(|next| next.setting.level.net.as_ref().map(|net| (next, net)));
+        let Some((next, net)) = finer else {
+            let items = living(&state).into_iter().filter(|(item, _)| next.is_some() || item.source < base).collect();
+            let curves = if next.is_some() { Vec::new() } else { self.strokes(state) };
+            return Finished { draft: Draft { items, links: Vec::new() }, bends, curves };
+        };
+        let chains = self.chains(&mut state);
+        let frozen = frozen::draft(self.request, next.setting);
+        let draft = curves::resample(&state, &chains, (net, next.setting.level.base), frozen);
+        Finished { draft, bends, curves: Vec::new() }
+    }
+
+    /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.
+    fn chains(&self, state: &mut State<'_, D>) -> Vec<curves::Chain> {
+        let params = &self.prepared.params;
+        let votes = curves::collect_votes(state);
+        if params.mending == Switch::On {
+            curves::mend(state, &votes);
+            state.reindex();
+        }
+        let chains = curves::chains(state, &votes, params.orientations == Switch::On);
+        if params.shapes == Switch::On {
+            let position = curves::polish(state, &chains);
+            state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
+        }
+        chains
+    }
+
+    fn strokes(&self, mut state: State<'_, D>) -> Vec<Drawn<D>> {
+        if state.level.net.is_none() {
+            return Vec::new();
+        }
+        let chains = self.chains(&mut state);
+        curves::draw(&state, &chains)
+    }
+
+    fn snapshot(&self, stand: &Stand<'_, D>, state: &State<'_, D>) -> Preview<D> {
+        let base = state.level.base;
+        let mut placements = finish::placements(&living(state), self.request, stand.extent, base);
+        for (placement, control) in placements.iter_mut().zip(finish::bends(state).into_iter().flatten()) {
+            placement.control = control;
+        }
+        Preview { placements, curves: self.strokes(state.clone()) }
+    }
+}
+
+fn living<const D: usize>(state: &State<'_, D>) -> Vec<(Item<D>, Matrix<D>)> {
+    state.items.iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect()
+}

@@ -1,0 +1,100 @@
+//! What one level works with: the exemplar as it is sampled there, and its neighbourhoods.
+
+use std::sync::Arc;
+
+use arabesque_core::{Exemplar, Vector};
+
+use crate::{
+    curves::{Cast, Skeleton},
+    level::Level,
+    library::Library,
+    params::{Matching, Params, Search, Switch},
+    samples::ElementSamples,
+    search,
+};
+
+/// Sampling distance of the finest level relative to the mean distance of neighbouring strokes (area over length).
+const STROKE_GAP: f64 = 1.5;
+
+/// It is no smaller than this share of the shorter side of the window, and no larger than that.
+const STEP_RANGE: (f64, f64) = (1.0 / 50.0, 1.0 / 16.0);
+
+/// Sampling distance of the coarsest level relative to the finest one.
+const COARSER: f64 = 1.75;
+
+/// Mean numbers of samples in a neighbourhood of curves at the coarsest and the finest level [Tu 2020 §C].
+const NEIGHBOURS: (f64, f64) = (30.0, 20.0);
+
+/// The exemplar at one level.
+#[derive(Clone, Debug)]
+pub(crate) struct Setting<const D: usize> {
+    /// Elements and, as pseudo elements, curve samples.
+    pub(crate) exemplar: Arc<Exemplar<D>>,
+    pub(crate) library: Arc<Library<D>>,
+    pub(crate) level: Level<D>,
+}
+
+/// The settings of all levels, coarsest first.
+pub(crate) fn settings<const D: usize>(
+    exemplar: &Exemplar<D>,
+    skeleton: Option<&Arc<Skeleton<D>>>,
+    params: &Params,
+) -> Vec<Setting<D>> {
+    let samples = ElementSamples::new(exemplar, params.samples);
+    let Some(skeleton) = skeleton else {
+        let (shared, library) = (Arc::new(exemplar.clone()), Arc::new(Library::new(exemplar)));
+        let setting = |number| {
+            let counts = (params.coarse_neighbours, params.fine_neighbours);
+            let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
+            Setting { exemplar: shared.clone(), library: library.clone(), level }
+        };
+        return (0..params.levels).map(setting).map(|s| with_sets(s, params)).collect();
+    };
+    let step = params.spacing.unwrap_or_else(|| finest_spacing(exemplar, skeleton));
+    let setting = |number| {
+        let cast = Cast::new(exemplar, skeleton, step * COARSER.powf(1.0 - detail(params, number)));
+        let library = Library::new(&cast.exemplar);
+        let samples = samples.with_points(cast.exemplar.elements.len() - cast.base);
+        let radius = ball(&library, params, number, NEIGHBOURS);
+        let level = Level::new(&library, &samples, detail(params, number), radius);
+        let level = level.with_net(cast.net, cast.base as u32, params.edges == Switch::On);
+        Setting { exemplar: Arc::new(cast.exemplar), library: Arc::new(library), level }
+    };
+    (0..params.levels).map(setting).map(|s| with_sets(s, params)).collect()
+}
+
+/// 0 at the coarsest level, 1 at the finest.
+fn detail(params: &Params, number: usize) -> f64 {
+    if params.levels == 1 { 1.0 } else { number as f64 / (params.levels - 1) as f64 }
+}
+
+/// Radius of the neighbourhoods, and by how much those of the exemplar are larger.
+fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> (f64, f64) {
+    let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
+    let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(shortest(library.window.size())));
+    let slack = match params.matching {
+        Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max),
+        Matching::Hard => radius,
+    };
+    (radius, slack)
+}
+
+fn with_sets<const D: usize>(mut setting: Setting<D>, params: &Params) -> Setting<D> {
+    if params.search == Search::KCoherence {
+        setting.level.alike = search::similarity_sets(&setting.level, &setting.library, params);
+    }
+    setting
+}
+
+/// Sampling distance of the finest level: about that of neighbouring strokes, so that neighbourhoods are as dense along as across.
+fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>) -> f64 {
+    let length: f64 = skeleton.lines.iter().map(|l| l.measured.length()).sum();
+    let side = shortest(exemplar.window.size());
+    let gap = (exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));
+    (STROKE_GAP * gap).clamp(STEP_RANGE.0 * side, STEP_RANGE.1 * side)
+}
+
+/// The shortest side of a box of this size.
+pub(crate) fn shortest<const D: usize>(v: Vector<D>) -> f64 {
+    v.0.into_iter().fold(f64::INFINITY, f64::min)
+}

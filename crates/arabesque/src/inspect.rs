@@ -7,7 +7,13 @@ use arabesque_io::{
 };
 use serde::Serialize;
 
-use crate::{Format, Input, Subject, recipe::Method, size::unit_name, subject::dots};
+use crate::{
+    Format, Input, Subject,
+    recipe::Method,
+    size::unit_name,
+    spacing::{length, spacing},
+    subject::dots,
+};
 
 /// What was understood of an exemplar.
 #[derive(Clone, Debug, Serialize)]
@@ -22,6 +28,10 @@ pub struct Report {
     pub sources: usize,
     /// How many are cut at the frame and serve as context only.
     pub cut_at_frame: usize,
+    /// Number of curves.
+    pub curves: usize,
+    /// How they are painted, in order of their first curve.
+    pub styles: Vec<StyleReport>,
     /// The classes, in order of their first element.
     pub classes: Vec<ClassReport>,
     /// Lower corner of the frame.
@@ -32,7 +42,7 @@ pub struct Report {
     pub unit: Option<&'static str>,
     /// How many of that unit one user unit is.
     pub unit_per_user: Option<f64>,
-    /// Mean distance of elements, in user units.
+    /// Mean distance of elements, or of the lines of a net where that is smaller, in user units.
     pub spacing: f64,
     /// Neighbourhood radius that a run would use by default on its finest level, in user units.
     pub suggested_radius: f64,
@@ -54,6 +64,23 @@ pub struct ClassReport {
     pub elements: usize,
     /// Mean diameter of its elements, in user units; 0 for points.
     pub diameter: f64,
+}
+
+/// Curves painted alike.
+#[derive(Clone, Debug, Serialize)]
+pub struct StyleReport {
+    /// Its name.
+    pub name: String,
+    /// How many curves it has.
+    pub curves: usize,
+    /// How many of them are closed.
+    pub closed: usize,
+    /// Ends of the others inside the frame.
+    pub ends: usize,
+    /// Length of all of them, in user units.
+    pub length: f64,
+    /// Width of the stroke, in user units.
+    pub width: f64,
 }
 
 /// A warning.
@@ -115,13 +142,15 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
     });
     let sources = elements.iter().filter(|e| e.role == Role::Source).count();
     let ball = if D == 3 { 4.0 / 3.0 * std::f64::consts::PI } else { std::f64::consts::PI };
-    let spacing = exemplar.spacing();
+    let spacing = spacing(exemplar);
     Report {
         file: input.name().to_owned(),
         kind,
         elements: elements.len(),
         sources,
         cut_at_frame: elements.len() - sources,
+        curves: exemplar.curves.len(),
+        styles: (0..exemplar.styles.len()).map(|style| describe_style(exemplar, style)).collect(),
         classes: classes.collect(),
         frame_min: exemplar.window.min.0.to_vec(),
         frame_size: exemplar.window.size().0.to_vec(),
@@ -135,8 +164,25 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
     }
 }
 
+fn describe_style<const D: usize>(exemplar: &Exemplar<D>, style: usize) -> StyleReport {
+    let members: Vec<_> = exemplar.curves.iter().filter(|c| c.style == style).collect();
+    let tolerance = 1e-3 * exemplar.window.size().norm();
+    let inside = exemplar.window.grown(-tolerance);
+    let open = members.iter().filter(|c| !c.path.closed);
+    let ends = open.flat_map(|c| [c.path.start(), c.path.end()]).flatten().filter(|p| inside.contains(*p));
+    StyleReport {
+        name: exemplar.styles[style].name.clone(),
+        curves: members.len(),
+        closed: members.iter().filter(|c| c.path.closed).count(),
+        ends: ends.count(),
+        length: members.iter().map(|c| length(&c.path, tolerance)).sum(),
+        width: members.first().map_or(0.0, |c| c.width),
+    }
+}
+
 impl Report {
-    /// A picture of what was understood: the exemplar faded, every outline in the colour of its class, the frame, the centres.
+    /// A picture of what was understood: the exemplar faded, every outline in the colour of its class, every
+    /// curve in that of its style, the frame, the centres and ends.
     ///
     /// # Errors
     /// [`Error::Unsupported`] for points in space, and for formats other than SVG and PNG.

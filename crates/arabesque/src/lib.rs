@@ -41,7 +41,7 @@ pub use artwork::{Artwork, Encoded};
 pub use carrier::recipe_in;
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
-pub use inspect::{ClassReport, Report, inspect};
+pub use inspect::{ClassReport, Report, StyleReport, inspect};
 pub use nearest::nearest;
 pub use pool::in_pool;
 pub use prepare::Prepared;

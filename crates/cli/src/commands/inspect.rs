@@ -18,7 +18,7 @@ use crate::{
 pub(crate) struct Inspect {
     /// An SVG drawing, or points as CSV; - is standard input
     file: String,
-    /// Draw it as well, SVG or PNG: outlines in the colours of their classes, the frame, the centres
+    /// Draw it as well, SVG or PNG: outlines in the colours of their classes, curves in those of their styles, the frame
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<String>,
     /// What the exemplar is made of
@@ -78,13 +78,25 @@ fn print(report: &Report) -> Result<(), Failure> {
         report.unit.zip(report.unit_per_user).map_or_else(String::new, |(unit, n)| format!(" (1 unit = {n} {unit})"));
     writeln!(out, "{}: {}", report.file, report.kind)?;
     writeln!(out, "  frame: {}{unit}", join(&report.frame_size))?;
-    writeln!(out, "  elements: {}, of these {} cut at the frame", report.elements, report.cut_at_frame)?;
+    if report.elements > 0 || report.curves == 0 {
+        writeln!(out, "  elements: {}, of these {} cut at the frame", report.elements, report.cut_at_frame)?;
+    }
+    if report.curves > 0 {
+        writeln!(out, "  curves: {}", report.curves)?;
+    }
     writeln!(out, "  spacing: {:.4}; suggested radius: {:.4}", report.spacing, report.suggested_radius)?;
     if !report.layers.is_empty() {
         writeln!(out, "  a whole job, with the layers {}", report.layers.join(", "))?;
     }
     for class in &report.classes {
         writeln!(out, "  class {}: {} elements, diameter {:.4}", class.name, class.elements, class.diameter)?;
+    }
+    for style in &report.styles {
+        writeln!(
+            out,
+            "  style {}: {} curves ({} closed), {} ends inside the frame, length {:.2}, width {:.4}",
+            style.name, style.curves, style.closed, style.ends, style.length, style.width
+        )?;
     }
     out.flush()?;
     Ok(())

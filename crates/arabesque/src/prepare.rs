@@ -130,6 +130,7 @@ impl Preparation<'_> {
         let kept = self.kept(&drawing, points.is_some())?;
         if let Some(kept) = &kept {
             request.frozen.clone_from(&kept.placements);
+            request.frozen_curves.clone_from(&kept.curves);
             request.obstacles.extend(kept.obstacles.iter().cloned());
         }
         Ok(Prepared {

@@ -51,7 +51,7 @@ pub struct Recipe {
     /// A file with the shape to fill.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<Input>,
-    /// Elements that stay where they are.
+    /// Elements and strokes that stay where they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<Input>,
     /// How the pattern is turned: degrees from x towards y (clockwise on the page), a picture, or strokes.

@@ -515,3 +515,32 @@ fn limits_are_errors_that_name_themselves() {
     options.limits.segments = 10;
     assert!(read_exemplar(&page(DOTS), &options).unwrap_err().to_string().contains("path segments"));
 }
+
+const WEB: &str = "<path d='M0 20H100M0 60H100' fill='none' stroke='#123' stroke-width='2' stroke-dasharray='3 1'/>
+    <path d='M30 0V100' fill='none' stroke='red'/>";
+
+#[test]
+fn kept_strokes_are_known_by_their_paint() {
+    let d = read(WEB);
+    let kept = "<g transform='translate(5 0)'><path d='M0,20 h 20 m5 7 h40' fill='none' stroke='#112233' stroke-width='2' \
+                stroke-dasharray='3 1'/></g><path d='M0 90H50' fill='none' stroke='blue'/><rect x='70' y='70' width='9' height='9'/>";
+    let placed = read_placed(&page(kept), &d, &ReadOptions::new("k.svg")).unwrap();
+    assert_eq!(placed.curves.iter().map(|c| (c.source, c.scale)).collect::<Vec<_>>(), [(0, 1.0), (0, 1.0)]);
+    assert_eq!(placed.curves[1].path.start(), Some(Vector::xy(30.0, 27.0)));
+    assert_eq!((placed.curve_fragments.len(), placed.obstacles.len()), (1, 2));
+    let markup = &placed.curve_fragments[0].0.markup;
+    assert!(markup.contains("d=\"M0,20 h 20 m5 7 h40\""), "not as it was drawn: {markup}");
+}
+
+#[test]
+fn strokes_that_arabesque_made_wider_are_known_by_their_number() {
+    let d = read(WEB);
+    let wide = |mark: &str| {
+        format!("<path d='M0 9H50' {mark} fill='none' stroke='#123' stroke-width='3' stroke-dasharray='4.5 1.5'/>")
+    };
+    let keep = |text: &str| read_placed(&page(text), &d, &ReadOptions::new("k.svg")).unwrap();
+    let stated = keep(&wide("data-arabesque-curve='1'"));
+    assert_eq!(stated.curves.iter().map(|c| (c.source, c.scale)).collect::<Vec<_>>(), [(1, 1.5)]);
+    assert_eq!(keep(&wide("data-arabesque-curve='2'")).obstacles.len(), 1);
+    assert_eq!(keep(&wide("")).obstacles.len(), 1);
+}

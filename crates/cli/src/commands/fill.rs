@@ -49,7 +49,7 @@ struct Place {
     /// Keep these shapes free; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
-    /// Elements that stay exactly where this file has them; the rest is fitted around them
+    /// Elements and strokes that stay exactly where this file has them; the rest is fitted around them and joined to them
     #[arg(long, value_name = "FILE.svg")]
     keep: Option<String>,
     /// What happens to elements at the border

@@ -1,6 +1,6 @@
 //! What an SVG file holds, understood.
 
-use arabesque_core::{Bounds, Exemplar, FlowStroke, Outline, Placement, Shape, Warning};
+use arabesque_core::{Bounds, Drawn, Exemplar, FlowStroke, Outline, Placement, Shape, Warning};
 
 /// Physical unit of a page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,6 +66,12 @@ pub struct Stroke {
 }
 
 impl Stroke {
+    /// The same stroke with all lengths times `factor`.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let dashes = self.dashes.iter().map(|d| d * factor).collect();
+        Self { width: self.width * factor, dashes, dash_offset: self.dash_offset * factor, ..self.clone() }
+    }
+
     /// A text that is the same for strokes that look the same, whatever file and layer they come from.
     pub(crate) fn key(&self) -> String {
         // References have their file's prefix before the id.
@@ -125,15 +131,19 @@ pub struct Drawing {
     pub warnings: Vec<Warning>,
 }
 
-/// Elements that were placed already: a file for `--keep`.
+/// Elements and strokes that were placed already: a file for `--keep`.
 #[derive(Clone, Debug)]
 pub struct Placed {
     /// What matches an element of the exemplar; `frozen` is `None`. Coordinates of the kept file become output coordinates.
     pub placements: Vec<Placement<2>>,
+    /// Strokes that are painted like curves of the exemplar; `frozen` is `None`. Same coordinates.
+    pub curves: Vec<Drawn<2>>,
     /// Ink of everything else, in the same coordinates.
     pub obstacles: Vec<Outline<2>>,
     /// Looks of placement `i`, to be drawn unchanged: markup in the coordinates of the kept file.
     pub fragments: Vec<Fragment>,
+    /// Looks of the strokes with the boxes around them, in the same way; several strokes of one path share one.
+    pub curve_fragments: Vec<(Fragment, Bounds<2>)>,
     /// Looks of obstacle `i`, in the same way.
     pub obstacle_fragments: Vec<Fragment>,
     /// Content of `<defs>` that both kinds of fragments refer to; its ids do not clash with those of the exemplar.

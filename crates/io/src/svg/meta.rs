@@ -36,6 +36,8 @@ pub(super) struct Meta {
     pub(super) kind: Option<String>,
     /// `data-arabesque-source`: which exemplar element it is a copy of.
     pub(super) source: Option<usize>,
+    /// `data-arabesque-curve`: which exemplar curve it is painted like.
+    pub(super) curve: Option<usize>,
     /// Id of what a `<use>` shows.
     pub(super) shows: Option<String>,
     pub(super) is_layer: bool,
@@ -68,6 +70,7 @@ pub(super) fn meta(source: &Source<'_>, xml: Xml<'_, '_>, tag: &'static str) -> 
         class: text("class"),
         kind: text("data-arabesque-class"),
         source: xml.attribute("data-arabesque-source").and_then(|s| s.trim().parse().ok()),
+        curve: xml.attribute("data-arabesque-curve").and_then(|s| s.trim().parse().ok()),
         shows: (tag == "use").then(|| href(xml)).flatten().map(|h| h.trim().to_owned()),
         is_layer,
         part: stated.or_else(|| label.as_deref().filter(|_| is_layer).and_then(part)),

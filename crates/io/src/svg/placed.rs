@@ -1,27 +1,35 @@
 //! Elements that stay where they are: reading them back and matching them to the elements of an exemplar.
 
-use arabesque_core::{Bounds, Element, Matrix, Outline, Placement, Result, Role, Similarity, Vector};
+use std::collections::BTreeMap;
+
+use arabesque_core::{Bounds, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Similarity, Vector};
 use kurbo::Affine;
 
 use super::{
-    Drawing, Method, Page, Placed, ReadOptions, Unit,
+    Drawing, Fragment, Method, Page, Placed, ReadOptions, Stroke, Unit,
     classes::{self, WOBBLE},
+    curves::{Curves, Gatherer},
+    cut_path::{Side, cut},
     definitions::Definitions,
     ink::Inker,
-    item::Item,
+    item::{Item, Kind},
+    meta::Meta,
     read::{fragment, root},
     select::{Context, select},
     signature::Signature,
     source::with_source,
+    write_curves::stroke_markup,
 };
+use crate::number::Decimals;
 
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.
 const COLOUR: f64 = 0.2;
 
-/// Reads elements that stay where they are, and matches them to the elements of `drawing`.
+/// Reads what stays where it is, and matches it to the elements and curves of `drawing`.
 ///
-/// Copies made by arabesque say which element they are (`data-arabesque-source`); others are matched by name, colour and outline.
-/// What matches no element becomes an obstacle. Nothing at all in the file is no error: there is nothing to keep.
+/// Copies made by arabesque say what they are copies of (`data-arabesque-source`, `data-arabesque-curve`); other elements are matched by
+/// name, colour and outline, other strokes by their paint. What matches nothing becomes an obstacle. Nothing at all in the file is no
+/// error: there is nothing to keep.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
@@ -33,31 +41,15 @@ pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Resu
         let content = super::extent::bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let mut definitions = Definitions::new(source, "kept");
-        let mut placed = Placed {
-            placements: Vec::new(),
-            obstacles: Vec::new(),
-            fragments: Vec::new(),
-            obstacle_fragments: Vec::new(),
-            definitions: String::new(),
-            page,
-            warnings: Vec::new(),
-        };
+        let mut placed = Placed::on(page);
         if page.view.measure() > 0.0 && page.view.size().is_finite() {
-            let found = select(&inker, page.view, Method::Elements, &[(Context::new(Affine::IDENTITY), root)])?;
-            let matcher = Matcher::new(drawing);
+            let method = if drawing.exemplar.curves.is_empty() { Method::Elements } else { Method::Curves };
+            let found = select(&inker, page.view, method, &[(Context::new(Affine::IDENTITY), root)])?;
+            let mut sorter =
+                Sorter { inker: &inker, matcher: Matcher::new(drawing), area: None, window: content.union(&page.view) };
             for item in &found.items {
-                let names = classes::names_of(&item.meta, &source.sheet);
-                let markup = fragment(item, &mut definitions);
-                match matcher.place(item, &names) {
-                    Some(placement) => {
-                        placed.placements.push(placement);
-                        placed.fragments.push(markup);
-                    }
-                    None => {
-                        placed.obstacles.push(item.outline.clone());
-                        placed.obstacle_fragments.push(markup);
-                    }
-                }
+                let kept = sorter.sort(item, &mut definitions)?;
+                placed.add(item, kept, &mut definitions);
             }
         }
         placed.definitions = definitions.finish();
@@ -66,19 +58,146 @@ pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Resu
     })
 }
 
-/// The elements of an exemplar, ready to be compared with.
-struct Matcher<'d> {
+impl Placed {
+    /// Nothing yet.
+    pub(super) fn on(page: Page) -> Self {
+        Self {
+            placements: Vec::new(),
+            curves: Vec::new(),
+            obstacles: Vec::new(),
+            fragments: Vec::new(),
+            curve_fragments: Vec::new(),
+            obstacle_fragments: Vec::new(),
+            definitions: String::new(),
+            page,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, item: &Item, kept: Kept, definitions: &mut Definitions<'_, '_>) {
+        match kept {
+            Kept::Removed => {}
+            Kept::Element(placement) => {
+                self.placements.push(placement);
+                self.fragments.push(fragment(item, definitions));
+            }
+            Kept::Strokes { drawn, cut } => {
+                let extent = drawn.iter().fold(Bounds::EMPTY, |all, d| all.union(&d.path.bounds()));
+                self.curves.extend(drawn);
+                let whole = fragment(item, definitions);
+                let markup = cut.unwrap_or_else(|| whole.markup.clone());
+                let width = item.outline.bounds();
+                self.curve_fragments.push((Fragment { markup, ..whole }, extent.union(&width)));
+            }
+            Kept::Obstacle { outline, .. } => {
+                self.obstacles.push(outline);
+                self.obstacle_fragments.push(fragment(item, definitions));
+            }
+        }
+    }
+}
+
+/// What becomes of an item.
+pub(super) enum Kept {
+    /// It lies where everything is made anew.
+    Removed,
+    /// It is an element of the exemplar.
+    Element(Placement<2>),
+    /// It is one or more strokes of the exemplar's styles; `cut` is their markup where they are not whole.
+    Strokes { drawn: Vec<Drawn<2>>, cut: Option<String> },
+    /// It is nothing that the exemplar knows; `cut` is the markup of the rest where it is a stroke that is not whole.
+    Obstacle { outline: Outline<2>, cut: Option<String> },
+}
+
+/// Decides what becomes of items.
+pub(super) struct Sorter<'a, 's, 'i, 'd> {
+    pub(super) inker: &'i Inker<'a, 's>,
+    pub(super) matcher: Matcher<'d>,
+    /// What is made anew; nothing when everything stays.
+    pub(super) area: Option<&'i Outline<2>>,
+    /// Box around everything.
+    pub(super) window: Bounds<2>,
+}
+
+impl<'a, 's> Sorter<'a, 's, '_, '_> {
+    pub(super) fn sort(&mut self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Kept> {
+        if item.kind == Kind::Curve && !self.matcher.drawing.exemplar.curves.is_empty() {
+            return self.strokes(item, definitions);
+        }
+        let centre = item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre());
+        if self.area.is_some_and(|area| area.contains(centre)) {
+            return Ok(Kept::Removed);
+        }
+        let names = classes::names_of(&item.meta, &self.inker.source.sheet);
+        Ok(match self.matcher.place(item, &names) {
+            Some(placement) => Kept::Element(placement),
+            None => Kept::Obstacle { outline: item.outline.clone(), cut: None },
+        })
+    }
+
+    fn strokes(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Kept> {
+        let mut gatherer = Gatherer::new(self.inker, definitions, self.window);
+        gatherer.add(item)?;
+        let Curves { curves, strokes, .. } = gatherer.finish();
+        // A clip takes something away as well: then the line alone is not what the file shows.
+        let (mut is_whole, mut rest) = (!item.is_cut, Vec::new());
+        for (curve, stroke) in curves.iter().zip(&strokes) {
+            let parts = self.area.and_then(|area| cut(&curve.path, area, Side::Outside));
+            is_whole &= parts.is_none();
+            rest.extend(
+                parts.unwrap_or_else(|| vec![curve.path.clone()]).into_iter().map(|path| (path, curve, stroke)),
+            );
+        }
+        if rest.is_empty() {
+            return Ok(Kept::Removed);
+        }
+        let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1]));
+        let markup = rest.iter().map(|(path, _, stroke)| stroke_markup(path, stroke, decimals)).collect::<String>();
+        let markup = (!is_whole).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
+        let drawn = rest.iter().map(|(path, curve, stroke)| self.matcher.stroke(path, curve.width, stroke, &item.meta));
+        match drawn.collect::<Option<Vec<_>>>() {
+            Some(drawn) => Ok(Kept::Strokes { drawn, cut: markup }),
+            None => {
+                let outline = self.area.map_or_else(|| item.outline.clone(), |area| item.outline.difference(area));
+                Ok(Kept::Obstacle { outline, cut: markup })
+            }
+        }
+    }
+}
+
+/// The elements and curves of an exemplar, ready to be compared with.
+pub(super) struct Matcher<'d> {
+    drawing: &'d Drawing,
     elements: &'d [Element<2>],
     class_names: Vec<&'d str>,
     signatures: Vec<Option<Signature>>,
+    /// The first curve painted in each way.
+    painted: BTreeMap<String, usize>,
 }
 
 impl<'d> Matcher<'d> {
-    fn new(drawing: &'d Drawing) -> Self {
+    pub(super) fn new(drawing: &'d Drawing) -> Self {
         let elements = drawing.exemplar.elements.as_slice();
         let signature = |e: &Element<2>| (e.role == Role::Source).then(|| Signature::new(&e.outline)).flatten();
         let class_names = drawing.exemplar.classes.iter().map(|c| c.name.as_str()).collect();
-        Self { elements, class_names, signatures: elements.iter().map(signature).collect() }
+        let mut painted = BTreeMap::new();
+        for (k, stroke) in drawing.strokes.iter().enumerate() {
+            painted.entry(stroke.key()).or_insert(k);
+        }
+        Self { drawing, elements, class_names, signatures: elements.iter().map(signature).collect(), painted }
+    }
+
+    /// The stroke as one painted like a curve of the exemplar: the one that it says where that is painted so but for its width, else
+    /// the first that is painted exactly so.
+    fn stroke(&self, path: &Path<2>, width: f64, stroke: &Stroke, meta: &Meta) -> Option<Drawn<2>> {
+        let stated = meta.curve.filter(|&k| {
+            let known = self.drawing.strokes.get(k);
+            known.is_some_and(|known| known.scaled(width / known.width).key() == stroke.key())
+        });
+        let source = stated.or_else(|| self.painted.get(&stroke.key()).copied())?;
+        let scale = width / self.drawing.strokes.get(source)?.width;
+        let scale = if (scale - 1.0).abs() < 1e-3 { 1.0 } else { scale };
+        Some(Drawn { path: path.clone(), source, scale, frozen: None })
     }
 
     fn place(&self, item: &Item, names: &[String]) -> Option<Placement<2>> {

@@ -104,7 +104,14 @@ impl<'a> Writer<'a> {
         self.metadata();
         self.definitions();
         self.background()?;
+        let strokes_above = self.sheet.drawing.stacking == Stacking::CurvesAbove;
+        if !strokes_above {
+            self.kept_strokes();
+        }
         self.elements()?;
+        if strokes_above {
+            self.kept_strokes();
+        }
         self.obstacles();
         self.out.push_str("</svg>\n");
         Ok(())
@@ -274,6 +281,22 @@ impl<'a> Writer<'a> {
         format!(" transform=\"translate({} {})\"", self.decimals.format(shift[0]), self.decimals.format(shift[1]))
     }
 
+    /// The strokes that the user drew, unchanged and whole.
+    fn kept_strokes(&mut self) {
+        let Some(kept) = self.sheet.kept.filter(|k| !k.curve_fragments.is_empty()) else { return };
+        let _ = writeln!(
+            self.out,
+            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept strokes\" id=\"{}-kept-strokes\">",
+            self.prefix
+        );
+        for (fragment, extent) in &kept.curve_fragments {
+            for shift in self.shifts(extent) {
+                let _ = writeln!(self.out, "<g{}>{}</g>", self.shifted(shift), fragment.markup);
+            }
+        }
+        self.out.push_str("</g>\n");
+    }
+
     /// What the user placed beside elements of the exemplar.
     fn obstacles(&mut self) {
         let Some(kept) = self.sheet.kept.filter(|k| !k.obstacle_fragments.is_empty()) else { return };
@@ -342,7 +365,12 @@ impl<'a> Writer<'a> {
 /// A prefix for new ids that no id of the exemplar starts with.
 fn free_prefix(sheet: &Sheet<'_>) -> String {
     let kept = sheet.kept.into_iter().flat_map(|k| {
-        k.fragments.iter().chain(&k.obstacle_fragments).map(|f| &f.markup).chain(std::iter::once(&k.definitions))
+        k.fragments
+            .iter()
+            .chain(&k.obstacle_fragments)
+            .chain(k.curve_fragments.iter().map(|(f, _)| f))
+            .map(|f| &f.markup)
+            .chain(std::iter::once(&k.definitions))
     });
     let texts: Vec<&String> = sheet
         .drawing

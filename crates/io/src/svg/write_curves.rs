@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use arabesque_core::{Bounds, Drawn, Vector};
+use arabesque_core::{Bounds, Drawn, Path, Vector};
 
 use super::{Sheet, Stroke, write::escape};
 use crate::{number::Decimals, path_data::path_data};
@@ -72,6 +72,12 @@ fn path(
     }
     out.push_str(&stroke.effects);
     out.push_str("/>\n");
+}
+
+/// A path painted like `stroke`, as an element of its own.
+pub(super) fn stroke_markup(path: &Path<2>, stroke: &Stroke, decimals: Decimals) -> String {
+    let (data, lengths) = (path_data(path, decimals), lengths(stroke, 1.0, decimals));
+    format!("<path d=\"{data}\"{}{lengths}{}/>", stroke.paint, stroke.effects)
 }
 
 /// Width and dashes of a stroke, as attributes.

@@ -152,6 +152,7 @@ impl Artwork<'_> {
             placements,
             curves: &self.outcome.curves,
             kept: prepared.kept.as_ref(),
+            host: prepared.rest.as_ref(),
             page: prepared.page,
             domain: &prepared.request.domain,
             shape: prepared.shape.as_ref(),

@@ -3,19 +3,19 @@
 use std::path::Path;
 
 use arabesque_core::{
-    Bounds, Domain, Error, Fields, Limits, Matrix, OrientationField, Outline, Request, Result, ScalarField, Shape,
-    Warning,
+    Bounds, Domain, Error, Exemplar, Fields, Limits, Matrix, OrientationField, Outline, Request, Result, ScalarField,
+    Shape, Warning,
 };
 use arabesque_io::{
     file,
     picture::Picture,
     png,
-    svg::{self, Drawing, Page, Placed, ReadOptions},
+    svg::{self, Drawing, Page, Placed, ReadOptions, Rest},
 };
 use arabesque_patterns::{Params, Prepared as Engine};
 
 use crate::{
-    FieldSource, Input, Recipe, Size, Subject, recipe::FieldFile, size::pixels_per_user, spacing::spacing,
+    BorderRule, FieldSource, Input, Recipe, Size, Subject, recipe::FieldFile, size::pixels_per_user, spacing::spacing,
     subject::dots,
 };
 
@@ -47,6 +47,8 @@ pub struct Prepared {
     /// Outline of the domain where it is a shape.
     pub(crate) shape: Option<Outline<2>>,
     pub(crate) kept: Option<Placed>,
+    /// The drawing of which a part is made anew.
+    pub(crate) rest: Option<Rest>,
     /// What was noticed while reading.
     pub(crate) warnings: Vec<Warning>,
 }
@@ -84,16 +86,17 @@ impl Recipe {
 }
 
 /// A domain with the page that shows it.
-struct Place {
-    domain: Domain<2>,
-    shape: Option<Outline<2>>,
-    page: Page,
+pub(crate) struct Place {
+    pub(crate) domain: Domain<2>,
+    pub(crate) shape: Option<Outline<2>>,
+    pub(crate) page: Page,
 }
 
-struct Preparation<'a> {
-    recipe: Recipe,
+/// On the way from a recipe to a prepared run.
+pub(crate) struct Preparation<'a> {
+    pub(crate) recipe: Recipe,
     base: Option<&'a Path>,
-    limits: Limits,
+    pub(crate) limits: Limits,
     warnings: Vec<Warning>,
 }
 
@@ -107,28 +110,25 @@ impl Preparation<'_> {
         }
         self.check_version();
         let bytes = self.recipe.exemplar.read(self.base, &self.limits)?;
-        let subject = Subject::read(&self.recipe.exemplar, &bytes, self.recipe.method, &self.limits)?;
-        self.recipe.exemplar = self.recipe.exemplar.carrying(&bytes);
-        let (mut drawing, points) = match subject {
-            Subject::Drawing(drawing) => (*drawing, None),
-            Subject::Points(exemplar) => (dots(&exemplar), Some(exemplar)),
-            Subject::Space(_) => {
-                return Err(Error::Unsupported {
-                    what: format!("{}: filling space with points", self.recipe.exemplar.name()),
-                    advice: "give points without a z column".into(),
-                });
-            }
+        let rework = self.rework(&bytes)?;
+        let (mut drawing, points) = match &rework {
+            Some(rework) => (rework.drawing.clone(), None),
+            None => self.subject(&bytes)?,
         };
+        self.recipe.exemplar = self.recipe.exemplar.carrying(&bytes);
         self.warnings.append(&mut drawing.warnings);
-        let place = self.place(&drawing, points.is_some())?;
+        let (place, rest) = match rework {
+            Some(rework) => (rework.place, Some(rework.rest)),
+            None => (self.place(&drawing, points.is_some())?, None),
+        };
         let exemplar = points.as_ref().unwrap_or(&drawing.exemplar);
         self.check_room(exemplar, &place.domain)?;
         let mut request = Request::new(place.domain);
-        request.border = self.recipe.border.into();
+        request.border = self.border(exemplar, rest.is_some()).into();
         request.fields = self.fields(&drawing, &request.domain.bounds())?;
         request.obstacles = self.avoided(&drawing, points.is_some(), &request.domain)?;
         let kept = self.kept(&drawing, points.is_some())?;
-        if let Some(kept) = &kept {
+        if let Some(kept) = kept.as_ref().or(rest.as_ref().map(|r| &r.placed)) {
             request.frozen.clone_from(&kept.placements);
             request.frozen_curves.clone_from(&kept.curves);
             request.obstacles.extend(kept.obstacles.iter().cloned());
@@ -142,7 +142,28 @@ impl Preparation<'_> {
             page: place.page,
             shape: place.shape,
             kept,
+            rest,
             warnings: self.warnings,
+        })
+    }
+
+    /// The rule at the border. In a region that is made anew elements count by their centres, as those do that it replaces.
+    fn border(&self, exemplar: &Exemplar<2>, in_place: bool) -> BorderRule {
+        let usual = if in_place && exemplar.curves.is_empty() { BorderRule::Cross } else { BorderRule::Clip };
+        self.recipe.border.unwrap_or(usual)
+    }
+
+    /// The exemplar as a drawing, and as points where it is a file of points.
+    fn subject(&self, bytes: &[u8]) -> Result<(Drawing, Option<Exemplar<2>>)> {
+        Ok(match Subject::read(&self.recipe.exemplar, bytes, self.recipe.method, &self.limits)? {
+            Subject::Drawing(drawing) => (*drawing, None),
+            Subject::Points(exemplar) => (dots(&exemplar), Some(exemplar)),
+            Subject::Space(_) => {
+                return Err(Error::Unsupported {
+                    what: format!("{}: filling space with points", self.recipe.exemplar.name()),
+                    advice: "give points without a z column".into(),
+                });
+            }
         })
     }
 
@@ -182,13 +203,13 @@ impl Preparation<'_> {
             None => Err(Error::parameter(
                 "domain",
                 "none",
-                "--size WxH, --tile WxH or --domain SHAPE.svg, or an exemplar with a layer Domain",
+                "--size WxH, --tile WxH, --domain SHAPE.svg or --redo REGION, or an exemplar with a layer Domain",
             )),
         }
     }
 
     /// The input with its content where that is small: standard input can be read only once.
-    fn embedded(&self, input: &Input) -> Result<Input> {
+    pub(crate) fn embedded(&self, input: &Input) -> Result<Input> {
         Ok(input.carrying(&input.read(self.base, &self.limits)?))
     }
 
@@ -201,7 +222,7 @@ impl Preparation<'_> {
     }
 
     /// A shape of another file in the units of the exemplar, and its page in the same units.
-    fn shape(&self, input: &Input, drawing: &Drawing, is_points: bool) -> Result<(Shape, Page)> {
+    pub(crate) fn shape(&self, input: &Input, drawing: &Drawing, is_points: bool) -> Result<(Shape, Page)> {
         let (shape, page) = svg::read_shape(&self.text(input)?, input.id.as_deref(), &self.options(input))?;
         let factor = if is_points { 1.0 } else { pixels_per_user(&page) / pixels_per_user(&drawing.page) };
         if !(factor.is_finite() && factor > 0.0) {
@@ -217,7 +238,7 @@ impl Preparation<'_> {
         Ok((scaled, Page { view, unit: page.unit, unit_per_user: page.unit_per_user / factor }))
     }
 
-    fn check_room(&self, exemplar: &arabesque_core::Exemplar<2>, domain: &Domain<2>) -> Result<()> {
+    fn check_room(&self, exemplar: &Exemplar<2>, domain: &Domain<2>) -> Result<()> {
         let spacing = spacing(exemplar);
         let expected = domain.measure() / spacing.powi(2);
         if expected.is_nan() || expected > self.limits.output_elements as f64 {
@@ -364,7 +385,8 @@ impl Preparation<'_> {
     }
 }
 
-fn shaped(shape: Shape, page: Page) -> Place {
+/// A shape as the place to fill.
+pub(crate) fn shaped(shape: Shape, page: Page) -> Place {
     let outline = shape.outline().clone();
     Place { domain: Domain::Region(std::sync::Arc::new(shape)), shape: Some(outline), page }
 }

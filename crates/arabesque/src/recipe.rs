@@ -9,7 +9,7 @@ use arabesque_core::{Border, Error, Result};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::{Format, Input, nearest::nearest};
+use crate::{Format, Input, Region, nearest::nearest};
 
 /// A run, described completely: what to read, where to fill, how, and what to write.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,9 +28,9 @@ pub struct Recipe {
     /// Width and height of a seamless tile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tile: Option<String>,
-    /// What happens at the border of the domain. Default: clip.
-    #[serde(default)]
-    pub border: BorderRule,
+    /// What happens at the border of the domain. Default: clip; where a region of a drawing of elements alone is made anew, cross.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub border: Option<BorderRule>,
     /// What open strokes are taken for. Default: auto.
     #[serde(default)]
     pub method: Method,
@@ -54,6 +54,15 @@ pub struct Recipe {
     /// Elements and strokes that stay where they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<Input>,
+    /// The region of the exemplar's own file that is made anew; everything else of the file stays. In place of `size`, `tile` and `domain`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub redo: Option<Region>,
+    /// The region of the exemplar's file whose pattern is continued in the region `to`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<Region>,
+    /// The region of the exemplar's file that is filled with the pattern of the region `from`; everything else of the file stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Region>,
     /// How the pattern is turned: degrees from x towards y (clockwise on the page), a picture, or strokes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orient: Option<FieldSource>,
@@ -173,7 +182,7 @@ impl Recipe {
             seed: 0,
             size: None,
             tile: None,
-            border: BorderRule::default(),
+            border: None,
             method: Method::default(),
             preset: default_preset(),
             radius: None,
@@ -182,6 +191,9 @@ impl Recipe {
             exemplar,
             domain: None,
             keep: None,
+            redo: None,
+            from: None,
+            to: None,
             orient: None,
             scale: None,
             density: None,

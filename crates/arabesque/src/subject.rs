@@ -56,7 +56,7 @@ impl Subject {
                 Points::Space(exemplar) => Self::Space(exemplar),
             });
         }
-        let options = ReadOptions { name: name.to_owned(), method, limits: *limits };
+        let options = ReadOptions { method, limits: *limits, ..ReadOptions::new(name) };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
 }

@@ -29,6 +29,7 @@ fn written(drawing: &Drawing, curves: &[Drawn<2>], domain: &Domain<2>, shape: Op
         placements: &[],
         curves,
         kept: None,
+        host: None,
         page: Page { view: domain.bounds(), ..drawing.page },
         domain,
         shape,

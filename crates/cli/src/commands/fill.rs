@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use arabesque::{BorderRule, FieldSource, Input, Method, Recipe, patterns::Params};
+use arabesque::{BorderRule, FieldSource, Input, Method, Recipe, Region, patterns::Params};
 use clap::{Args, ValueEnum};
 
 use crate::{
@@ -52,9 +52,19 @@ struct Place {
     /// Elements and strokes that stay exactly where this file has them; the rest is fitted around them and joined to them
     #[arg(long, value_name = "FILE.svg")]
     keep: Option<String>,
-    /// What happens to elements at the border
-    #[arg(long, value_enum, default_value_t = Border::Clip)]
-    border: Border,
+    /// Make a region of the exemplar's own file anew and leave the rest as it is: x,y,w,h, or #ID of a shape in the file
+    #[arg(long, value_name = "REGION", group = "where", allow_hyphen_values = true, value_parser = Region::parse)]
+    redo: Option<Region>,
+    /// Continue the pattern of this region of the file in the region --to
+    #[arg(long, value_name = "REGION", requires = "to", allow_hyphen_values = true, value_parser = Region::parse)]
+    from: Option<Region>,
+    /// Fill this region of the file with the pattern of the region --from and leave the rest as it is
+    #[arg(long, value_name = "REGION", group = "where", requires = "from", allow_hyphen_values = true, value_parser = Region::parse)]
+    to: Option<Region>,
+    /// What happens to elements and strokes at the border
+    /// [default: clip; with --redo and --to, where all are elements, cross]
+    #[arg(long, value_enum)]
+    border: Option<Border>,
 }
 
 #[derive(Args, Debug)]
@@ -165,11 +175,14 @@ impl Fill {
         recipe.domain = self.place.domain.as_deref().map(Input::shape);
         recipe.avoid = self.place.avoid.iter().map(|text| Input::shape(text)).collect();
         recipe.keep = self.place.keep.map(Input::file);
-        recipe.border = match self.place.border {
+        recipe.redo = self.place.redo;
+        recipe.from = self.place.from;
+        recipe.to = self.place.to;
+        recipe.border = self.place.border.map(|border| match border {
             Border::Inside => BorderRule::Inside,
             Border::Cross => BorderRule::Cross,
             Border::Clip => BorderRule::Clip,
-        };
+        });
         recipe.orient = self.fields.orient;
         recipe.scale = self.fields.scale;
         recipe.density = self.fields.density;

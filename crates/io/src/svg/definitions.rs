@@ -23,7 +23,7 @@ use super::{
 /// The definitions of one file that are referred to, by their new ids.
 pub(super) struct Definitions<'a, 's> {
     source: &'s Source<'a>,
-    prefix: &'static str,
+    prefix: String,
     names: BTreeMap<String, String>,
     queue: VecDeque<(NodeId, String, Viewport)>,
     rectangles: Vec<(String, String)>,
@@ -34,8 +34,11 @@ const COPIED: [&str; 10] =
     ["linearGradient", "radialGradient", "stop", "pattern", "clipPath", "mask", "g", "use", "symbol", "filter"];
 
 impl<'a, 's> Definitions<'a, 's> {
-    /// No definitions yet; new ids will start with `prefix`.
-    pub(super) fn new(source: &'s Source<'a>, prefix: &'static str) -> Self {
+    /// No definitions yet; new ids will start with `prefix`, numbered where ids of the file start so.
+    pub(super) fn new(source: &'s Source<'a>, prefix: &str) -> Self {
+        let numbered = (2..).map(|n| format!("{prefix}{n}"));
+        let mut prefixes = std::iter::once(prefix.to_owned()).chain(numbered);
+        let prefix = prefixes.find(|p| !source.has_ids_in(p)).unwrap_or_else(|| prefix.to_owned());
         Self { source, prefix, names: BTreeMap::new(), queue: VecDeque::new(), rectangles: Vec::new() }
     }
 

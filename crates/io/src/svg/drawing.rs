@@ -74,16 +74,26 @@ impl Stroke {
 
     /// A text that is the same for strokes that look the same, whatever file and layer they come from.
     pub(crate) fn key(&self) -> String {
-        // References have their file's prefix before the id.
-        let mut key = format!("{}{}", self.paint, self.effects);
-        for prefix in ["kept-", "exemplar-"] {
-            while let Some(at) = key.find(&format!("url(#{prefix}")) {
-                key.replace_range(at + 5..at + 5 + prefix.len(), "");
-            }
-        }
+        let key = without_prefixes(&format!("{}{}", self.paint, self.effects));
         let lengths = std::iter::once(&self.width).chain(&self.dashes).chain(std::iter::once(&self.dash_offset));
         lengths.fold(key, |key, length| format!("{key} {length:.3e}"))
     }
+}
+
+/// References without what marks the file that they are in: `url(#exemplar-a)` and `url(#kept2-exemplar-a)` are `url(#a)`.
+fn without_prefixes(text: &str) -> String {
+    let mut parts = text.split("url(#");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let mut id = part;
+        while let Some(rest) = ["kept", "exemplar"].iter().find_map(|prefix| id.strip_prefix(prefix)) {
+            let Some(rest) = rest.trim_start_matches(|c: char| c.is_ascii_digit()).strip_prefix('-') else { break };
+            id = rest;
+        }
+        out.push_str("url(#");
+        out.push_str(id);
+    }
+    out
 }
 
 /// Which of the two lies above the other.

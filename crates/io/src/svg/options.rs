@@ -22,6 +22,8 @@ pub struct ReadOptions {
     pub name: String,
     /// What open strokes are taken for. Default: [`Method::Auto`].
     pub method: Method,
+    /// Ids (or labels) of items that are no part of the drawing, because they only say where something is. Default: none.
+    pub without: Vec<String>,
     /// Upper bounds. Default: [`Limits::default`].
     pub limits: Limits,
 }
@@ -29,6 +31,6 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// Default options for the file called `name` in messages.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), method: Method::default(), limits: Limits::default() }
+        Self { name: name.into(), method: Method::default(), without: Vec::new(), limits: Limits::default() }
     }
 }

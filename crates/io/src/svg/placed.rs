@@ -74,6 +74,16 @@ impl Placed {
         }
     }
 
+    /// Adds what stays, without its looks.
+    pub(super) fn freeze(&mut self, kept: Kept) {
+        match kept {
+            Kept::Removed => {}
+            Kept::Element(placement) => self.placements.push(placement),
+            Kept::Strokes { drawn, .. } => self.curves.extend(drawn),
+            Kept::Obstacle { outline, .. } => self.obstacles.push(outline),
+        }
+    }
+
     fn add(&mut self, item: &Item, kept: Kept, definitions: &mut Definitions<'_, '_>) {
         match kept {
             Kept::Removed => {}
@@ -81,7 +91,7 @@ impl Placed {
                 self.placements.push(placement);
                 self.fragments.push(fragment(item, definitions));
             }
-            Kept::Strokes { drawn, cut } => {
+            Kept::Strokes { drawn, cut, .. } => {
                 let extent = drawn.iter().fold(Bounds::EMPTY, |all, d| all.union(&d.path.bounds()));
                 self.curves.extend(drawn);
                 let whole = fragment(item, definitions);
@@ -103,10 +113,11 @@ pub(super) enum Kept {
     Removed,
     /// It is an element of the exemplar.
     Element(Placement<2>),
-    /// It is one or more strokes of the exemplar's styles; `cut` is their markup where they are not whole.
-    Strokes { drawn: Vec<Drawn<2>>, cut: Option<String> },
-    /// It is nothing that the exemplar knows; `cut` is the markup of the rest where it is a stroke that is not whole.
-    Obstacle { outline: Outline<2>, cut: Option<String> },
+    /// It is one or more strokes of the exemplar's styles; `cut` is their markup where they are not whole, and `is_touched` says whether
+    /// what is made anew takes something away from them.
+    Strokes { drawn: Vec<Drawn<2>>, cut: Option<String>, is_touched: bool },
+    /// It is nothing that the exemplar knows; the rest as for strokes.
+    Obstacle { outline: Outline<2>, cut: Option<String>, is_touched: bool },
 }
 
 /// Decides what becomes of items.
@@ -131,7 +142,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         let names = classes::names_of(&item.meta, &self.inker.source.sheet);
         Ok(match self.matcher.place(item, &names) {
             Some(placement) => Kept::Element(placement),
-            None => Kept::Obstacle { outline: item.outline.clone(), cut: None },
+            None => Kept::Obstacle { outline: item.outline.clone(), cut: None, is_touched: false },
         })
     }
 
@@ -140,10 +151,10 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         gatherer.add(item)?;
         let Curves { curves, strokes, .. } = gatherer.finish();
         // A clip takes something away as well: then the line alone is not what the file shows.
-        let (mut is_whole, mut rest) = (!item.is_cut, Vec::new());
+        let (mut is_touched, mut rest) = (false, Vec::new());
         for (curve, stroke) in curves.iter().zip(&strokes) {
             let parts = self.area.and_then(|area| cut(&curve.path, area, Side::Outside));
-            is_whole &= parts.is_none();
+            is_touched |= parts.is_some();
             rest.extend(
                 parts.unwrap_or_else(|| vec![curve.path.clone()]).into_iter().map(|path| (path, curve, stroke)),
             );
@@ -153,13 +164,14 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         }
         let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1]));
         let markup = rest.iter().map(|(path, _, stroke)| stroke_markup(path, stroke, decimals)).collect::<String>();
-        let markup = (!is_whole).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
+        let markup =
+            (is_touched || item.is_cut).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
         let drawn = rest.iter().map(|(path, curve, stroke)| self.matcher.stroke(path, curve.width, stroke, &item.meta));
         match drawn.collect::<Option<Vec<_>>>() {
-            Some(drawn) => Ok(Kept::Strokes { drawn, cut: markup }),
+            Some(drawn) => Ok(Kept::Strokes { drawn, cut: markup, is_touched }),
             None => {
                 let outline = self.area.map_or_else(|| item.outline.clone(), |area| item.outline.difference(area));
-                Ok(Kept::Obstacle { outline, cut: markup })
+                Ok(Kept::Obstacle { outline, cut: markup, is_touched })
             }
         }
     }

@@ -33,7 +33,8 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
         let (root, page) = root(source)?;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
-        let scope = scope(&inker, &root, page.as_ref())?;
+        let mut scope = scope(&inker, &root, page.as_ref())?;
+        scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&options.without));
         let mut found = select(&inker, scope.frame, options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
@@ -153,7 +154,8 @@ fn is_called_frame(node: &Node) -> bool {
     node.meta.tag == "rect" && names.iter().any(|n| n.as_ref().is_some_and(|n| n.eq_ignore_ascii_case("frame")))
 }
 
-fn is_frame_mark(item: &Item) -> bool {
+/// Whether an item is the rectangle that states the frame.
+pub(super) fn is_frame_mark(item: &Item) -> bool {
     item.parts.len() == 1 && item.parts.iter().all(|(_, node)| is_called_frame(node))
 }
 

@@ -48,12 +48,25 @@ pub(super) struct Context {
     opacity: f64,
     clip: Option<Rc<Outline<2>>>,
     mark: Option<Mark>,
+    without: Rc<[String]>,
 }
 
 impl Context {
     /// Nothing but the transform from the parent to the root.
     pub(super) fn new(parent: Affine) -> Self {
-        Self { parent, layer: None, opacity: 1.0, clip: None, mark: None }
+        Self { parent, layer: None, opacity: 1.0, clip: None, mark: None, without: Rc::default() }
+    }
+
+    /// The same, but for the items of those names.
+    pub(super) fn without(self, names: &[String]) -> Self {
+        Self { without: names.into(), ..self }
+    }
+}
+
+impl Context {
+    fn excludes(&self, meta: &Meta) -> bool {
+        let named = |name: &Option<String>| name.as_ref().is_some_and(|name| self.without.contains(name));
+        named(&meta.id) || named(&meta.label)
     }
 }
 
@@ -140,7 +153,7 @@ impl Selector<'_, '_, '_> {
         let name = node.meta.label.as_ref().or(node.meta.id.as_ref());
         let layer = if node.meta.is_layer { name.map(|l| l.as_str().into()) } else { at.layer.clone() };
         let mark = node.meta.mark.or(at.mark);
-        let inside = Context { parent: world, layer, opacity, clip, mark };
+        let inside = Context { parent: world, layer, opacity, clip, mark, without: Rc::clone(&at.without) };
         node.children().iter().try_for_each(|child| self.visit(child, &inside))
     }
 
@@ -153,7 +166,7 @@ impl Selector<'_, '_, '_> {
 
     fn visit(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
         let meta = &node.meta;
-        if matches!(meta.part, Some(part) if part != Part::Exemplar) {
+        if matches!(meta.part, Some(part) if part != Part::Exemplar) || at.excludes(meta) {
             return Ok(());
         }
         if meta.is_layer || self.opened.contains(&meta.xml) {

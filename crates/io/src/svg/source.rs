@@ -14,7 +14,7 @@ use super::{
 
 pub(super) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 const XLINK: &str = "http://www.w3.org/1999/xlink";
-const SVG: &str = "http://www.w3.org/2000/svg";
+pub(super) const SVG: &str = "http://www.w3.org/2000/svg";
 
 /// A parsed file.
 pub(super) struct Source<'a> {
@@ -98,6 +98,11 @@ fn style_text(xml: &Document<'_>) -> String {
 }
 
 impl<'a> Source<'a> {
+    /// Whether an id is that prefix with something after it.
+    pub(super) fn has_ids_in(&self, prefix: &str) -> bool {
+        self.ids.range(prefix..).next().is_some_and(|(id, _)| id.starts_with(prefix) && id.len() > prefix.len())
+    }
+
     fn note_outside_styles(&self, css: &str) {
         for rule in css.split("@import").skip(1) {
             let what: String = rule.trim_start().chars().take_while(|c| !matches!(c, ';' | '\n')).take(80).collect();

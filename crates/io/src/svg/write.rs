@@ -8,7 +8,7 @@ use std::{collections::BTreeSet, fmt::Write as _};
 use arabesque_core::{Border, Bounds, Domain, Drawn, Outline, Placement, Result, Vector, Warning};
 
 use super::{
-    Drawing, Page, Placed, Stacking, Unit,
+    Drawing, Page, Placed, Rest, Stacking, Unit,
     write_background::background,
     write_curves::curves,
     write_flat::{Flattener, Warp},
@@ -41,6 +41,8 @@ pub struct Sheet<'a> {
     pub curves: &'a [Drawn<2>],
     /// The looks of frozen placements and of what else is kept.
     pub kept: Option<&'a Placed>,
+    /// The drawing of which a part is made anew: then the result is that file with the new in it.
+    pub host: Option<&'a Rest>,
     /// Page of the result.
     pub page: Page,
     /// The filled domain, in page coordinates.
@@ -100,6 +102,9 @@ struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     fn document(&mut self) -> Result<()> {
+        if let Some(host) = self.sheet.host {
+            return self.hosted(host);
+        }
         self.root();
         self.metadata();
         self.definitions();
@@ -114,6 +119,23 @@ impl<'a> Writer<'a> {
         }
         self.obstacles();
         self.out.push_str("</svg>\n");
+        Ok(())
+    }
+
+    /// The new at the end of the file that it belongs to.
+    fn hosted(&mut self, host: &Rest) -> Result<()> {
+        self.out.push_str(&host.head);
+        self.metadata();
+        self.definitions();
+        if !host.moved.is_empty() {
+            let _ = write!(
+                self.out,
+                "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept\" id=\"{}-kept\">\n{}</g>\n",
+                self.prefix, host.moved
+            );
+        }
+        self.elements()?;
+        self.out.push_str(&host.tail);
         Ok(())
     }
 
@@ -148,9 +170,9 @@ impl<'a> Writer<'a> {
 
     fn definitions(&mut self) {
         self.out.push_str("<defs>\n");
-        for text in
-            [Some(&self.sheet.drawing.definitions), self.sheet.kept.map(|k| &k.definitions)].into_iter().flatten()
-        {
+        let of_kept = self.sheet.kept.map(|k| &k.definitions);
+        let of_host = self.sheet.host.map(|h| &h.definitions);
+        for text in [Some(&self.sheet.drawing.definitions), of_kept, of_host].into_iter().flatten() {
             if !text.trim().is_empty() {
                 self.out.push_str(text.trim_end());
                 self.out.push('\n');
@@ -175,7 +197,8 @@ impl<'a> Writer<'a> {
 
     /// The exemplar elements that are placed by `<use>`, each once.
     fn linked_sources(&self) -> BTreeSet<usize> {
-        let own = self.sheet.placements.iter().filter(|p| !self.is_bent(p) && self.kept_markup(p).is_none());
+        let is_new = |p: &&Placement<2>| !self.is_hosted(p) && self.kept_markup(p).is_none();
+        let own = self.sheet.placements.iter().filter(|p| !self.is_bent(p)).filter(is_new);
         own.map(|p| p.source).collect()
     }
 
@@ -208,7 +231,9 @@ impl<'a> Writer<'a> {
             self.curves();
         }
         let mut clipped = 0;
-        for (index, placement) in self.sheet.placements.iter().enumerate() {
+        let sheet = self.sheet;
+        let is_new = |p: &Placement<2>| sheet.host.is_none() || p.frozen.is_none();
+        for (index, placement) in sheet.placements.iter().enumerate().filter(|(_, p)| is_new(p)) {
             for (copy, shift) in self.copies(placement).into_iter().enumerate() {
                 let id = if copy == 0 {
                     format!("{}-{index}", self.prefix)
@@ -310,6 +335,11 @@ impl<'a> Writer<'a> {
         self.out.push_str("</g>\n");
     }
 
+    /// Whether a placement stands in the file already.
+    fn is_hosted(&self, placement: &Placement<2>) -> bool {
+        self.sheet.host.is_some() && placement.frozen.is_some()
+    }
+
     fn is_bent(&self, placement: &Placement<2>) -> bool {
         self.sheet.bend.is_some() && !placement.control.is_empty()
     }
@@ -381,7 +411,10 @@ fn free_prefix(sheet: &Sheet<'_>) -> String {
         .chain(&sheet.drawing.background)
         .chain(kept)
         .collect();
-    let taken = |prefix: &str| texts.iter().any(|t| t.contains(&format!("\"{prefix}-")));
+    let host = sheet.host.into_iter().flat_map(|h| [&h.head, &h.tail, &h.moved, &h.definitions]);
+    let texts: Vec<&String> = texts.into_iter().chain(host).collect();
+    let starts = |t: &str, prefix: &str| ['"', '\''].iter().any(|q| t.contains(&format!("{q}{prefix}-")));
+    let taken = |prefix: &str| texts.iter().any(|t| starts(t, prefix));
     let candidates = std::iter::once("arabesque".to_owned()).chain((2..).map(|n| format!("arabesque{n}")));
     candidates.into_iter().find(|p| !taken(p)).unwrap_or_else(|| "arabesque".to_owned())
 }
@@ -498,6 +531,7 @@ mod tests {
             placements: &[at(0, -2.0, 8.0), at(0, 5.0, 5.0)],
             curves: &[],
             kept: None,
+            host: None,
             page,
             domain,
             shape: None,

@@ -134,3 +134,79 @@ fn degenerate_strokes_are_told() {
     assert!(told.contains("on top of one like it") && told.contains("without"), "{told}");
     assert!(!drawn(&net()).is_empty());
 }
+
+#[test]
+fn strokes_come_out_in_the_styles_of_the_exemplar() {
+    let folder = folder();
+    let told = stderr(&folder.ok("fill net.svg --size 80x80 -o out.svg"));
+    assert!(told.contains(" curves in ") && !told.contains("elements"), "{told}");
+    let text = folder.text("out.svg");
+    let paths = attributes(drawn(&text), "data-arabesque-curve").len();
+    assert!(paths >= 4, "{paths}");
+    for style in ["warp", "weft"] {
+        assert_eq!(text.matches(&format!("inkscape:label=\"{style}\"")).count(), 1, "{style}");
+    }
+    folder.ok("run out.svg -o again.svg");
+    assert_eq!(text, folder.text("again.svg"));
+    let value: serde_json::Value =
+        serde_json::from_str(&stdout(&folder.ok("fill net.svg --size 80x80 -o out.json --json"))).unwrap();
+    let output = &value["outputs"][0];
+    assert_eq!((output["curves"].as_u64(), output["elements"].as_u64()), (Some(paths as u64), Some(0)));
+    let file: serde_json::Value = serde_json::from_str(&folder.text("out.json")).unwrap();
+    let curves = file["curves"].as_array().unwrap();
+    assert_eq!(curves.len(), paths);
+    assert!(curves.iter().all(|c| c["d"].as_str().unwrap().starts_with('M') && c["length"].as_f64().unwrap() > 0.0));
+    assert!(curves.iter().any(|c| c["style"] == "weft" && c["width"] == 1.5));
+}
+
+#[test]
+fn points_cannot_hold_curves() {
+    let folder = folder();
+    assert!(folder.fails(3, "fill net.svg --size 80x80 -o out.csv").contains("write SVG or JSON"));
+}
+
+#[test]
+fn what_was_drawn_is_kept_as_it_was_drawn() {
+    let folder = folder();
+    let line = "<path  d=\"M0 30 h 50 v 5\" fill=\"none\" stroke=\"#a33\" stroke-width=\"2\"/>";
+    folder.write(
+        "drawn.svg",
+        svg("80", "80", "0 0 80 80", &format!("{line}<path d=\"M5 60H25\" fill=\"none\" stroke=\"#0f0\"/>")),
+    );
+    folder.ok("fill net.svg --size 80x80 --keep drawn.svg -o out.svg");
+    let text = folder.text("out.svg");
+    let (kept, new) = drawn(&text).split_once("Arabesque output").unwrap();
+    assert!(kept.contains("d=\"M0 30 h 50 v 5\"") && !new.contains("M0 30"), "{text}");
+    assert!(new.contains("M5 60H25"), "what is no stroke of the exemplar is kept too");
+    assert!(!attributes(new, "data-arabesque-curve").is_empty());
+}
+
+#[test]
+fn strokes_are_cut_where_a_region_is_made_anew() {
+    let folder = folder();
+    folder.ok("fill net.svg --redo 0,0,36,36 -o out.svg");
+    let (before, after) = (folder.text("net.svg"), folder.text("out.svg"));
+    let lost = lines_lost(&before, &after);
+    assert_eq!(lost.len(), 5, "the root, two rows and two columns that reach into the region: {lost:?}");
+    let after = drawn(&after);
+    assert!(after.contains("M36 10L100 10") && after.contains("M10 36L10 100"), "{after}");
+    for data in attributes(after.split_once("Arabesque output").unwrap().1, "d") {
+        let numbers =
+            data.split(|c: char| !c.is_ascii_digit() && c != '.' && c != '-').filter_map(|n| n.parse::<f64>().ok());
+        assert!(numbers.into_iter().all(|n| n < 45.0), "a new stroke leaves the region: {data}");
+    }
+}
+
+#[test]
+fn elements_and_curves_come_out_together() {
+    let folder = folder();
+    let dots: String = (0..25)
+        .map(|k| format!("<circle cx=\"{}\" cy=\"{}\" r=\"4\" fill=\"#a60\"/>\n", 20 * (k % 5), 20 * (k / 5)))
+        .collect();
+    folder.write("both.svg", net().replace("</svg>", &format!("{dots}</svg>")));
+    let told = stderr(&folder.ok("fill both.svg --size 80x80 -o out.svg"));
+    assert!(told.contains(" curves and ") && told.contains(" elements in "), "{told}");
+    let text = folder.text("out.svg");
+    assert!(text.rfind("data-arabesque-curve").unwrap() < text.find("<use ").unwrap(), "the dots lie above the net");
+    folder.ok("fill both.svg --size 80x80 -o out.csv");
+}

@@ -1,4 +1,5 @@
 //! Strokes written as SVG, and read again.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Border, Bounds, Domain, Drawn, Outline, Path, Vector};
 use arabesque_io::svg::{Drawing, Method, Page, ReadOptions, Sheet, Style, read_exemplar, write_svg};

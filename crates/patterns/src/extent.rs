@@ -54,6 +54,26 @@ impl<'a, const D: usize> Extent<'a, D> {
         if i >= self.base { Border::Clip } else { self.request.border }
     }
 
+    /// The rule of the border for elements.
+    pub(crate) fn rule(&self) -> Border {
+        self.request.border
+    }
+
+    /// Whether the domain has no border.
+    pub(crate) fn is_endless(&self) -> bool {
+        self.request.domain.period().is_some()
+    }
+
+    /// Whether something is in the way anywhere.
+    pub(crate) fn has_obstacles(&self) -> bool {
+        self.obstacles.is_some()
+    }
+
+    /// Distance to the border, negative outside.
+    pub(crate) fn depth(&self, p: Vector<D>) -> f64 {
+        self.request.domain.signed_distance(p)
+    }
+
     /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
     pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
         let reach = self.radius[i as usize] * self.request.fields.scale.at(p);

@@ -35,6 +35,9 @@ const UNSEEN: f64 = 0.35;
 /// Cost of a patch whose centre lies at the frame of the exemplar, against one from its middle.
 const RIM: f64 = 0.3;
 
+/// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
+const MEMBERS: usize = 40;
+
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
 
@@ -51,6 +54,8 @@ pub(crate) struct GrowParams {
     pub(crate) balance: f64,
     /// Output elements that patches are registered on, for each site.
     pub(crate) anchors: usize,
+    /// First curve sample, see [`crate::level::Level::base`].
+    pub(crate) base: u32,
 }
 
 /// A patch that was chosen for a site.
@@ -245,13 +250,17 @@ impl<'a, const D: usize> View<'a, D> {
     /// Exemplar points that could land on the site.
     fn candidates(&self, anchors: usize, random: &mut Stream) -> Vec<Vector<D>> {
         let library = self.grower.library;
+        let base = self.grower.params.base;
         let mut centres = Vec::new();
         for &(source, offset, _) in self.around.iter().take(anchors) {
-            for &i in library.members(library.class[source as usize]) {
-                let centre = library.centre[i as usize] - offset;
-                if library.window.contains(centre) {
-                    centres.push(centre);
-                }
+            let members = library.members(library.class[source as usize]);
+            let usable = |i: &u32| library.window.contains(library.centre[*i as usize] - offset);
+            if source < base || members.len() <= MEMBERS {
+                centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i as usize] - offset));
+            } else {
+                let usable = members.iter().copied().filter(usable).collect();
+                let alike = self.most_alike(usable, source, random);
+                centres.extend(alike.into_iter().map(|i| library.centre[i as usize] - offset));
             }
         }
         let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
@@ -260,6 +269,17 @@ impl<'a, const D: usize> View<'a, D> {
             centres.push(Vector(std::array::from_fn(|k| random.range(a[k], b[k]))));
         }
         centres
+    }
+
+    /// Of very many elements, some of those that are most like `source`.
+    fn most_alike(&self, mut members: Vec<u32>, source: u32, random: &mut Stream) -> Vec<u32> {
+        let feature = &self.grower.library.feature;
+        members.sort_by_cached_key(|&i| feature[i as usize].distance2(&feature[source as usize]).to_bits());
+        members.truncate((members.len() / 4).max(MEMBERS));
+        while members.len() > MEMBERS {
+            members.swap_remove(random.below(members.len()));
+        }
+        members
     }
 
     /// Disagreement of the patch around exemplar point `centre` with what is there.

@@ -99,12 +99,18 @@ impl<const D: usize> Layout<'_, D> {
     fn patch_radius(&self) -> f64 {
         let shortest = |v: arabesque_core::Vector<D>| v.0.into_iter().fold(f64::INFINITY, f64::min);
         let side = shortest(self.library.window.size());
-        let radius = self.library.radius_for(self.params.patch).min(self.params.patch_share * side);
+        let radius = self.library.radius_for(self.params.patch);
+        // A handful of curve samples is no patch: several strokes side by side are.
+        let radius = if self.has_strokes() { f64::INFINITY } else { radius }.min(self.params.patch_share * side);
         match self.request.domain.period() {
             // On a small tile the surroundings must not reach around the back.
             Some(period) => radius.min(0.5 * shortest(period) / (CONTEXT * self.extent.largest_spacing_scale)),
             None => radius,
         }
+    }
+
+    fn has_strokes(&self) -> bool {
+        (self.base as usize) < self.library.len()
     }
 
     fn canvas(&self) -> Canvas<D> {
@@ -124,6 +130,7 @@ impl<const D: usize> Layout<'_, D> {
             context: CONTEXT * patch,
             repeat: self.params.novelty,
             balance: self.params.balance,
+            base: self.base,
             anchors: if self.params.initialisation == Initialisation::RandomCopy { 0 } else { 3 },
         };
         Grower::new(self.library, self.request, self.extent, params)

@@ -42,7 +42,9 @@ pub(crate) struct Library<const D: usize> {
 }
 
 impl<const D: usize> Library<D> {
-    pub(crate) fn new(exemplar: &Exemplar<D>) -> Self {
+    /// `strokes`: the first pseudo class, that of curve samples, and the distance of these along their stroke, which is their outlier
+    /// distance [Tu 2020 §4.2.3].
+    pub(crate) fn new(exemplar: &Exemplar<D>, strokes: Option<(usize, f64)>) -> Self {
         let centre: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
         let (class, classes) = kinds(exemplar);
         let spacing = exemplar.spacing();
@@ -50,7 +52,11 @@ impl<const D: usize> Library<D> {
         let all = GridIndex::new(&centre, spacing, &plane);
         let nearest = nearest_distances(&centre, &all, spacing);
         let closest = closest_distances(&centre, &class, classes, &all, spacing);
-        let outlier = outlier_distances(&nearest, &class, classes, spacing);
+        let mut outlier = outlier_distances(&nearest, &class, classes, spacing);
+        if let Some((first, distance)) = strokes {
+            let of_strokes = exemplar.elements.iter().zip(&class).filter(|(e, _)| e.class >= first);
+            of_strokes.for_each(|(_, &c)| outlier[c as usize] = distance);
+        }
         let by_class = (0..classes)
             .map(|c| {
                 let members: Vec<u32> = (0..class.len() as u32).filter(|&i| class[i as usize] == c as u32).collect();

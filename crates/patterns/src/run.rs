@@ -69,12 +69,16 @@ impl<const D: usize> Run<'_, D> {
     ) -> (Preview<D>, ControlFlow<()>) {
         let mut flow = ControlFlow::Continue(());
         let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
-        if let Some(stand) = self.stands.first() {
+        let from_noise = self.prepared.params.initialisation == Initialisation::WhiteNoise;
+        if let Some(stand) = if from_noise { self.stands.first() } else { self.stands.last() } {
             let frozen = frozen::draft(self.request, stand.setting);
             let layout = self.layout(stand);
             (done.draft, flow) = layout.initialise(frozen, &mut |items, share| {
                 observer.step(&self.laid_out(items.len(), share), &|| self.layout_preview(stand, items))
             });
+            if !from_noise {
+                done.draft = self.coarsened(&done.draft);
+            }
         }
         for k in 0..self.stands.len() {
             if flow.is_break() && k > 0 {
@@ -83,6 +87,21 @@ impl<const D: usize> Run<'_, D> {
             (done, flow) = self.level((k, &done.draft), flow, trace, observer);
         }
         (self.result(&done), flow)
+    }
+
+    /// A layout of the finest level, as the coarsest one sees it: patches agree best where they are sampled most densely.
+    fn coarsened(&self, draft: &Draft<D>) -> Draft<D> {
+        let (Some(finest), Some(coarsest)) = (self.stands.last(), self.stands.first()) else { return draft.clone() };
+        let mut state = self.state(finest, draft);
+        curves::link_sources(&mut state);
+        match &coarsest.setting.level.net {
+            Some(net) if self.stands.len() > 1 => {
+                let chains = self.chains(&mut state);
+                let frozen = frozen::draft(self.request, coarsest.setting);
+                curves::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
+            }
+            _ => draft.clone(),
+        }
     }
 
     fn layout<'s>(&'s self, stand: &Stand<'s, D>) -> Layout<'s, D> {

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Sampling distance of the finest level relative to the mean distance of neighbouring strokes (area over length).
-const STROKE_GAP: f64 = 1.5;
+const STROKE_GAP: f64 = 1.0;
 
 /// It is no smaller than this share of the shorter side of the window, and no larger than that.
 const STEP_RANGE: (f64, f64) = (1.0 / 50.0, 1.0 / 16.0);
@@ -42,7 +42,7 @@ pub(crate) fn settings<const D: usize>(
 ) -> Vec<Setting<D>> {
     let samples = ElementSamples::new(exemplar, params.samples);
     let Some(skeleton) = skeleton else {
-        let (shared, library) = (Arc::new(exemplar.clone()), Arc::new(Library::new(exemplar)));
+        let (shared, library) = (Arc::new(exemplar.clone()), Arc::new(Library::new(exemplar, None)));
         let setting = |number| {
             let counts = (params.coarse_neighbours, params.fine_neighbours);
             let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
@@ -52,8 +52,8 @@ pub(crate) fn settings<const D: usize>(
     };
     let step = params.spacing.unwrap_or_else(|| finest_spacing(exemplar, skeleton));
     let setting = |number| {
-        let cast = Cast::new(exemplar, skeleton, step * COARSER.powf(1.0 - detail(params, number)));
-        let library = Library::new(&cast.exemplar);
+        let cast = Cast::new(exemplar, skeleton, step * std::env::var("CO").map_or(COARSER,|v|v.parse().unwrap()).powf(1.0 - detail(params, number)));
+        let library = Library::new(&cast.exemplar, Some((exemplar.classes.len(), cast.net.spacing)));
         let samples = samples.with_points(cast.exemplar.elements.len() - cast.base);
         let radius = ball(&library, params, number, NEIGHBOURS);
         let level = Level::new(&library, &samples, detail(params, number), radius);

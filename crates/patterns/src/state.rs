@@ -263,6 +263,12 @@ impl<'a, const D: usize> State<'a, D> {
         Star::new(links.iter().map(|&o| frame.to_exemplar(self.offset(s, o))))
     }
 
+    /// Width of the strokes of an exemplar curve.
+    pub(crate) fn width(&self, curve: u32) -> f64 {
+        let lines = self.level.net.as_ref().map_or(&[][..], |net| &net.skeleton.lines);
+        lines.iter().find(|line| line.curve == curve).map_or(0.0, |line| line.width)
+    }
+
     /// Removes the item of a sample, and its edges.
     pub(crate) fn kill(&mut self, s: u32) {
         self.items[self.samples[s as usize].item as usize].alive = false;

@@ -6,12 +6,16 @@ use arabesque_core::Vector;
 
 use super::{
     net::{Net, Piece},
+    skeleton::Knot,
     votes::Votes,
 };
 use crate::state::State;
 
 /// Two directions are opposite when the cosine of their angle is below this: 143 degrees.
 const OPPOSITE: f64 = -0.8;
+
+/// Two ends that meet make one stroke when the cosine of their angle is below this: 120 degrees.
+const BENT: f64 = -0.5;
 
 /// How much a well supported piece is preferred to a better fitting one, as a share of the squared length of the edge.
 const SUPPORT: f64 = 0.1;
@@ -86,17 +90,25 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
         next.insert(a, b);
         next.insert(b, a);
     };
+    let ways: Vec<Vector<D>> = links.iter().map(|&o| unit(state.offset(s, o))).collect();
     if let [a, b] = links[..] {
-        through(a, b);
+        if ways[0].dot(ways[1]) < BENT || !is_meeting(state, s) {
+            through(a, b);
+        }
         return next;
     }
-    let ways: Vec<Vector<D>> = links.iter().map(|&o| unit(state.offset(s, o))).collect();
     let tangents = &state.tangents[s as usize];
     let directions = if by_tangents && tangents.len() >= ways.len() { matched(&ways, tangents) } else { ways };
     for (i, j) in opposite(&directions) {
         through(links[i], links[j]);
     }
     next
+}
+
+/// Whether the source of a sample is a place where two strokes end.
+fn is_meeting<const D: usize>(state: &State<'_, D>, s: u32) -> bool {
+    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e as usize]);
+    node.is_some_and(|node| node.knot == Some(Knot::Junction) && node.arms.len() == 2)
 }
 
 /// Pairs of opposite directions, the most opposite first.

@@ -2,14 +2,19 @@
 
 use arabesque_core::{GridIndex, Vector};
 
-use super::votes::{self, Votes};
+use rayon::prelude::*;
+
+use super::{
+    net::Net,
+    votes::{self, Votes},
+};
 use crate::state::State;
 
 /// No edge is longer than this many sampling distances.
 pub(crate) const LONGEST: f64 = 2.2;
 
-/// Two items copied from neighbouring nodes are joined when they lie this near to where the exemplar has them, in sampling distances.
-const NEAR: f64 = 0.45;
+/// Two samples are joined when each lies this near to where the exemplar has the other, in sampling distances.
+const NEAR: f64 = 0.7;
 
 /// Joins samples as the matched neighbourhoods vote. Returns the votes and how many samples changed their edges.
 pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize) {
@@ -66,50 +71,66 @@ fn frozen_links<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
     state.links.iter().enumerate().map(|(s, l)| l.iter().copied().filter(|&o| both(s, o)).collect()).collect()
 }
 
-/// Joins samples without edges to those that were copied from the neighbours of their source in the exemplar.
+/// An edge that the source of a sample has and the sample has not.
+struct OpenArm<const D: usize> {
+    sample: u32,
+    /// Where the other end should be.
+    place: Vector<D>,
+}
+
+/// Joins samples as their sources in the exemplar are: wherever one misses an edge and another one lies where that edge should end, and misses
+/// one as well.
 pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
-    let level = state.level;
-    let Some(net) = &level.net else { return };
-    let fresh: Vec<u32> =
-        state.living.iter().copied().filter(|&s| state.links[s as usize].is_empty() && !state.is_frozen(s)).collect();
-    let mut found: Vec<(u32, u32)> = Vec::new();
-    for &s in &fresh {
-        let sample = &state.samples[s as usize];
-        let Some(node) = level.node_of(level.first[state.source(s) as usize]) else { continue };
-        let frame = state.request.fields.frame(sample.position);
-        for arm in &net.nodes[node as usize].arms {
-            let offset = net.nodes[arm.to as usize].position - net.nodes[node as usize].position;
-            let place = sample.position + frame.to_output(offset);
-            if let Some(o) = copied_from(state, arm.to, place, (NEAR * net.spacing * frame.spacing_scale, &state.index))
-            {
-                found.push((s.min(o), s.max(o)));
+    let Some(net) = &state.level.net else { return };
+    let open: Vec<OpenArm<D>> = state.living.par_iter().flat_map_iter(|&s| open_arms(state, net, s)).collect();
+    let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
+    let unit = net.spacing * state.extent.largest_spacing_scale;
+    let index = GridIndex::new(&places, unit, state.domain());
+    let mut wishes: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, arm) in open.iter().enumerate() {
+        let p = state.samples[arm.sample as usize].position;
+        let near = NEAR * net.spacing * state.request.fields.frame(p).spacing_scale;
+        // The other arm wants to end here, and this one there.
+        index.within(p, near, |j, offset| {
+            let other = &open[j];
+            let back = state.domain().offset(state.samples[other.sample as usize].position, arm.place).norm();
+            let alike = state.samples[other.sample as usize].key == state.samples[arm.sample as usize].key;
+            if other.sample != arm.sample && back <= near && (alike || back + offset.norm() < 0.5 * near) {
+                wishes.push((back + offset.norm(), i.min(j), i.max(j)));
             }
-        }
+        });
     }
-    found.sort_unstable();
-    found.dedup();
-    for (a, b) in found {
+    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut used = vec![false; open.len()];
+    for (_, i, j) in wishes {
+        let (a, b) = (open[i].sample, open[j].sample);
+        let is_fixed = state.is_frozen(a) && state.is_frozen(b);
+        if used[i] || used[j] || is_fixed || state.links[a as usize].contains(&b) {
+            continue;
+        }
+        (used[i], used[j]) = (true, true);
         state.links[a as usize].push(b);
         state.links[b as usize].push(a);
     }
 }
 
-/// The sample nearest to `place` whose source is `node`.
-fn copied_from<const D: usize>(
-    state: &State<'_, D>,
-    node: u32,
-    place: Vector<D>,
-    (near, index): (f64, &GridIndex<D>),
-) -> Option<u32> {
-    let mut best = (near, None);
-    index.within(state.domain().wrap(place), near, |slot, offset| {
-        let o = state.living[slot];
-        let is_copy = state.level.node_of(state.level.first[state.source(o) as usize]) == Some(node);
-        if is_copy && offset.norm() < best.0 {
-            best = (offset.norm(), Some(o));
-        }
-    });
-    best.1
+/// The edges that the source of `s` has, but for those that `s` has too.
+fn open_arms<const D: usize>(state: &State<'_, D>, net: &Net<D>, s: u32) -> Vec<OpenArm<D>> {
+    let Some(node) = state.node(s) else { return Vec::new() };
+    let position = state.samples[s as usize].position;
+    let frame = state.request.fields.frame(position);
+    let node = &net.nodes[node as usize];
+    let inner = node.arms.iter().map(|arm| net.nodes[arm.to as usize].position - node.position);
+    let cut = node.beyond.iter().map(|t| *t * net.spacing);
+    let mut arms: Vec<Vector<D>> = inner.chain(cut).map(|v| frame.to_output(v)).collect();
+    for &o in &state.links[s as usize] {
+        let way = state.offset(s, o);
+        let best = (0..arms.len()).min_by(|&a, &b| (arms[a] - way).norm2().total_cmp(&(arms[b] - way).norm2()));
+        best.into_iter().for_each(|k| {
+            arms.swap_remove(k);
+        });
+    }
+    arms.into_iter().map(|way| OpenArm { sample: s, place: position + way }).collect()
 }
 
 #[cfg(test)]

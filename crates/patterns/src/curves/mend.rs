@@ -71,6 +71,7 @@ fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s
     let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
     let Some(&before) = state.links[s as usize].first() else { return Vec::new() };
     let way = direction(state.offset(before, s));
+    let branches = net.branches();
     let mut found = Vec::new();
     state.index.within(position, REACH * unit, |slot, offset| {
         let o = state.living[slot];
@@ -85,7 +86,7 @@ fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s
         let wants = expected(state, net, votes, o) - degree as f64 > 0.4;
         let turn = 1.0 - way.dot(direction(offset));
         let cost = offset.norm() / unit + ANGLE * turn + if wants { 0.0 } else { NEW_JUNCTION };
-        let is_crowded = degree >= 4 || (!wants && degree >= 3);
+        let is_crowded = degree >= 4 || (!wants && (degree >= 3 || (degree == 2 && !branches)));
         if cost <= REACH && !is_crowded {
             found.push((cost, s, o));
         }

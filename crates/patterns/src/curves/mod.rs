@@ -17,6 +17,7 @@
 //! | chaining | `chains` | §4.4.2, fig. 11 |
 //! | shape of a stroke | `shape` | beyond the paper: the exemplar's own line, bent to its ends |
 //! | next level | `resample` | §4.3.5 |
+//! | the border | `trim` | §4.3.1, the domain term |
 //!
 //! Beyond the paper: the samples between two knots carry the true line of the exemplar, so that corners stay corners and arcs stay arcs; an edge
 //! that the window of the exemplar cuts off counts as one, so that nothing ends where merely the example ends.
@@ -31,6 +32,7 @@ mod resample;
 mod shape;
 mod skeleton;
 mod tangents;
+mod trim;
 mod votes;
 
 pub(crate) use cast::Cast;

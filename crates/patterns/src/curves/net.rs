@@ -9,6 +9,9 @@ use super::skeleton::{Knot, Line, Skeleton};
 /// Most arms of a node that are told apart; further ones are left out of the comparison.
 pub(crate) const ARMS: usize = 6;
 
+/// Share of nodes with three edges from which on a new fork is nothing unusual.
+const FORKS: f64 = 0.04;
+
 /// A stretch of a line: from arc length `from` to `to`, backwards when `to < from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Piece {
@@ -214,6 +217,12 @@ impl<const D: usize> Net<D> {
     pub(crate) fn degree(&self, node: u32) -> usize {
         let node = &self.nodes[node as usize];
         node.arms.len() + node.beyond.len()
+    }
+
+    /// Whether strokes branch: a fair share of the nodes has three edges.
+    pub(crate) fn branches(&self) -> bool {
+        let forks = (0..self.nodes.len() as u32).filter(|&n| self.degree(n) == 3).count();
+        forks as f64 > FORKS * self.nodes.len() as f64
     }
 
     /// From the start of a piece to its end.

@@ -9,6 +9,7 @@ use super::{
     chains::Chain,
     net::{Net, Piece},
     skeleton::Knot,
+    trim::at_border,
 };
 use crate::{
     solver::{NormalEquations, Prediction, Pull},
@@ -46,10 +47,11 @@ pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> 
 pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>> {
     let frozen = state.request.frozen_curves.iter().enumerate().map(|(n, d)| Drawn { frozen: Some(n), ..d.clone() });
     let Some(net) = &state.level.net else { return frozen.collect() };
-    let free = chains.iter().map(|chain| {
+    let free = chains.iter().flat_map(|chain| {
         let (path, curve) = draw(state, net, chain);
         let scale = state.request.fields.frame(path.start().unwrap_or(Vector::ZERO)).element_scale;
-        Drawn { path, source: curve as usize, scale, frozen: None }
+        let stroke = Drawn { path, source: curve as usize, scale, frozen: None };
+        at_border(stroke, state.extent, state.width(curve), net.spacing * scale)
     });
     frozen.chain(free).collect()
 }

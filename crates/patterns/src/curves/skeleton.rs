@@ -5,7 +5,10 @@
 
 use arabesque_core::{Bounds, Curve, Domain, GridIndex, Measured, Path, Vector};
 
-use super::contact::{Contact, crossings, end_contacts};
+use super::{
+    contact::{Contact, crossings, end_contacts},
+    trim::inside,
+};
 
 /// Ends this many stroke widths apart meet.
 const TOUCH_WIDTHS: f64 = 0.6;
@@ -200,7 +203,7 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
         is_cut,
         stops: Vec::new(),
     };
-    let spans = inside(&measured, window);
+    let spans = inside(&measured, &|p| window.contains(p));
     let whole = matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length());
     if whole && measured.is_closed() {
         return vec![line(curve.path.clone(), [false; 2])];
@@ -211,41 +214,6 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
         line(path, ends)
     });
     lines.filter(|l| l.measured.length() > near).collect()
-}
-
-/// Arc lengths between which a path is inside the window; on a closed path the last stretch may end beyond its length.
-fn inside<const D: usize>(measured: &Measured<D>, window: &Bounds<D>) -> Vec<(f64, f64)> {
-    let points = measured.points();
-    let border = |k: usize| {
-        let (mut a, mut b) = (measured.arc_of(k - 1), measured.arc_of(k));
-        let enters = window.contains(points[k]);
-        for _ in 0..40 {
-            let middle = 0.5 * (a + b);
-            if window.contains(measured.point(middle)) == enters { b = middle } else { a = middle }
-        }
-        if enters { b } else { a }
-    };
-    let mut spans: Vec<(f64, f64)> = Vec::new();
-    let mut open = points.first().is_some_and(|p| window.contains(*p)).then_some(0.0);
-    for k in 1..points.len() {
-        match (open, window.contains(points[k])) {
-            (None, true) => open = Some(border(k)),
-            (Some(a), false) => {
-                spans.push((a, border(k)));
-                open = None;
-            }
-            _ => {}
-        }
-    }
-    let length = measured.length();
-    spans.extend(open.map(|a| (a, length)));
-    if measured.is_closed() && spans.len() > 1 && spans[0].0 <= 0.0 && spans.last().is_some_and(|s| s.1 >= length) {
-        let first = spans.remove(0);
-        if let Some(last) = spans.last_mut() {
-            last.1 = length + first.1;
-        }
-    }
-    spans
 }
 
 /// Disjoint sets.

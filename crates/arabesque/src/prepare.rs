@@ -123,6 +123,7 @@ impl Preparation<'_> {
         };
         let exemplar = points.as_ref().unwrap_or(&drawing.exemplar);
         self.check_room(exemplar, &place.domain)?;
+        self.check_widths(exemplar);
         let mut request = Request::new(place.domain);
         request.border = self.border(exemplar, rest.is_some()).into();
         request.fields = self.fields(&drawing, &request.domain.bounds())?;
@@ -269,6 +270,18 @@ impl Preparation<'_> {
             ));
         }
         Ok(())
+    }
+
+    /// Warns of strokes so wide that they leave no gap.
+    fn check_widths(&mut self, exemplar: &Exemplar<2>) {
+        let spacing = spacing(exemplar);
+        let widest = exemplar.curves.iter().map(|c| c.width).fold(0.0, f64::max);
+        if widest > spacing {
+            self.warnings.push(Warning::new(
+                format!("strokes up to {widest:.4} wide, where lines are {spacing:.4} apart: they run into each other"),
+                "make the strokes thinner, and wider again in the result",
+            ));
+        }
     }
 
     fn fields(&mut self, drawing: &Drawing, bounds: &Bounds<2>) -> Result<Fields<2>> {

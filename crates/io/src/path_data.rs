@@ -39,6 +39,9 @@ enum Segment<const D: usize> {
     Curve(Cubic<D>),
 }
 
+/// Points that are merged into one line at most: each is looked at again for every further one.
+const MERGED: usize = 64;
+
 /// The segments of a path, lines in one direction merged where no point between is farther than `tolerance` from the whole.
 fn merged<const D: usize>(path: &Path<D>, tolerance: f64) -> Vec<Segment<D>> {
     let mut segments = Vec::new();
@@ -51,7 +54,9 @@ fn merged<const D: usize>(path: &Path<D>, tolerance: f64) -> Vec<Segment<D>> {
             continue;
         }
         match &mut line {
-            Some((start, between)) if between.iter().all(|p| off_chord(*p, *start, c[3]) <= tolerance) => {
+            Some((start, between))
+                if between.len() < MERGED && between.iter().all(|p| off_chord(*p, *start, c[3]) <= tolerance) =>
+            {
                 between.push(c[3]);
                 if let Some(Segment::Line(end)) = segments.last_mut() {
                     *end = c[3];

@@ -127,7 +127,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
                 self.push(Curve { path, style, width: stroke.width, colour }, &stroke, item);
             }
         }
-        Ok(())
+        self.check_count()
     }
 
     fn push(&mut self, curve: Curve<2>, stroke: &Stroke, item: &Item) {
@@ -140,6 +140,15 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         }
         self.found.curves.push(curve);
         self.found.strokes.push(stroke.clone());
+    }
+
+    /// Refuses more curves than the limit.
+    fn check_count(&self) -> Result<()> {
+        let (found, source) = (self.found.curves.len(), self.inker.source);
+        if found <= source.limits.elements {
+            return Ok(());
+        }
+        Err(super::guard::too_much(format!("{}: curves", source.name), found, source.limits.elements as u64))
     }
 
     /// How a shape's stroke is painted, in the units of the root.

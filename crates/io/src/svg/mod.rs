@@ -44,8 +44,10 @@ mod write_background;
 mod write_curves;
 mod write_cut;
 mod write_flat;
+mod write_kept;
 mod write_pieces;
 mod write_survey;
+mod write_text;
 
 pub use area::{read_flow, read_shape};
 pub use cut_path::{Side, cut};

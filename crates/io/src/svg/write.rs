@@ -8,10 +8,12 @@ use std::{collections::BTreeSet, fmt::Write as _};
 use arabesque_core::{Border, Bounds, Domain, Drawn, Outline, Placement, Result, Vector, Warning};
 
 use super::{
-    Drawing, Page, Placed, Rest, Stacking, Unit,
+    Drawing, Page, Placed, Rest, Stacking,
     write_background::background,
     write_curves::curves,
     write_flat::{Flattener, Warp},
+    write_kept::free_prefix,
+    write_text::{escape, matrix, outline_data, rectangle, unit_name},
 };
 use crate::number::Decimals;
 
@@ -92,11 +94,12 @@ pub fn recipe_of(text: &str) -> Option<String> {
     Some(node.children().filter_map(|n| n.text()).collect())
 }
 
-struct Writer<'a> {
-    sheet: &'a Sheet<'a>,
+/// A file on its way.
+pub(super) struct Writer<'a> {
+    pub(super) sheet: &'a Sheet<'a>,
     decimals: Decimals,
-    prefix: String,
-    out: String,
+    pub(super) prefix: String,
+    pub(super) out: String,
     warnings: Vec<Warning>,
 }
 
@@ -122,23 +125,6 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// The new at the end of the file that it belongs to.
-    fn hosted(&mut self, host: &Rest) -> Result<()> {
-        self.out.push_str(&host.head);
-        self.metadata();
-        self.definitions();
-        if !host.moved.is_empty() {
-            let _ = write!(
-                self.out,
-                "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept\" id=\"{}-kept\">\n{}</g>\n",
-                self.prefix, host.moved
-            );
-        }
-        self.elements()?;
-        self.out.push_str(&host.tail);
-        Ok(())
-    }
-
     fn root(&mut self) {
         let (view, size) = (self.sheet.page.view, self.sheet.page.view.size());
         let d = self.decimals;
@@ -159,7 +145,7 @@ impl<'a> Writer<'a> {
         );
     }
 
-    fn metadata(&mut self) {
+    pub(super) fn metadata(&mut self) {
         if let Some(recipe) = self.sheet.recipe {
             // "]]>" would end the section: it is cut in two.
             let safe = recipe.replace("]]>", "]]]]><![CDATA[>");
@@ -168,7 +154,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn definitions(&mut self) {
+    pub(super) fn definitions(&mut self) {
         self.out.push_str("<defs>\n");
         let of_kept = self.sheet.kept.map(|k| &k.definitions);
         let of_host = self.sheet.host.map(|h| &h.definitions);
@@ -214,7 +200,7 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    fn elements(&mut self) -> Result<()> {
+    pub(super) fn elements(&mut self) -> Result<()> {
         let _ = write!(
             self.out,
             "<g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\" id=\"{}-output\"",
@@ -299,54 +285,15 @@ impl<'a> Writer<'a> {
         Ok(flat.kept_whole)
     }
 
-    fn shifted(&self, shift: Vector<2>) -> String {
+    pub(super) fn shifted(&self, shift: Vector<2>) -> String {
         if shift == Vector::ZERO {
             return String::new();
         }
         format!(" transform=\"translate({} {})\"", self.decimals.format(shift[0]), self.decimals.format(shift[1]))
     }
 
-    /// The strokes that the user drew, unchanged and whole.
-    fn kept_strokes(&mut self) {
-        let Some(kept) = self.sheet.kept.filter(|k| !k.curve_fragments.is_empty()) else { return };
-        let _ = writeln!(
-            self.out,
-            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept strokes\" id=\"{}-kept-strokes\">",
-            self.prefix
-        );
-        for (fragment, extent) in &kept.curve_fragments {
-            for shift in self.shifts(extent) {
-                let _ = writeln!(self.out, "<g{}>{}</g>", self.shifted(shift), fragment.markup);
-            }
-        }
-        self.out.push_str("</g>\n");
-    }
-
-    /// What the user placed beside elements of the exemplar.
-    fn obstacles(&mut self) {
-        let Some(kept) = self.sheet.kept.filter(|k| !k.obstacle_fragments.is_empty()) else { return };
-        let _ =
-            writeln!(self.out, "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept\" id=\"{}-kept\">", self.prefix);
-        for (fragment, outline) in kept.obstacle_fragments.iter().zip(&kept.obstacles) {
-            for shift in self.shifts(&outline.bounds()) {
-                let _ = writeln!(self.out, "<g{}>{}</g>", self.shifted(shift), fragment.markup);
-            }
-        }
-        self.out.push_str("</g>\n");
-    }
-
-    /// Whether a placement stands in the file already.
-    fn is_hosted(&self, placement: &Placement<2>) -> bool {
-        self.sheet.host.is_some() && placement.frozen.is_some()
-    }
-
     fn is_bent(&self, placement: &Placement<2>) -> bool {
         self.sheet.bend.is_some() && !placement.control.is_empty()
-    }
-
-    fn kept_markup(&self, placement: &Placement<2>) -> Option<&'a str> {
-        let fragment = self.sheet.kept?.fragments.get(placement.frozen?)?;
-        Some(&fragment.markup)
     }
 
     fn clips_by_reference(&self) -> bool {
@@ -375,7 +322,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The shifts under which a box is seen: none, or on a torus one for every tile that it reaches into.
-    fn shifts(&self, bounds: &Bounds<2>) -> Vec<Vector<2>> {
+    pub(super) fn shifts(&self, bounds: &Bounds<2>) -> Vec<Vector<2>> {
         let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
         if bounds.is_empty() {
             return vec![Vector::ZERO];
@@ -392,98 +339,10 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// A prefix for new ids that no id of the exemplar starts with.
-fn free_prefix(sheet: &Sheet<'_>) -> String {
-    let kept = sheet.kept.into_iter().flat_map(|k| {
-        k.fragments
-            .iter()
-            .chain(&k.obstacle_fragments)
-            .chain(k.curve_fragments.iter().map(|(f, _)| f))
-            .map(|f| &f.markup)
-            .chain(std::iter::once(&k.definitions))
-    });
-    let texts: Vec<&String> = sheet
-        .drawing
-        .fragments
-        .iter()
-        .map(|f| &f.markup)
-        .chain(std::iter::once(&sheet.drawing.definitions))
-        .chain(&sheet.drawing.background)
-        .chain(kept)
-        .collect();
-    let host = sheet.host.into_iter().flat_map(|h| [&h.head, &h.tail, &h.moved, &h.definitions]);
-    let texts: Vec<&String> = texts.into_iter().chain(host).collect();
-    let starts = |t: &str, prefix: &str| ['"', '\''].iter().any(|q| t.contains(&format!("{q}{prefix}-")));
-    let taken = |prefix: &str| texts.iter().any(|t| starts(t, prefix));
-    let candidates = std::iter::once("arabesque".to_owned()).chain((2..).map(|n| format!("arabesque{n}")));
-    candidates.into_iter().find(|p| !taken(p)).unwrap_or_else(|| "arabesque".to_owned())
-}
-
-fn matrix(placement: &Placement<2>, shift: Vector<2>, d: Decimals) -> String {
-    let t = &placement.transform;
-    let (r, s) = (t.rotation.0, t.scale);
-    let at = t.translation + shift;
-    let (e, f) = (d.format(at[0]), d.format(at[1]));
-    let linear = [r[0][0], r[1][0], r[0][1], r[1][1]].map(|v| d.plus(3).format(v * s));
-    if linear == ["1", "0", "0", "1"] {
-        return format!("translate({e} {f})");
-    }
-    format!("matrix({} {e} {f})", linear.join(" "))
-}
-
-/// The outline of a box.
-pub(super) fn rectangle(b: &Bounds<2>) -> Outline<2> {
-    let (a, c) = (b.min, b.max);
-    Outline { rings: vec![vec![a, Vector::xy(c[0], a[1]), c, Vector::xy(a[0], c[1])]] }
-}
-
-/// Path data of an outline.
-pub(super) fn outline_data(outline: &Outline<2>, d: Decimals) -> String {
-    let mut data = String::new();
-    for ring in &outline.rings {
-        for (k, p) in ring.iter().enumerate() {
-            let _ = write!(data, "{}{} {}", if k == 0 { "M" } else { "L" }, d.format(p[0]), d.format(p[1]));
-        }
-        data.push('Z');
-    }
-    data
-}
-
-/// The unit as SVG writes it.
-pub(super) fn unit_name(unit: Unit) -> &'static str {
-    match unit {
-        Unit::Px => "",
-        Unit::Mm => "mm",
-        Unit::Cm => "cm",
-        Unit::In => "in",
-        Unit::Pt => "pt",
-        Unit::Pc => "pc",
-        Unit::Q => "Q",
-    }
-}
-
-/// Text as an attribute value.
-pub(super) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' | '\r' | '\t' => {
-                let _ = write!(out, "&#{};", u32::from(c));
-            }
-            c if c < ' ' || c == '\u{FFFE}' || c == '\u{FFFF}' => out.push('\u{FFFD}'),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::svg::Unit;
     use crate::svg::{Fragment, Job};
     use arabesque_core::{Exemplar, Similarity};
 

@@ -6,8 +6,8 @@ use arabesque_core::{Domain, Error, Outline, Result, Vector, Warning};
 
 use super::{
     Sheet,
-    write::{escape, outline_data, rectangle},
     write_flat::wrapped,
+    write_text::{escape, outline_data, rectangle},
 };
 use crate::number::Decimals;
 

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt::Write as _};
 
 use arabesque_core::{Bounds, Drawn, Path, Vector};
 
-use super::{Sheet, Stroke, write::escape};
+use super::{Sheet, Stroke, write_text::escape};
 use crate::{number::Decimals, path_data::path_data};
 
 /// Widths that differ by less than this share are the same.

@@ -7,9 +7,10 @@ use kurbo::{Affine, BezPath, CubicBez, ParamCurve, PathEl, PathSeg, Point};
 
 use super::{
     Drawing,
-    write::{Style, escape},
+    write::Style,
     write_cut::{Cutter, Remainder},
     write_pieces::{PaintedPath, Piece, take_apart},
+    write_text::escape,
 };
 use crate::number::Decimals;
 

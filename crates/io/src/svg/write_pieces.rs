@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, str::FromStr};
 use arabesque_core::{Error, Result};
 use kurbo::{Affine, BezPath, Shape as _};
 
-use super::write::escape;
+use super::write_text::escape;
 
 /// Attributes of one node, sorted by name.
 type Attributes = BTreeMap<String, String>;

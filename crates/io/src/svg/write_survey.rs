@@ -6,7 +6,7 @@ use arabesque_core::Role;
 
 use super::{
     Drawing,
-    write::{escape, outline_data, rectangle, unit_name},
+    write_text::{escape, outline_data, rectangle, unit_name},
 };
 use crate::{number::Decimals, path_data::path_data};
 

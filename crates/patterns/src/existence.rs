@@ -177,12 +177,7 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
 }
 
 /// Whether a new curve sample at `p` would keep the distance that its source keeps to whatever is nearest; elements have their classes for that.
-fn has_own_room<const D: usize>(
-    state: &State<'_, D>,
-    source: u32,
-    p: Vector<D>,
-    placed: &[(Vector<D>, u32)],
-) -> bool {
+fn has_own_room<const D: usize>(state: &State<'_, D>, source: u32, p: Vector<D>, placed: &[(Vector<D>, u32)]) -> bool {
     if source < state.level.base {
         return true;
     }

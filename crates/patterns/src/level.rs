@@ -1,5 +1,7 @@
 //! The exemplar at one level of the hierarchy: its samples and their neighbourhoods, flattened for the search.
 
+use std::sync::Arc;
+
 use arabesque_core::{Domain, GridIndex, Vector};
 
 use crate::{
@@ -59,7 +61,7 @@ pub(crate) struct Level<const D: usize> {
     /// Most similar samples of each sample, best first [Ma 2011 §4.2].
     pub(crate) alike: Vec<Vec<u32>>,
     /// The sample graph of the curves, where there are any.
-    pub(crate) net: Option<Net<D>>,
+    pub(crate) net: Option<Arc<Net<D>>>,
     /// First pseudo element: those before it are true elements, each of the others is a node of the net.
     pub(crate) base: u32,
     /// Edge set of each sample; empty for samples of elements, and for all where edges take no part in the comparison.
@@ -149,7 +151,7 @@ impl<const D: usize> Level<D> {
     }
 
     /// Makes everything from element `base` on the nodes of `net`. Edge sets are compared when `with_edges`.
-    pub(crate) fn with_net(mut self, net: Net<D>, base: u32, with_edges: bool) -> Self {
+    pub(crate) fn with_net(mut self, net: Arc<Net<D>>, base: u32, with_edges: bool) -> Self {
         self.base = base;
         self.single2 = (SINGLE * net.spacing * net.spacing) as f32;
         if with_edges {

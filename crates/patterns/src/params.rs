@@ -150,6 +150,9 @@ pub struct Params {
     pub boundary: f64,
     /// Sampling distance of curves at the finest level, exemplar units; `None` picks it from the distance of neighbouring strokes.
     pub spacing: Option<f64>,
+    /// Sampling distance of curves at the coarsest level relative to the finest, 1 to 8. Default: 1, the levels differ in radius alone; the
+    /// paper's are about 1.3 apart in all.
+    pub coarsening: f64,
     /// Whether edge sets take part in the comparison of curve samples [Tu 2020 eq. 5]. Default: on.
     pub edges: Switch,
     /// Whether assigned tangents decide which edges make one stroke, rather than the edges themselves [Tu 2020 §4.4.2]. Default: on.
@@ -188,6 +191,7 @@ impl Default for Params {
             missing: 1.0,
             boundary: 0.0,
             spacing: None,
+            coarsening: 1.0,
             edges: Switch::On,
             orientations: Switch::On,
             shapes: Switch::On,
@@ -369,6 +373,14 @@ const KNOBS: &[Knob] = &[
         shown::<f64>
     ),
     knob!(
+        coarsening,
+        "coarsening",
+        "1 to 8",
+        "Sampling distance of curves at the coarsest level relative to the finest. Default: 1.",
+        |n: &str, v: &str| real(n, v, 1.0, 8.0),
+        f64::to_string
+    ),
+    knob!(
         edges,
         "edges",
         "off, on",
@@ -475,6 +487,7 @@ impl Params {
                 search: Search::PatchMatch,
                 coarse_neighbours: 30.0,
                 fine_neighbours: 20.0,
+                coarsening: 1.3,
                 shapes: Switch::Off,
                 mending: Switch::Off,
                 ..published

@@ -34,6 +34,9 @@ const FLOOR: f64 = 0.95;
 /// Moves below this share of the mean spacing do not make the neighbours search again.
 const NOTICEABLE: f64 = 0.01;
 
+/// The same where there are curves, whose samples are never quite still.
+const NOTICEABLE_STROKES: f64 = 0.04;
+
 /// A level, with what it means for the request.
 pub(crate) struct Stand<'a, const D: usize> {
     pub(crate) setting: &'a Setting<D>,
@@ -95,7 +98,7 @@ impl<const D: usize> Run<'_, D> {
         let mut state = self.state(finest, draft);
         curves::link_sources(&mut state);
         match &coarsest.setting.level.net {
-            Some(net) if self.stands.len() > 1 => {
+            Some(net) if self.stands.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) => {
                 let chains = self.chains(&mut state);
                 let frozen = frozen::draft(self.request, coarsest.setting);
                 curves::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
@@ -242,7 +245,8 @@ impl<const D: usize> Run<'_, D> {
         state.follow_samples(&position);
         let (_, joined) = curves::assign_edges(state);
         curves::assign_tangents(state);
-        let moved = state.announce_moves(NOTICEABLE * state.library.spacing * stand.extent.smallest_spacing_scale);
+        let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
+        let moved = state.announce_moves(noticeable * state.library.spacing * stand.extent.smallest_spacing_scale);
         state.reindex();
         moved || exchanged + joined > 0 || changes != Changes::default()
     }
@@ -252,16 +256,37 @@ impl<const D: usize> Run<'_, D> {
         let base = state.level.base;
         let bends = finish::bends(&state);
         let next = self.stands.get(k + 1).filter(|_| flow.is_continue());
-        let finer = next.and_then(|next| next.setting.level.net.as_ref().map(|net| (next, net)));
+        let finer = next.and_then(|next| next.setting.level.net.as_deref().map(|net| (next, net)));
         let Some((next, net)) = finer else {
             let items = living(&state).into_iter().filter(|(item, _)| next.is_some() || item.source < base).collect();
             let curves = if next.is_some() { Vec::new() } else { self.strokes(state) };
             return Finished { draft: Draft { items, links: Vec::new() }, bends, curves };
         };
+        if std::ptr::eq(net, state.level.net.as_deref().unwrap_or(net)) {
+            return Finished { draft: self.as_it_is(state), bends, curves: Vec::new() };
+        }
         let chains = self.chains(&mut state);
         let frozen = frozen::draft(self.request, next.setting);
         let draft = curves::resample(&state, &chains, (net, next.setting.level.base), frozen);
         Finished { draft, bends, curves: Vec::new() }
+    }
+
+    /// Everything that lives, for a level with the same samples.
+    fn as_it_is(&self, mut state: State<'_, D>) -> Draft<D> {
+        if self.prepared.params.mending == Switch::On {
+            let votes = curves::collect_votes(&state);
+            curves::mend(&mut state, &votes);
+        }
+        let mut number = vec![u32::MAX; state.items.len()];
+        let mut next = 0;
+        for (i, _) in state.items.iter().enumerate().filter(|(_, live)| live.alive) {
+            number[i] = next;
+            next += 1;
+        }
+        let item = |s: u32| number[state.samples[s as usize].item as usize];
+        let pairs = (0..state.links.len() as u32).flat_map(|s| state.links[s as usize].iter().map(move |&o| (s, o)));
+        let links = pairs.filter(|(s, o)| s < o).map(|(s, o)| (item(s), item(o))).collect();
+        Draft { items: living(&state), links }
     }
 
     /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.

@@ -19,9 +19,6 @@ const STROKE_GAP: f64 = 1.0;
 /// It is no smaller than this share of the shorter side of the window, and no larger than that.
 const STEP_RANGE: (f64, f64) = (1.0 / 50.0, 1.0 / 16.0);
 
-/// Sampling distance of the coarsest level relative to the finest one.
-const COARSER: f64 = 1.75;
-
 /// Mean numbers of samples in a neighbourhood of curves at the coarsest and the finest level [Tu 2020 §C].
 const NEIGHBOURS: (f64, f64) = (30.0, 20.0);
 
@@ -51,16 +48,22 @@ pub(crate) fn settings<const D: usize>(
         return (0..params.levels).map(setting).map(|s| with_sets(s, params)).collect();
     };
     let step = params.spacing.unwrap_or_else(|| finest_spacing(exemplar, skeleton));
-    let setting = |number| {
-        let cast = Cast::new(exemplar, skeleton, step * std::env::var("CO").map_or(COARSER,|v|v.parse().unwrap()).powf(1.0 - detail(params, number)));
-        let library = Library::new(&cast.exemplar, Some((exemplar.classes.len(), cast.net.spacing)));
-        let samples = samples.with_points(cast.exemplar.elements.len() - cast.base);
-        let radius = ball(&library, params, number, NEIGHBOURS);
-        let level = Level::new(&library, &samples, detail(params, number), radius);
-        let level = level.with_net(cast.net, cast.base as u32, params.edges == Switch::On);
-        Setting { exemplar: Arc::new(cast.exemplar), library: Arc::new(library), level }
+    let mut made: Vec<(f64, Cast<D>, Arc<Exemplar<D>>, Arc<Library<D>>)> = Vec::new();
+    let mut setting = |number| {
+        let spacing = step * params.coarsening.powf(1.0 - detail(params, number));
+        // Levels with the same sampling distance share everything but the radius.
+        if made.last().is_none_or(|m| m.0 != spacing) {
+            let cast = Cast::new(exemplar, skeleton, spacing);
+            let library = Arc::new(Library::new(&cast.exemplar, Some((exemplar.classes.len(), spacing))));
+            made.push((spacing, cast.clone(), Arc::new(cast.exemplar), library));
+        }
+        let (_, cast, shared, library) = &made[made.len() - 1];
+        let samples = samples.with_points(shared.elements.len() - cast.base);
+        let level = Level::new(library, &samples, detail(params, number), ball(library, params, number, NEIGHBOURS));
+        let level = level.with_net(Arc::clone(&cast.net), cast.base as u32, params.edges == Switch::On);
+        Setting { exemplar: Arc::clone(shared), library: Arc::clone(library), level }
     };
-    (0..params.levels).map(setting).map(|s| with_sets(s, params)).collect()
+    (0..params.levels).map(&mut setting).map(|s| with_sets(s, params)).collect()
 }
 
 /// 0 at the coarsest level, 1 at the finest.

@@ -16,7 +16,7 @@ pub(crate) struct Cast<const D: usize> {
     pub(crate) exemplar: Exemplar<D>,
     /// First pseudo element.
     pub(crate) base: usize,
-    pub(crate) net: Net<D>,
+    pub(crate) net: Arc<Net<D>>,
 }
 
 impl<const D: usize> Cast<D> {
@@ -43,7 +43,7 @@ impl<const D: usize> Cast<D> {
             });
         }
         cast.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
-        Self { exemplar: cast, base: exemplar.elements.len(), net }
+        Self { exemplar: cast, base: exemplar.elements.len(), net: Arc::new(net) }
     }
 }
 

@@ -69,8 +69,15 @@ impl<const D: usize> Star<D> {
         }
         let (few, many) = if self.len <= other.len { (self, other) } else { (other, self) };
         let surplus = f32::from(many.len - few.len) * single2;
+        if let ([a, b], [c, d]) = (&few.arms[..few.len()], &many.arms[..many.len()]) {
+            return f32::min(apart2(a, c) + apart2(b, d), apart2(a, d) + apart2(b, c));
+        }
         surplus + least(&few.arms[..few.len()], &many.arms[..many.len()], 0)
     }
+}
+
+fn apart2<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
+    (0..D).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
 }
 
 /// Least sum of squared differences when every vector of `few` gets one of `many` of its own.
@@ -78,7 +85,7 @@ fn least<const D: usize>(few: &[[f32; D]], many: &[[f32; D]], taken: u32) -> f32
     let Some((first, rest)) = few.split_first() else { return 0.0 };
     let mut best = f32::INFINITY;
     for (k, other) in many.iter().enumerate().filter(|(k, _)| taken & (1 << k) == 0) {
-        let d2: f32 = first.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();
+        let d2 = apart2(first, other);
         if d2 < best {
             best = best.min(d2 + least(rest, many, taken | (1 << k)));
         }
@@ -225,10 +232,21 @@ impl<const D: usize> Net<D> {
         forks as f64 > FORKS * self.nodes.len() as f64
     }
 
-    /// From the start of a piece to its end.
+    /// Where the node at `arc` of a line is: a line that ends at a junction may stop short of it by a touch.
+    pub(crate) fn anchor(&self, line: u32, arc: f64) -> Vector<D> {
+        let line = &self.skeleton.lines[line as usize];
+        let (arc, length) = (line.measured.wrap(arc), line.measured.length());
+        let gap = |a: f64| {
+            let d = (a - arc).abs();
+            if line.measured.is_closed() { d.min(length - d) } else { d }
+        };
+        let stop = line.stops.iter().find(|(a, _)| gap(*a) <= 1e-9 * length);
+        stop.map_or_else(|| line.measured.point(arc), |&(_, knot)| self.skeleton.knots[knot as usize].0)
+    }
+
+    /// From the node at the start of a piece to that at its end.
     pub(crate) fn span(&self, piece: Piece) -> Vector<D> {
-        let measured = &self.skeleton.lines[piece.line as usize].measured;
-        measured.point(piece.to) - measured.point(piece.from)
+        self.anchor(piece.line, piece.to) - self.anchor(piece.line, piece.from)
     }
 
     /// The node of `line` nearest to `arc`.

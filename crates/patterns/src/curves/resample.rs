@@ -149,7 +149,7 @@ impl<const D: usize> Resampled<'_, D> {
             return Some(Item { source: self.base + node, position: start + (end - start) * share, frozen: None });
         };
         let source = self.nearest(piece.line, piece.from + (piece.to - piece.from) * share)?;
-        let part = shape::bent(self.state, net, piece, (start, end));
+        let part = shape::bent(self.state, net, (piece, [true; 2]), (start, end));
         let path = arabesque_core::Path { cubics: part, closed: false };
         let measured = arabesque_core::Measured::new(path, 0.05 * net.spacing);
         let position: Vector<D> = measured.point(share * measured.length());

@@ -70,8 +70,10 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
         } else {
             here + step
         };
+        // Inside the stroke the pieces meet; its ends keep the distance that the exemplar's keep to what they touch.
+        let snapped = [chain.is_closed || k > 0, chain.is_closed || k + 1 < chain.pieces.len()];
         stretches.push(match piece {
-            Some(piece) => bent(state, net, *piece, (here, there)),
+            Some(piece) => bent(state, net, (*piece, snapped), (here, there)),
             None => vec![straight(here, there)],
         });
         here = there;
@@ -83,15 +85,19 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
     (path, style(net, chain))
 }
 
-/// An exemplar piece moved, turned into the local frame and bent so that its ends come to lie at `a` and `b`.
+/// An exemplar piece moved, turned into the local frame and bent so that its nodes come to lie at `a` and `b`. Its start and its end are put
+/// exactly there where they are to be `snapped`.
 pub(crate) fn bent<const D: usize>(
     state: &State<'_, D>,
     net: &Net<D>,
-    piece: Piece,
+    (piece, snapped): (Piece, [bool; 2]),
     (a, b): (Vector<D>, Vector<D>),
 ) -> Vec<Cubic<D>> {
     let path = net.skeleton.lines[piece.line as usize].measured.part(piece.from, piece.to);
-    let (Some(start), Some(end)) = (path.start(), path.end()) else { return vec![straight(a, b)] };
+    if path.is_empty() {
+        return vec![straight(a, b)];
+    }
+    let (start, end) = (net.anchor(piece.line, piece.from), net.anchor(piece.line, piece.to));
     let frame = state.request.fields.frame(a);
     let chord = end - start;
     let rest = b - a - frame.to_output(chord);
@@ -101,10 +107,10 @@ pub(crate) fn bent<const D: usize>(
         a + frame.to_output(p - start) + rest * share
     };
     let mut cubics = path.map(place).cubics;
-    if let Some(first) = cubics.first_mut() {
+    if let Some(first) = cubics.first_mut().filter(|_| snapped[0]) {
         first[0] = a;
     }
-    if let Some(last) = cubics.last_mut() {
+    if let Some(last) = cubics.last_mut().filter(|_| snapped[1]) {
         last[3] = b;
     }
     cubics

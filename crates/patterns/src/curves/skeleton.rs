@@ -10,8 +10,8 @@ use super::{
     trim::inside,
 };
 
-/// Ends this many stroke widths apart meet.
-const TOUCH_WIDTHS: f64 = 0.6;
+/// An end this many stroke widths from a line meets it: the ink of the two touches.
+const TOUCH_WIDTHS: f64 = 1.0;
 
 /// They also meet when they are closer than this share of the side of the window.
 const TOUCH_SHARE: f64 = 0.003;

@@ -3,6 +3,7 @@
 //! One module a format. Everything read is held to [`arabesque_core::Limits`]; everything written is the same bytes for the same result.
 //! Only [`mod@file`] touches the file system: the others turn bytes into values and values into bytes.
 
+pub mod centreline;
 pub mod csv;
 pub mod file;
 pub mod json;

@@ -233,6 +233,14 @@ impl<'a, const D: usize> State<'a, D> {
         self.source(s).checked_sub(self.level.base)
     }
 
+    /// Whether a stroke may run from one sample to the other.
+    pub(crate) fn share_style(&self, a: u32, b: u32) -> bool {
+        match (&self.level.net, self.node(a), self.node(b)) {
+            (Some(net), Some(a), Some(b)) => net.nodes[a as usize].shares_style(&net.nodes[b as usize]),
+            _ => false,
+        }
+    }
+
     /// Whether the user placed the sample.
     pub(crate) fn is_frozen(&self, s: u32) -> bool {
         self.items[self.samples[s as usize].item as usize].item.frozen.is_some()

@@ -22,16 +22,17 @@ pub(crate) struct Cast<const D: usize> {
 impl<const D: usize> Cast<D> {
     /// Samples the skeleton at `spacing` and appends the samples to the elements of `exemplar`.
     pub(crate) fn new(exemplar: &Exemplar<D>, skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
-        let net = Net::new(skeleton, spacing);
+        let mut net = Net::new(skeleton, spacing);
         let mut cast = exemplar.clone();
         let mut kinds: Vec<Vec<usize>> = Vec::new();
         for number in 0..net.nodes.len() as u32 {
-            let node = &net.nodes[number as usize];
             let styles = styles(exemplar, &net, number);
+            net.nodes[number as usize].styles.clone_from(&styles);
             let kind = kinds.iter().position(|k| *k == styles).unwrap_or_else(|| {
                 kinds.push(styles);
                 kinds.len() - 1
             });
+            let node = &net.nodes[number as usize];
             let tips = directions(&net, number).into_iter().map(|t| node.position + t * spacing);
             cast.elements.push(Element {
                 class: exemplar.classes.len() + kind,

@@ -97,12 +97,31 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
         }
         return next;
     }
+    let mut free = vec![true; links.len()];
+    if by_tangents {
+        for (i, j) in as_in_exemplar(state, s, &ways) {
+            through(links[i], links[j]);
+            (free[i], free[j]) = (false, false);
+        }
+    }
     let tangents = &state.tangents[s as usize];
     let directions = if by_tangents && tangents.len() >= ways.len() { matched(&ways, tangents) } else { ways };
-    for (i, j) in opposite(&directions) {
+    for (i, j) in opposite(&directions).into_iter().filter(|&(i, j)| free[i] && free[j]) {
         through(links[i], links[j]);
     }
     next
+}
+
+/// Pairs of edges that are one stroke at the source of a sample, where it has as many arms.
+fn as_in_exemplar<const D: usize>(state: &State<'_, D>, s: u32, ways: &[Vector<D>]) -> Vec<(usize, usize)> {
+    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e as usize]);
+    let Some(node) = node.filter(|node| node.arms.len() == ways.len()) else { return Vec::new() };
+    let frame = state.request.fields.frame(state.samples[s as usize].position);
+    let arms: Vec<Vector<D>> = node.arms.iter().map(|arm| frame.rotation.apply(arm.tangent)).collect();
+    let arm_of = assigned(ways, &arms);
+    let way_of = |arm: usize| arm_of.iter().position(|a| *a == Some(arm));
+    let pairs = (0..arms.len()).filter_map(|k| node.onwards(k).filter(|&j| j > k).map(|j| (way_of(k), way_of(j))));
+    pairs.filter_map(|(i, j)| Some((i?, j?))).collect()
 }
 
 /// Whether the source of a sample is a place where two strokes end.
@@ -128,8 +147,13 @@ fn opposite<const D: usize>(directions: &[Vector<D>]) -> Vec<(usize, usize)> {
     found
 }
 
-/// For every edge direction the tangent that is matched with it, the best pairs first.
+/// For every edge direction the tangent that is matched with it; itself where none is left.
 fn matched<const D: usize>(ways: &[Vector<D>], tangents: &[Vector<D>]) -> Vec<Vector<D>> {
+    assigned(ways, tangents).into_iter().zip(ways).map(|(t, way)| t.map_or(*way, |t| tangents[t])).collect()
+}
+
+/// For every edge direction the number of the tangent that is matched with it, the best pairs first.
+fn assigned<const D: usize>(ways: &[Vector<D>], tangents: &[Vector<D>]) -> Vec<Option<usize>> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (w, way) in ways.iter().enumerate() {
         pairs.extend(tangents.iter().enumerate().map(|(t, tangent)| (way.dot(*tangent), w, t)));
@@ -139,11 +163,11 @@ fn matched<const D: usize>(ways: &[Vector<D>], tangents: &[Vector<D>]) -> Vec<Ve
     let mut taken = vec![false; tangents.len()];
     for (_, w, t) in pairs {
         if result[w].is_none() && !taken[t] {
-            result[w] = Some(tangents[t]);
+            result[w] = Some(t);
             taken[t] = true;
         }
     }
-    result.into_iter().zip(ways).map(|(r, way)| r.unwrap_or(*way)).collect()
+    result
 }
 
 fn unit<const D: usize>(v: Vector<D>) -> Vector<D> {

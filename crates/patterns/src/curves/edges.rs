@@ -94,8 +94,7 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
         index.within(p, near, |j, offset| {
             let other = &open[j];
             let back = state.domain().offset(state.samples[other.sample as usize].position, arm.place).norm();
-            let alike = state.samples[other.sample as usize].key == state.samples[arm.sample as usize].key;
-            if other.sample != arm.sample && back <= near && (alike || back + offset.norm() < 0.5 * near) {
+            if other.sample != arm.sample && back <= near && state.share_style(other.sample, arm.sample) {
                 wishes.push((back + offset.norm(), i.min(j), i.max(j)));
             }
         });

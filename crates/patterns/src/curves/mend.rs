@@ -76,7 +76,7 @@ fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s
     state.index.within(position, REACH * unit, |slot, offset| {
         let o = state.living[slot];
         let is_near = o == s || o == before || state.links[before as usize].contains(&o);
-        if is_near || state.samples[o as usize].key != state.samples[s as usize].key || state.node(o).is_none() {
+        if is_near || !state.share_style(o, s) {
             return;
         }
         let degree = state.links[o as usize].len();

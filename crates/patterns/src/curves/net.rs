@@ -7,7 +7,10 @@ use arabesque_core::{Measured, Vector};
 use super::skeleton::{Knot, Line, Skeleton};
 
 /// Most arms of a node that are told apart; further ones are left out of the comparison.
-pub(crate) const ARMS: usize = 6;
+pub(crate) const ARMS: usize = 12;
+
+/// Edge sets up to this size are matched optimally, larger ones nearest pair first.
+const EXACT: usize = 4;
 
 /// Share of nodes with three edges from which on a new fork is nothing unusual.
 const FORKS: f64 = 0.04;
@@ -72,7 +75,8 @@ impl<const D: usize> Star<D> {
         if let ([a, b], [c, d]) = (&few.arms[..few.len()], &many.arms[..many.len()]) {
             return f32::min(apart2(a, c) + apart2(b, d), apart2(a, d) + apart2(b, c));
         }
-        surplus + least(&few.arms[..few.len()], &many.arms[..many.len()], 0)
+        let (few, many) = (&few.arms[..few.len()], &many.arms[..many.len()]);
+        surplus + if few.len() <= EXACT { least(few, many, 0) } else { nearest_first(few, many) }
     }
 }
 
@@ -93,6 +97,26 @@ fn least<const D: usize>(few: &[[f32; D]], many: &[[f32; D]], taken: u32) -> f32
     best
 }
 
+/// Sum of squared differences when the nearest pair is matched first.
+fn nearest_first<const D: usize>(few: &[[f32; D]], many: &[[f32; D]]) -> f32 {
+    let (mut first, mut second) = ([false; ARMS], [false; ARMS]);
+    let mut sum = 0.0;
+    for _ in 0..few.len() {
+        let mut best = (f32::INFINITY, 0, 0);
+        for (i, a) in few.iter().enumerate().filter(|(i, _)| !first[*i]) {
+            for (j, b) in many.iter().enumerate().filter(|(j, _)| !second[*j]) {
+                let d2 = apart2(a, b);
+                if d2 < best.0 {
+                    best = (d2, i, j);
+                }
+            }
+        }
+        (first[best.1], second[best.2]) = (true, true);
+        sum += best.0;
+    }
+    sum
+}
+
 /// A node of the sample graph.
 #[derive(Clone, Debug)]
 pub(crate) struct Node<const D: usize> {
@@ -104,6 +128,29 @@ pub(crate) struct Node<const D: usize> {
     pub(crate) knot: Option<Knot>,
     /// Directions in which the window cuts it off.
     pub(crate) beyond: Vec<Vector<D>>,
+    /// Styles of the strokes through it, sorted.
+    pub(crate) styles: Vec<usize>,
+}
+
+impl<const D: usize> Node<D> {
+    fn new(position: Vector<D>, curve: u32, knot: Option<Knot>) -> Self {
+        Self { position, arms: Vec::new(), curve, knot, beyond: Vec::new(), styles: Vec::new() }
+    }
+
+    /// Whether a stroke may run from one to the other.
+    pub(crate) fn shares_style(&self, other: &Self) -> bool {
+        self.styles.iter().any(|s| other.styles.contains(s))
+    }
+
+    /// The arm on which a stroke that comes along arm `k` goes on.
+    pub(crate) fn onwards(&self, k: usize) -> Option<usize> {
+        let own = self.arms[k].piece;
+        let forwards = own.to > own.from;
+        self.arms.iter().position(|other| {
+            let p = other.piece;
+            p.line == own.line && p.from == own.from && (p.to > p.from) != forwards
+        })
+    }
 }
 
 /// A sample graph: the knots of the skeleton first, then the samples between.
@@ -121,13 +168,7 @@ pub(crate) struct Net<const D: usize> {
 impl<const D: usize> Net<D> {
     /// Samples the lines at about `spacing`, rounded so that it divides each stretch between two knots.
     pub(crate) fn new(skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
-        let knot = |&(position, kind): &(Vector<D>, Knot)| Node {
-            position,
-            arms: Vec::new(),
-            curve: u32::MAX,
-            knot: Some(kind),
-            beyond: Vec::new(),
-        };
+        let knot = |&(position, kind): &(Vector<D>, Knot)| Node::new(position, u32::MAX, Some(kind));
         let mut net = Self {
             nodes: skeleton.knots.iter().map(knot).collect(),
             along: Vec::new(),
@@ -178,7 +219,7 @@ impl<const D: usize> Net<D> {
     fn sample(&mut self, line: &Line<D>, arc: f64, along: &mut Vec<(f64, u32)>) {
         along.push((arc, self.nodes.len() as u32));
         let position = line.measured.point(arc);
-        self.nodes.push(Node { position, arms: Vec::new(), curve: line.curve, knot: None, beyond: Vec::new() });
+        self.nodes.push(Node::new(position, line.curve, None));
     }
 
     fn are_joined(&self, a: u32, b: u32) -> bool {

@@ -64,7 +64,9 @@ pub(crate) fn at_border<const D: usize>(
         return vec![stroke];
     }
     let part = |(a, b): (f64, f64)| Drawn { path: measured.part(a, b), ..stroke.clone() };
-    spans.into_iter().filter(|(a, b)| b - a > 1e-3 * unit).map(part).filter(|d| !d.path.is_empty()).collect()
+    // What the border leaves of a stroke is more than a dot.
+    let least = (0.5 * width * stroke.scale).max(1e-3 * unit);
+    spans.into_iter().filter(|(a, b)| b - a > least).map(part).filter(|d| !d.path.is_empty()).collect()
 }
 
 #[cfg(test)]

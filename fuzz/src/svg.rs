@@ -18,8 +18,8 @@ fuzz_target!(|data: &[u8]| {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let limits = Limits { nodes: 3000, segments: 3000, depth: 64, elements: 500, ..Limits::default() };
     // One or two ways of reading a run: more runs a second find more.
-    let method = if data.len() % 2 == 0 { Method::Auto } else { Method::Elements };
-    let options = ReadOptions { name: "fuzz.svg".into(), method, limits };
+    let method = [Method::Auto, Method::Elements, Method::Curves][data.len() % 3];
+    let options = ReadOptions { method, limits, ..ReadOptions::new("fuzz.svg") };
     if let Ok(drawing) = read_exemplar(text, &options) {
         check(&drawing);
     }
@@ -38,6 +38,14 @@ fuzz_target!(|data: &[u8]| {
 fn check(drawing: &Drawing) {
     let exemplar = &drawing.exemplar;
     assert_eq!(exemplar.elements.len(), drawing.fragments.len());
+    assert_eq!(exemplar.curves.len(), drawing.strokes.len());
+    for curve in &exemplar.curves {
+        assert!(curve.style < exemplar.styles.len() && curve.width.is_finite());
+        assert!(!curve.path.is_empty() && curve.path.cubics.iter().flatten().all(|p| p.is_finite()));
+        let joined = curve.path.cubics.windows(2).all(|w| w[0][3] == w[1][0]);
+        assert!(joined && (!curve.path.closed || curve.path.start() == curve.path.end()), "a path has gaps");
+        assert!(arabesque_io::svg::simplified(&curve.path, 0.01).cubics.iter().flatten().all(|p| p.is_finite()));
+    }
     for element in &exemplar.elements {
         assert!(element.class < exemplar.classes.len());
         assert!(element.outline.points().all(|p| p.is_finite()), "an outline is not finite");

@@ -283,14 +283,28 @@ fn strokes_are_cut_by_the_clips_around_them() {
     assert_eq!(ends, [Vector::xy(10.0, 40.0), Vector::xy(100.0, 20.0)]);
 }
 
-#[test]
-fn outlines_of_whole_networks_are_refused_by_name() {
+/// A filled outline of a net over the whole frame, with holes of the given sides in turn.
+fn outline_of_a_net(sides: [u32; 2]) -> String {
     let mut net = "M0 0H100V100H0Z".to_owned();
     for k in 0..16 {
-        let (x, y) = (4 + 24 * (k % 4), 4 + 24 * (k / 4));
-        net += &format!("M{x} {y}v20h20v-20z");
+        let (x, y, side) = (4 + 24 * (k % 4), 4 + 24 * (k / 4), sides[(k % 2) as usize]);
+        net += &format!("M{x} {y}v{side}h{side}v-{side}z");
     }
-    let message = error(&page(&format!("<path id='net' fill-rule='evenodd' d='{net}M120 120h1v1h-1z'/>")));
+    page(&format!("<path id='net' fill='#123' fill-rule='evenodd' d='{net}M105 105h1v1h-1z'/>"))
+}
+
+#[test]
+fn outlines_of_lines_of_one_width_are_taken_for_strokes() {
+    let d = read_with(&outline_of_a_net([20, 20]), Method::Auto).unwrap();
+    assert!(d.exemplar.curves.len() >= 6 && d.exemplar.elements.is_empty());
+    assert!(d.exemplar.curves.iter().all(|c| (c.width - 4.0).abs() < 0.1));
+    assert!(d.strokes[0].paint.contains("stroke=\"#112233\"") && d.strokes[0].paint.contains("fill=\"none\""));
+    assert!(warns(&d, "taken for strokes"));
+}
+
+#[test]
+fn outlines_of_other_networks_are_refused_by_name() {
+    let message = error(&outline_of_a_net([21, 9]));
     assert!(message.contains("outline of a whole network of lines (\"net\")"), "{message}");
     assert!(message.contains("--method elements"), "{message}");
 }
@@ -317,7 +331,7 @@ fn overrides_beat_the_rules() {
     let marked = |mark: &str| format!("<rect id='r' data-arabesque='{mark}' width='9' height='9' y='80'/>");
     let stroke = "<path data-arabesque='element' d='M10 40h20' stroke='red'/>";
     assert_eq!(read(&format!("{DOTS}{stroke}{}", marked("ignore"))).exemplar.elements.len(), 7);
-    assert!(error(&page(&format!("{DOTS}{}", marked("curve")))).contains("filled shape without a stroke"));
+    assert!(error(&page(&format!("{DOTS}{}", marked("curve")))).contains("marked as a curve but no line of one width"));
     let outlined = format!("{DOTS}{}", marked("curve").replace("width=", "stroke='red' width="));
     assert_eq!(read(&outlined).exemplar.curves.len(), 1);
     assert!(warns(&read(&format!("{DOTS}{}", marked("thing"))), "unknown data-arabesque"));

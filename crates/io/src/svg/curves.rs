@@ -6,7 +6,7 @@ use std::{
     rc::Rc,
 };
 
-use arabesque_core::{Bounds, Class, Curve, Error, Outline, Path, Result, Vector, straight};
+use arabesque_core::{Bounds, Class, Curve, Outline, Path, Result, Vector, straight};
 use kurbo::{Affine, BezPath, PathEl, PathSeg};
 
 use super::{
@@ -26,6 +26,7 @@ use super::{
     stroke::growth,
     style::Property as P,
 };
+use crate::centreline::Centrelines;
 
 /// The curves of a drawing.
 #[derive(Debug, Default)]
@@ -66,13 +67,48 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     /// Adds the strokes of an item.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for a filled shape without a stroke, which has no line to follow.
+    /// [`arabesque_core::Error::Limit`] for too many.
     pub(super) fn add(&mut self, item: &Item) -> Result<()> {
+        if let Some(lines) = &item.lines {
+            return self.add_lines(item, lines);
+        }
         for (parent, node) in &item.parts {
             let inside = Inside { parent: *parent, opacity: item.opacity, clip: item.clip.clone() };
             self.node(node, &inside, item)?;
         }
         Ok(())
+    }
+
+    /// Adds the lines of an outline, as strokes in the paint of its fill.
+    fn add_lines(&mut self, item: &Item, lines: &Centrelines) -> Result<()> {
+        let Some((leaf, opacity)) = item.parts.first().and_then(|(_, node)| first_shape(node, item.opacity)) else {
+            return Ok(());
+        };
+        let fill = leaf.style.get(P::Fill);
+        let mut paint = " fill=\"none\"".to_owned();
+        match reference(fill) {
+            Some(_) => push_attribute(&mut paint, "stroke", &self.definitions.paint(fill, leaf.viewport)),
+            None => push_attribute(&mut paint, "stroke", fill),
+        }
+        if fraction(leaf.style.get(P::FillOpacity)) < 1.0 {
+            push_attribute(&mut paint, "stroke-opacity", leaf.style.get(P::FillOpacity));
+        }
+        paint.push_str(" stroke-linecap=\"round\"");
+        let stroke = Stroke {
+            paint,
+            effects: self.effects(leaf, opacity),
+            width: lines.width,
+            dashes: Vec::new(),
+            dash_offset: 0.0,
+            layer: item.layer.as_deref().map(str::to_owned),
+            label: item.meta.label.clone(),
+        };
+        let style = self.style(&stroke, &item.meta);
+        let colour = colour::of_paint(self.inker.source, fill);
+        for path in &lines.paths {
+            self.push(Curve { path: path.clone(), style, width: lines.width, colour }, &stroke, item);
+        }
+        self.check_count()
     }
 
     pub(super) fn finish(self) -> Curves {
@@ -97,13 +133,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         let notes = &self.inker.source.notes;
         let name = || item.meta.id.clone().unwrap_or_default();
         if !node.style.strokes() {
-            if !node.style.fills() {
-                return Ok(());
-            }
-            return Err(Error::Unsupported {
-                what: format!("{}: a filled shape without a stroke, marked as a curve", self.inker.source.name),
-                advice: "give it a stroke and no fill, or mark it data-arabesque=\"element\"".into(),
-            });
+            return Ok(());
         }
         if node.style.fills() && path.segments().count() > 1 && node.meta.mark.or(item.meta.mark).is_some() {
             notes.add(Note::CurveFill, name);
@@ -224,6 +254,15 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         self.found.styles.push(Class { name });
         self.style_of.insert(key, self.found.styles.len() - 1);
         self.found.styles.len() - 1
+    }
+}
+
+/// The first shape in a node, with the opacity of what is around it and its own.
+fn first_shape(node: &Node, opacity: f64) -> Option<(&Node, f64)> {
+    let opacity = opacity * node.own.get("opacity").map_or(1.0, fraction);
+    match &node.content {
+        Content::Shape(_) => Some((node, opacity)),
+        Content::Group(children) => children.iter().find_map(|child| first_shape(child, opacity)),
     }
 }
 

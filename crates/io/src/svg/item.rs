@@ -6,6 +6,7 @@ use arabesque_core::Outline;
 use kurbo::Affine;
 
 use super::{ink::Ink, meta::Meta, scene::Node};
+use crate::centreline::Centrelines;
 
 /// What a selected item is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +45,8 @@ pub(super) struct Item {
     pub(super) ink: Ink,
     pub(super) kind: Kind,
     pub(super) origin: Origin,
+    /// The lines whose outline it is, where it was found to be one.
+    pub(super) lines: Option<Rc<Centrelines>>,
     /// What the clips of the containers around it leave visible.
     pub(super) clip: Option<Rc<Outline<2>>>,
     /// Whether that takes something away from it.

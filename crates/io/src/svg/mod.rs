@@ -38,6 +38,7 @@ mod source;
 mod stroke;
 mod style;
 mod touch;
+mod traced;
 mod within;
 mod write;
 mod write_background;

@@ -61,6 +61,8 @@ pub(super) enum Note {
     CurveFill,
     /// A mask on a curve.
     CurveMask,
+    /// An outline that was taken for the strokes that it is in truth.
+    Traced,
 }
 
 impl Note {
@@ -114,6 +116,10 @@ impl Note {
                 "apply the transform to the path, or convert the stroke to a path",
             ),
             Self::CurveFill => ("fill of a curve ignored", "draw the fill as a shape of its own"),
+            Self::Traced => (
+                "outline of lines of one width taken for strokes",
+                "mark it data-arabesque=\"element\" to have it copied as it is",
+            ),
             Self::CurveMask => ("mask on a curve ignored", "cut the curve instead"),
             Self::DomainBackground => {
                 ("shape around all others taken for a background, not for the domain", "choose a shape by its id")

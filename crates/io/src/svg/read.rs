@@ -21,6 +21,7 @@ use super::{
     scene::{self, Node},
     select::{Context, select},
     source::{Source, with_source},
+    traced::trace,
 };
 
 /// Reads an exemplar, and the rest of the job where the file holds one.
@@ -172,6 +173,7 @@ fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method:
         return Err(guard::too_much(format!("{}: elements", source.name), items.len(), source.limits.elements as u64));
     }
     if method != Method::Elements {
+        trace(source, items, &window)?;
         refuse_networks(source, items, &window)?;
     }
     for item in items.iter().filter(|item| item.kind == Kind::Large) {
@@ -181,7 +183,7 @@ fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method:
 }
 
 /// What a person calls an item: its label or id, else its place in the file.
-fn name(source: &Source<'_>, item: &Item) -> String {
+pub(super) fn name(source: &Source<'_>, item: &Item) -> String {
     let meta = &item.meta;
     let own = meta.label.as_ref().or(meta.id.as_ref()).map(|n| format!("\"{n}\""));
     let line = || source.xml.get_node(meta.xml).map(|xml| source.xml.text_pos_at(xml.range().start).row);
@@ -200,7 +202,7 @@ fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> R
     Err(Error::Unsupported {
         what: format!("{}: {count} outline{s} of a whole network of lines ({}{more})", source.name, named.join(", ")),
         advice:
-            "draw the lines as strokes, use --method elements to treat every connected piece as one element, or mark \
+            "draw the lines as strokes or with one width, use --method elements to treat every connected piece as one element, or mark \
                  items with data-arabesque=\"element\" or \"ignore\""
                 .into(),
     })

@@ -12,7 +12,7 @@ use kurbo::Affine;
 use roxmltree::NodeId;
 
 use super::{
-    Drawing, Page, Placed, ReadOptions, Unit,
+    Drawing, Method, Page, Placed, ReadOptions, Unit,
     definitions::Definitions,
     extent::bounds,
     ink::Inker,
@@ -21,6 +21,7 @@ use super::{
     read::{fragment, is_frame_mark, root},
     select::{Context, select},
     source::{SVG, Source, with_source},
+    traced::trace,
     write::NAMESPACE,
 };
 
@@ -57,6 +58,9 @@ pub fn read_rest(text: &str, drawing: &Drawing, area: &Outline<2>, options: &Rea
         let roots = [(Context::new(Affine::IDENTITY).without(&options.without), Rc::clone(&root))];
         let mut found = select(&inker, page.view, options.method, &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
+        if options.method != Method::Elements {
+            trace(source, &mut found.items, &page.view)?;
+        }
         let mut sorter = Sorter {
             inker: &inker,
             matcher: Matcher::new(drawing),
@@ -199,7 +203,7 @@ fn namespaces(source: &Source<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::svg::{Method, read_exemplar};
+    use crate::svg::read_exemplar;
     use arabesque_core::Vector;
 
     fn rest(body: &str) -> Result<Rest> {
@@ -239,6 +243,18 @@ mod tests {
         let rest = rest(&format!("<path d='{squares}'/>")).unwrap();
         assert_eq!(rest.moved.matches("<path").count(), 2);
         assert_eq!(rest.placed.placements.len(), 2);
+    }
+
+    #[test]
+    fn outlines_of_nets_are_cut_as_the_strokes_that_they_are() {
+        let holes: String = (0..16).map(|k| format!("M{} {}v20h20v-20z", 4 + 24 * (k % 4), 4 + 24 * (k / 4))).collect();
+        let rest = rest(&format!("<path fill='red' fill-rule='evenodd' d='M0 0H100V100H0Z{holes}M105 105h1v1h-1z'/>"))
+            .unwrap();
+        assert!(rest.placed.obstacles.is_empty() && rest.placed.curves.len() > 6);
+        assert!(rest.moved.contains("stroke=\"#ff0000\""), "{}", rest.moved);
+        let area = Bounds::new(Vector::xy(40.0, 40.0), Vector::xy(60.0, 60.0)).grown(-1e-6);
+        let points = rest.placed.curves.iter().flat_map(|c| c.path.flatten(0.1));
+        assert!(points.into_iter().all(|p| !area.contains(p)));
     }
 
     #[test]

@@ -229,6 +229,7 @@ impl Selector<'_, '_, '_> {
             ink: self.inker.ink(node, at.parent)?,
             kind,
             origin,
+            lines: None,
             clip: at.clip.clone(),
             is_cut: false,
         };

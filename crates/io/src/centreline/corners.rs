@@ -12,7 +12,7 @@ const TURN: f64 = 0.6;
 /// Stations that the lines before and after are laid through, by their distance in widths.
 const WINDOW: [f64; 2] = [0.45, 1.5];
 /// Largest radius of a bend that is still a corner, in widths.
-const SHARP: f64 = 0.45;
+const SHARP: f64 = 0.6;
 
 /// The points of a chain: its sound stations, and its corners, which are marked.
 pub(super) fn with_corners(chain: &[Station], closed: bool, width: f64) -> Vec<(Vector<2>, bool)> {
@@ -66,7 +66,7 @@ fn corner(chain: &[Station], arcs: &[f64], (k, closed): (usize, bool), width: f6
     // A bend of radius r leaves its corner by r (1 / cos(turn / 2) - 1).
     let depth = 1.0 / (0.5 * turn).cos().max(0.2) - 1.0;
     let off = nearest(chain, closed, k, at);
-    let is_here = (at - chain[k].at).norm() < WINDOW[0] * width;
+    let is_here = (at - chain[k].at).norm() < (SHARP * depth + 0.3) * width;
     (is_here && off <= (SHARP * depth + 0.05) * width).then_some((turn, at))
 }
 

@@ -129,10 +129,11 @@ impl Graph {
     }
 
     /// Takes away spurs, short loops and nodes that are none; merges junctions that `is_short` lines join.
-    pub(super) fn tidy(&mut self, width: f64, is_short: impl Fn(&Line) -> bool) {
+    /// `is_spur` is asked of lines from a junction to a free end, in this direction.
+    pub(super) fn tidy(&mut self, width: f64, is_spur: impl Fn(&Line) -> bool, is_short: impl Fn(&Line) -> bool) {
         for _ in 0..ROUNDS {
             self.lines.retain(|l| l.length() > 2.5 * width || l.nodes.is_some_and(|[a, b]| a != b));
-            let changed = self.prune(0.8 * width) | self.dissolve() | self.merge(&is_short);
+            let changed = self.prune(&is_spur) | self.dissolve() | self.merge(&is_short);
             if !changed {
                 break;
             }
@@ -140,13 +141,14 @@ impl Graph {
     }
 
     /// Takes away the shortest spur at each junction.
-    fn prune(&mut self, length: f64) -> bool {
+    fn prune(&mut self, is_spur: &impl Fn(&Line) -> bool) -> bool {
         let at = self.incidence();
         let mut gone = vec![false; self.lines.len()];
         for lines in at.iter().filter(|lines| lines.len() >= 3) {
             let spur = |&&(k, ends): &&(usize, bool)| {
                 let other = self.lines[k].nodes.map(|[a, b]| if ends { a } else { b });
-                other.is_some_and(|node| at[node].len() == 1) && self.lines[k].length() < length
+                other.is_some_and(|node| at[node].len() == 1)
+                    && if ends { is_spur(&self.lines[k].reversed()) } else { is_spur(&self.lines[k]) }
             };
             let by_length =
                 |a: &&(usize, bool), b: &&(usize, bool)| self.lines[a.0].length().total_cmp(&self.lines[b.0].length());

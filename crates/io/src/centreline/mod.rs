@@ -16,9 +16,13 @@ mod nodes;
 mod raster;
 mod stations;
 
-use arabesque_core::{Bounds, Outline, Path};
+use arabesque_core::{Bounds, Outline, Path, Vector};
 
-use self::{border::Border, graph::Graph, raster::Raster};
+use self::{
+    border::Border,
+    graph::{Graph, Line},
+    raster::Raster,
+};
 
 /// Pixels a width that are tried in turn, until the picture is small enough.
 const PIXELS: [f64; 3] = [9.0, 7.0, 5.0];
@@ -54,13 +58,13 @@ pub fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Option<Ce
     let mut thin = raster.clone();
     thin.thin();
     let mut graph = Graph::trace(&thin);
-    graph.tidy(estimate, |line| line.length() < 0.75 * estimate);
     let border = Border::new(outline, estimate);
-    let (mut tracks, width) = stations::centred(&graph, &border, estimate, pixel);
-    let widths = stations::free_widths(&tracks, &graph, width);
+    graph.tidy(estimate, |line| is_spur(line, &border, estimate), |line| line.length() < 0.75 * estimate);
+    let (mut tracks, width) = stations::centred(&graph, &border, (estimate, pixel), frame);
+    let widths = stations::free_widths(&tracks, &graph, width, frame);
     let quantile = |share: f64| widths.get((share * widths.len() as f64) as usize).copied();
     let spread = (quantile(0.9)? - quantile(0.1)?) / width;
-    let length: f64 = graph.lines.iter().map(graph::Line::length).sum();
+    let length: f64 = graph.lines.iter().map(Line::length).sum();
     if !spread.is_finite() || spread > MOST_SPREAD || length < LEAST_LENGTH * width {
         return None;
     }
@@ -71,6 +75,20 @@ pub fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Option<Ce
         .filter(|path| !path.is_empty() && path.cubics.iter().flatten().all(|p| p.is_finite()))
         .collect();
     (!paths.is_empty() && covers(&paths, raster, width)).then_some(Centrelines { paths, width, spread })
+}
+
+/// Whether a line from a junction to a free end only points into a corner of a cap or a mitre: it is short, or it tapers.
+fn is_spur(line: &Line, border: &Border, width: f64) -> bool {
+    let length = line.length();
+    let (Some(&start), Some(&end)) = (line.points.first(), line.points.last()) else { return true };
+    if length < 0.8 * width || length > 2.0 * width || (end - start).norm() < 0.5 * length {
+        return length < 0.8 * width;
+    }
+    let way = (end - start) * (1.0 / (end - start).norm());
+    let side = Vector::xy(-way[1], way[0]);
+    let at = start + (end - start) * 0.8;
+    let across: f64 = [side, -side].iter().map(|&d| border.reach(at, d, width).unwrap_or(width)).sum();
+    (across - width).abs() > 0.25 * width
 }
 
 /// Twice the area over the length of the border; `None` where there is no area.

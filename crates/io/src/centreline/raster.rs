@@ -123,7 +123,8 @@ impl Raster {
             }
         }
         for p in active {
-            if self.neighbours(p).count() >= 2 && self.is_redundant(p) {
+            // Two groups of neighbours: never the end of a line, which would be eaten up from there.
+            if self.groups(p) == 2 && self.is_redundant(p) {
                 self.ink[p] = false;
             }
         }
@@ -133,14 +134,16 @@ impl Raster {
     fn is_rim(&self, pixel: usize, first: bool) -> bool {
         let n = self.around(pixel).map(|p| self.ink[p]);
         let count = n.iter().filter(|&&b| b).count();
-        let rises = (0..8).filter(|&k| !n[k] && n[(k + 1) % 8]).count();
         let [east, _, north, _, west, _, south, _] = n;
-        let open = if first {
-            !east || !south || (!north && !west)
-        } else {
-            !north || !west || (!east && !south)
-        };
-        (2..=6).contains(&count) && rises == 1 && open
+        let open = if first { !east || !south || (!north && !west) } else { !north || !west || (!east && !south) };
+        // Pixels with two neighbours stay: slanting lines two pixels wide would vanish.
+        (3..=6).contains(&count) && self.groups(pixel) == 1 && open
+    }
+
+    /// Runs of ink in the ring of eight pixels.
+    fn groups(&self, pixel: usize) -> usize {
+        let n = self.around(pixel).map(|p| self.ink[p]);
+        (0..8).filter(|&k| !n[k] && n[(k + 1) % 8]).count()
     }
 
     /// Whether taking a pixel away leaves all connections among its neighbours (the connectivity number of eight neighbours is one).
@@ -168,6 +171,21 @@ mod tests {
         assert!(pixels.iter().all(|&p| (raster.centre(p)[1] - 0.5).abs() < 0.15));
         assert_eq!(pixels.iter().filter(|&&p| raster.neighbours(p).count() == 1).count(), 2);
         assert!(pixels.iter().all(|&p| raster.neighbours(p).count() <= 2));
+    }
+
+    #[test]
+    fn slanting_bars_keep_their_length() {
+        for degrees in (0..180).step_by(5) {
+            let turn = arabesque_core::Matrix::<2>::rotation(f64::from(degrees).to_radians());
+            for step in [0.11, 0.2, 0.43, 0.6] {
+                let turned = Outline { rings: vec![bar(10.0).rings[0].iter().map(|&p| turn.apply(p)).collect()] };
+                let mut raster = Raster::new(&turned, step, 1e6).unwrap();
+                raster.thin();
+                let line: Vec<_> = raster.pixels().into_iter().map(|p| raster.centre(p)).collect();
+                let extent = arabesque_core::Bounds::around(line).size().norm();
+                assert!(extent > 7.5, "{degrees} degrees, pixels of {step}: {extent}");
+            }
+        }
     }
 
     #[test]

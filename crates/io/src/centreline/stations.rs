@@ -1,6 +1,6 @@
 //! Places along the lines of a graph, moved to the middle between the borders on both sides.
 
-use arabesque_core::Vector;
+use arabesque_core::{Bounds, Vector};
 
 use super::{
     border::Border,
@@ -15,6 +15,8 @@ const PASSES: usize = 4;
 const SIGHT: f64 = 3.0;
 /// Deviation from the common width up to which the middle between the borders counts, as a share.
 const SOUND: f64 = 0.13;
+/// Turn within a width and a half from which on a place counts as near a corner, in radians.
+const BENT: f64 = 0.5;
 
 /// A place on a line.
 #[derive(Clone, Copy, Debug)]
@@ -34,14 +36,19 @@ pub(super) struct Track {
 }
 
 /// Stations along all lines, and the common width of the strokes.
-pub(super) fn centred(graph: &Graph, border: &Border, estimate: f64, pixel: f64) -> (Vec<Track>, f64) {
+pub(super) fn centred(
+    graph: &Graph,
+    border: &Border,
+    (estimate, pixel): (f64, f64),
+    frame: Option<&Bounds<2>>,
+) -> (Vec<Track>, f64) {
     let mut tracks: Vec<Track> = graph.lines.iter().map(|line| track(line, estimate, pixel)).collect();
     let mut width = estimate;
     for pass in 0..PASSES {
         for track in &mut tracks {
             track.measure(border, width);
         }
-        width = median_width(&tracks, graph, width);
+        width = median_width(&tracks, graph, width, frame);
         // Nothing is moved before the width is known, and measured once more after the last move.
         for track in &mut tracks {
             track.judge(width);
@@ -53,14 +60,19 @@ pub(super) fn centred(graph: &Graph, border: &Border, estimate: f64, pixel: f64)
     (tracks, width)
 }
 
-/// Widths of the stations that no node is near to.
-pub(super) fn free_widths(tracks: &[Track], graph: &Graph, width: f64) -> Vec<f64> {
+/// Widths of the stations that neither a node nor a corner nor the frame is near to, in ascending order.
+pub(super) fn free_widths(tracks: &[Track], graph: &Graph, width: f64, frame: Option<&Bounds<2>>) -> Vec<f64> {
     let mut widths = Vec::new();
     for clearance in [1.2, 0.7] {
         for track in tracks {
             let ends = track.nodes.map(|nodes| nodes.map(|n| graph.nodes[n]));
-            let free = |s: &&Station| ends.iter().flatten().all(|node| (s.at - *node).norm() > clearance * width);
-            widths.extend(track.stations.iter().filter(free).map(|s| s.width));
+            let free = |k: &usize| {
+                let at = track.stations[*k].at;
+                ends.iter().flatten().all(|node| (at - *node).norm() > clearance * width)
+                    && frame.is_none_or(|f| f.signed_distance(at) > 0.75 * width)
+                    && track.bend(*k) < BENT
+            };
+            widths.extend((0..track.stations.len()).filter(free).map(|k| track.stations[k].width));
         }
         if !widths.is_empty() {
             break;
@@ -70,14 +82,14 @@ pub(super) fn free_widths(tracks: &[Track], graph: &Graph, width: f64) -> Vec<f6
     widths
 }
 
-fn median_width(tracks: &[Track], graph: &Graph, fallback: f64) -> f64 {
-    let widths = free_widths(tracks, graph, fallback);
+fn median_width(tracks: &[Track], graph: &Graph, fallback: f64, frame: Option<&Bounds<2>>) -> f64 {
+    let widths = free_widths(tracks, graph, fallback, frame);
     widths.get(widths.len() / 2).copied().unwrap_or(fallback)
 }
 
 fn track(line: &Line, width: f64, pixel: f64) -> Track {
     let closed = line.nodes.is_none();
-    let smooth = smoothed(&line.points, closed, (0.4 * width / pixel).round() as usize);
+    let smooth = smoothed(&line.points, closed, (0.25 * width / pixel).round() as usize);
     let station = |at| Station { at, width: 0.0, is_sound: false };
     Track { nodes: line.nodes, stations: evenly(&smooth, closed, STEP * width).into_iter().map(station).collect() }
 }
@@ -126,6 +138,16 @@ impl Track {
         };
         let d = self.stations[after].at - self.stations[before].at;
         d * (1.0 / d.norm().max(f64::MIN_POSITIVE))
+    }
+
+    /// Turn of the line between three stations before and three after.
+    fn bend(&self, k: usize) -> f64 {
+        let n = self.stations.len();
+        let (before, after) = match self.nodes {
+            None => (self.way((k + n - 3 % n) % n), self.way((k + 3) % n)),
+            Some(_) => (self.way(k.saturating_sub(3)), self.way((k + 3).min(n - 1))),
+        };
+        before.cross(after).atan2(before.dot(after)).abs()
     }
 
     /// Width and offset of the middle at a station.

@@ -250,7 +250,8 @@ mod tests {
         let holes: String = (0..16).map(|k| format!("M{} {}v20h20v-20z", 4 + 24 * (k % 4), 4 + 24 * (k / 4))).collect();
         let rest = rest(&format!("<path fill='red' fill-rule='evenodd' d='M0 0H100V100H0Z{holes}M105 105h1v1h-1z'/>"))
             .unwrap();
-        assert!(rest.placed.obstacles.is_empty() && rest.placed.curves.len() > 6);
+        // The piece beside the page is all that is no line.
+        assert!(rest.placed.obstacles.len() == 1 && rest.placed.curves.len() > 6);
         assert!(rest.moved.contains("stroke=\"#ff0000\""), "{}", rest.moved);
         let area = Bounds::new(Vector::xy(40.0, 40.0), Vector::xy(60.0, 60.0)).grown(-1e-6);
         let points = rest.placed.curves.iter().flat_map(|c| c.path.flatten(0.1));

@@ -228,16 +228,13 @@ pub fn write_points<const D: usize>(
         out.push_str(&quoted(&exemplar.classes[element.class].name));
         out.push('\n');
     }
-    if let Some(recipe) = recipe {
-        out.push_str(RECIPE_MARK);
-        out.push('\n');
-        for line in recipe.lines() {
-            out.push_str("# ");
-            out.push_str(line);
-            out.push('\n');
-        }
-    }
-    out
+    out + &recipe.map(recipe_comments).unwrap_or_default()
+}
+
+/// A recipe as comment lines, for [`recipe_of`] to find.
+pub(crate) fn recipe_comments(recipe: &str) -> String {
+    let lines: String = recipe.lines().map(|line| format!("# {line}\n")).collect();
+    format!("{RECIPE_MARK}\n{lines}")
 }
 
 const RECIPE_MARK: &str = "# arabesque recipe:";

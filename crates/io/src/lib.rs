@@ -1,4 +1,4 @@
-//! Files to core types and back: SVG, PNG, CSV, JSON.
+//! Files to core types and back: SVG, PNG, CSV, OBJ, JSON.
 //!
 //! One module a format. Everything read is held to [`arabesque_core::Limits`]; everything written is the same bytes for the same result.
 //! Only [`mod@file`] touches the file system: the others turn bytes into values and values into bytes.
@@ -9,6 +9,7 @@ pub mod file;
 pub mod json;
 pub mod path_data;
 pub mod number;
+pub mod obj;
 pub mod picture;
 pub mod png;
 pub mod svg;

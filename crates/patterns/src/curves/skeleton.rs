@@ -203,7 +203,7 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
         is_cut,
         stops: Vec::new(),
     };
-    let spans = inside(&measured, &|p| window.contains(p));
+    let spans = inside(&measured, side / 200.0, &|p| window.contains(p));
     let whole = matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length());
     if whole && measured.is_closed() {
         return vec![line(curve.path.clone(), [false; 2])];

@@ -36,7 +36,7 @@ const UNSEEN: f64 = 0.35;
 const RIM: f64 = 0.3;
 
 /// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
-const MEMBERS: usize = 40;
+const MEMBERS: usize = 80;
 
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
@@ -252,7 +252,7 @@ impl<'a, const D: usize> View<'a, D> {
         let library = self.grower.library;
         let base = self.grower.params.base;
         let mut centres = Vec::new();
-        for &(source, offset, _) in self.around.iter().take(anchors) {
+        for (source, offset) in self.anchors(anchors) {
             let members = library.members(library.class[source as usize]);
             let usable = |i: &u32| library.window.contains(library.centre[*i as usize] - offset);
             if source < base || members.len() <= MEMBERS {
@@ -269,6 +269,19 @@ impl<'a, const D: usize> View<'a, D> {
             centres.push(Vector(std::array::from_fn(|k| random.range(a[k], b[k]))));
         }
         centres
+    }
+
+    /// What the patches are registered on: the nearest elements; for strokes also the nearest of the rarest kind, which tell most.
+    fn anchors(&self, count: usize) -> Vec<(u32, Vector<D>)> {
+        let library = self.grower.library;
+        let nearest = self.around.iter().take(count);
+        let mut anchors: Vec<_> = nearest.map(|&(source, offset, _)| (source, offset)).collect();
+        let strokes = self.around.iter().filter(|(source, ..)| *source >= self.grower.params.base);
+        let size = |source: u32| library.members(library.class[source as usize]).len();
+        if let (Some(rarest), true) = (strokes.min_by_key(|(source, ..)| size(*source)), count > 0) {
+            anchors.push((rarest.0, rarest.1));
+        }
+        anchors
     }
 
     /// Of very many elements, some of those that are most like `source`.

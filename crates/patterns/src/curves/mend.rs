@@ -1,6 +1,6 @@
 //! Clean-up: ends that the exemplar would not show are joined to what they just miss, or trimmed.
 
-use arabesque_core::Vector;
+use arabesque_core::{GridIndex, Vector};
 
 use super::{net::Net, votes::Votes};
 use crate::state::State;
@@ -10,6 +10,12 @@ const REACH: f64 = 1.7;
 
 /// An end is out of place when this many edges are expected at it.
 const EXPECTED: f64 = 1.5;
+
+/// Widest gap that two ends bridge when they face each other, in sampling distances.
+const SPAN: f64 = 5.0;
+
+/// They face each other when the line between them turns by less than this from either: cosine of 25 degrees.
+const FACING: f64 = 0.9;
 
 /// Cost of a joint that makes a new junction, in sampling distances.
 const NEW_JUNCTION: f64 = 0.6;
@@ -30,7 +36,39 @@ pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> u
             break;
         }
     }
+    changed += bridge(state, net, votes);
     changed + trim(state, net, votes)
+}
+
+/// Joins false ends that face each other across a gap.
+fn bridge<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes) -> usize {
+    let ends: Vec<u32> = state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, s)).collect();
+    let places: Vec<_> = ends.iter().map(|&s| state.samples[s as usize].position).collect();
+    let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links[s as usize][0], s))).collect();
+    let unit = net.spacing * state.extent.largest_spacing_scale;
+    let index = GridIndex::new(&places, SPAN * unit, state.domain());
+    let mut wishes: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, &s) in ends.iter().enumerate() {
+        index.within(places[i], SPAN * unit, |j, offset| {
+            let across = direction(offset);
+            let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
+            if j > i && out > FACING && back > FACING && state.share_style(s, ends[j]) {
+                wishes.push((offset.norm() / unit + ANGLE * (2.0 - out - back), i, j));
+            }
+        });
+    }
+    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut taken = vec![false; ends.len()];
+    let mut joined = 0;
+    for (_, i, j) in wishes {
+        if !taken[i] && !taken[j] {
+            (taken[i], taken[j]) = (true, true);
+            state.links[ends[i] as usize].push(ends[j]);
+            state.links[ends[j] as usize].push(ends[i]);
+            joined += 1;
+        }
+    }
+    joined
 }
 
 /// Number of edges that a sample should have.

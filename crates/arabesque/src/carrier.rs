@@ -1,7 +1,7 @@
 //! Files that carry a recipe.
 
 use arabesque_core::{Error, Result};
-use arabesque_io::{csv, file, json, png, svg};
+use arabesque_io::{csv, file, json, obj, png, svg};
 
 use crate::{Format, Recipe};
 
@@ -26,6 +26,8 @@ pub fn recipe_in(name: &str, bytes: &[u8]) -> Result<Recipe> {
         (json::recipe_of(&text), "a JSON file")
     } else if Format::of_path(name).ok().flatten() == Some(Format::Csv) || start.starts_with("x,y,") {
         (csv::recipe_of(&text), "a file of points")
+    } else if Format::of_path(name).ok().flatten() == Some(Format::Obj) || start.starts_with("# curves as polylines") {
+        (obj::recipe_of(&text), "a file of curves")
     } else {
         return Recipe::from_toml(name, &text);
     };

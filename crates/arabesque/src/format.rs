@@ -20,14 +20,22 @@ pub enum Format {
     Json,
     /// Points with classes.
     Csv,
+    /// Curves in space as polylines.
+    Obj,
     /// The recipe alone.
     Toml,
 }
 
 impl Format {
     /// Every format, by name.
-    pub const ALL: [(&'static str, Self); 5] =
-        [("svg", Self::Svg), ("png", Self::Png), ("json", Self::Json), ("csv", Self::Csv), ("toml", Self::Toml)];
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("svg", Self::Svg),
+        ("png", Self::Png),
+        ("json", Self::Json),
+        ("csv", Self::Csv),
+        ("obj", Self::Obj),
+        ("toml", Self::Toml),
+    ];
 
     /// The format that the extension of a path stands for.
     ///

@@ -2,6 +2,7 @@
 
 use arabesque_core::{Error, Exemplar, Limits, Result, Role, Warning};
 use arabesque_io::{
+    obj::junctions,
     png::{Plate, Resolution, write_png},
     svg::{Drawing, write_survey},
 };
@@ -20,7 +21,7 @@ use crate::{
 pub struct Report {
     /// Name of the file.
     pub file: String,
-    /// `drawing`, `points` or `points in space`.
+    /// `drawing`, `points`, `points in space` or `curves in space`.
     pub kind: &'static str,
     /// Number of elements, context included.
     pub elements: usize,
@@ -30,6 +31,9 @@ pub struct Report {
     pub cut_at_frame: usize,
     /// Number of curves.
     pub curves: usize,
+    /// Places where three or more pieces of curves in space meet; `None` in the plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub junctions: Option<usize>,
     /// How they are painted, in order of their first curve.
     pub styles: Vec<StyleReport>,
     /// The classes, in order of their first element.
@@ -122,7 +126,14 @@ pub fn inspect(input: &Input, method: Method) -> Result<Report> {
             let drawing = dots(&exemplar);
             Report { drawing: Some(drawing), ..describe(input, "points", &exemplar) }
         }
-        Subject::Space(exemplar) => describe(input, "points in space", &exemplar),
+        Subject::Space(exemplar, warnings) => {
+            let kind = if exemplar.curves.is_empty() { "points in space" } else { "curves in space" };
+            Report {
+                junctions: (!exemplar.curves.is_empty()).then(|| junctions(&exemplar)),
+                warnings: warnings.iter().map(WarningReport::from).collect(),
+                ..describe(input, kind, &exemplar)
+            }
+        }
     })
 }
 
@@ -150,6 +161,7 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
         sources,
         cut_at_frame: elements.len() - sources,
         curves: exemplar.curves.len(),
+        junctions: None,
         styles: (0..exemplar.styles.len()).map(|style| describe_style(exemplar, style)).collect(),
         classes: classes.collect(),
         frame_min: exemplar.window.min.0.to_vec(),
@@ -189,7 +201,7 @@ impl Report {
     pub fn picture(&self, format: Format) -> Result<Vec<u8>> {
         let unsupported =
             |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture away".into() };
-        let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of points in space"))?;
+        let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of what lies in space"))?;
         let svg = write_survey(drawing);
         match format {
             Format::Svg => Ok(svg.into_bytes()),
@@ -198,7 +210,7 @@ impl Report {
                 let plate = Plate { svg: &svg, units, resolution: Resolution::default(), recipe: None };
                 write_png(&plate, &Limits::default())
             }
-            Format::Json | Format::Csv | Format::Toml => Err(unsupported("a picture in this format")),
+            Format::Json | Format::Csv | Format::Obj | Format::Toml => Err(unsupported("a picture in this format")),
         }
     }
 }

@@ -29,6 +29,7 @@ mod recipe;
 mod region;
 mod rework;
 mod size;
+mod space;
 mod spacing;
 mod subject;
 
@@ -50,4 +51,5 @@ pub use prepare::Prepared;
 pub use recipe::{BorderRule, FieldFile, FieldSource, Method, OutputOptions, Recipe};
 pub use region::Region;
 pub use size::Size;
+pub use space::{SpaceArtwork, SpacePrepared};
 pub use subject::Subject;

@@ -59,7 +59,7 @@ impl Recipe {
     /// # Errors
     /// Whatever the files or the parameters are wrong with; the message names the file or the parameter.
     pub fn prepare(&self, base: Option<&Path>) -> Result<Prepared> {
-        Preparation { recipe: self.clone(), base, limits: Limits::default(), warnings: Vec::new() }.finish()
+        Preparation::new(self, base).finish()
     }
 
     /// The parameters of the engine that the recipe stands for.
@@ -95,9 +95,15 @@ pub(crate) struct Place {
 /// On the way from a recipe to a prepared run.
 pub(crate) struct Preparation<'a> {
     pub(crate) recipe: Recipe,
-    base: Option<&'a Path>,
+    pub(crate) base: Option<&'a Path>,
     pub(crate) limits: Limits,
-    warnings: Vec<Warning>,
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl<'a> Preparation<'a> {
+    pub(crate) fn new(recipe: &Recipe, base: Option<&'a Path>) -> Self {
+        Self { recipe: recipe.clone(), base, limits: Limits::default(), warnings: Vec::new() }
+    }
 }
 
 impl Preparation<'_> {
@@ -159,16 +165,17 @@ impl Preparation<'_> {
         Ok(match Subject::read(&self.recipe.exemplar, bytes, self.recipe.method, &self.limits)? {
             Subject::Drawing(drawing) => (*drawing, None),
             Subject::Points(exemplar) => (dots(&exemplar), Some(exemplar)),
-            Subject::Space(_) => {
-                return Err(Error::Unsupported {
-                    what: format!("{}: filling space with points", self.recipe.exemplar.name()),
-                    advice: "give points without a z column".into(),
-                });
+            Subject::Space(..) => {
+                return Err(Error::input(
+                    self.recipe.exemplar.name(),
+                    "an exemplar in space, where one of the plane was expected",
+                    "give the box to fill with --box, such as --box 10x10x10",
+                ));
             }
         })
     }
 
-    fn check_version(&mut self) {
+    pub(crate) fn check_version(&mut self) {
         let (theirs, ours) = (&self.recipe.arabesque, env!("CARGO_PKG_VERSION"));
         if theirs != ours {
             self.warnings.push(Warning::new(

@@ -28,6 +28,10 @@ pub struct Recipe {
     /// Width and height of a seamless tile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tile: Option<String>,
+    /// Width, depth and height of the box in space to fill, such as `10x10x5`, for an exemplar in space: curves (OBJ) or points (CSV
+    /// with a column z). In place of `size`, `tile` and `domain`.
+    #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<String>,
     /// What happens at the border of the domain. Default: clip; where a region of a drawing of elements alone is made anew, cross.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub border: Option<BorderRule>,
@@ -182,6 +186,7 @@ impl Recipe {
             seed: 0,
             size: None,
             tile: None,
+            cuboid: None,
             border: None,
             method: Method::default(),
             preset: default_preset(),

@@ -4,7 +4,7 @@ use arabesque_core::{Exemplar, Measured, Path};
 
 /// Mean distance of elements, or of the lines of a net, whichever is smaller.
 ///
-/// A square net of lines `s` apart has a length of `2 / s` for each unit of area.
+/// A square net of lines `s` apart has a length of `2 / s` for each unit of area, a cubic one `3 / s^2` for each unit of volume.
 pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
     let of_elements = exemplar.spacing();
     if exemplar.curves.is_empty() {
@@ -12,7 +12,7 @@ pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
     }
     let size = exemplar.window.size().norm();
     let length: f64 = exemplar.curves.iter().map(|c| length(&c.path, 1e-3 * size)).sum();
-    let of_curves = (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).min(size);
+    let of_curves = (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0)).min(size);
     if exemplar.elements.is_empty() { of_curves } else { of_elements.min(of_curves) }
 }
 

@@ -3,7 +3,7 @@
 use arabesque_core::{Exemplar, Limits, Outline, Result, Vector, Warning};
 use arabesque_io::{
     csv::{self, Points},
-    file,
+    file, obj,
     svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Stacking, Unit},
 };
 
@@ -16,8 +16,8 @@ pub enum Subject {
     Drawing(Box<Drawing>),
     /// Points of the plane.
     Points(Exemplar<2>),
-    /// Points of space.
-    Space(Exemplar<3>),
+    /// Points or curves of space, and what was noticed while reading.
+    Space(Exemplar<3>, Vec<Warning>),
 }
 
 /// Points are drawn as dots of this radius, in mean spacings.
@@ -30,10 +30,10 @@ const DOT_SPACING_PIXELS: f64 = 24.0;
 const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
 
 impl Subject {
-    /// Reads an exemplar from the bytes of a file: SVG or CSV, by its content.
+    /// Reads an exemplar from the bytes of a file: SVG, CSV or OBJ, by its name and content.
     ///
     /// # Errors
-    /// As [`svg::read_exemplar`] and [`csv::read_points`]; [`Error::Unsupported`] for methods that do not exist yet.
+    /// As [`svg::read_exemplar`], [`csv::read_points`] and [`obj::read_curves`]; [`Error::Unsupported`] for methods that do not exist yet.
     pub fn read(input: &Input, bytes: &[u8], method: Method, limits: &Limits) -> Result<Self> {
         let name = input.name();
         let method = match method {
@@ -50,15 +50,27 @@ impl Subject {
             return Err(Error::input(name, problem, "draw the elements as vectors"));
         }
         let text = file::decode_text(name, bytes)?;
+        if looks_like_curves(name, &text) {
+            let net = obj::read_curves(name, &text, limits)?;
+            return Ok(Self::Space(net.exemplar, net.warnings));
+        }
         if looks_like_points(name, &text) {
             return Ok(match csv::read_points(name, &text, limits)? {
                 Points::Plane(exemplar) => Self::Points(exemplar),
-                Points::Space(exemplar) => Self::Space(exemplar),
+                Points::Space(exemplar) => Self::Space(exemplar, Vec::new()),
             });
         }
         let options = ReadOptions { method, limits: *limits, ..ReadOptions::new(name) };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
+}
+
+/// By the extension, or else by the first statement that is no comment.
+fn looks_like_curves(name: &str, text: &str) -> bool {
+    let first = text.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#'));
+    let keyword = first.and_then(|l| l.split_whitespace().next());
+    let unnamed = !name.contains('.') || name.starts_with("standard");
+    name.to_ascii_lowercase().ends_with(".obj") || (unnamed && matches!(keyword, Some("v" | "o" | "g")))
 }
 
 /// By the extension where it is one of the usual, else by the first character.
@@ -119,8 +131,16 @@ mod tests {
     #[test]
     fn the_content_decides_where_the_name_does_not() {
         assert!(matches!(read("-", b"x,y\n0,0\n1,0\n0,1\n"), Ok(Subject::Points(_))));
-        assert!(matches!(read("a.csv", b"x,y,z\n0,0,0\n1,0,1\n0,1,0\n"), Ok(Subject::Space(_))));
+        assert!(matches!(read("a.csv", b"x,y,z\n0,0,0\n1,0,1\n0,1,0\n"), Ok(Subject::Space(..))));
         assert!(read("a.svg", b"\x89PNG\r\n\x1a\n").unwrap_err().to_string().contains("a picture where"));
+    }
+
+    #[test]
+    fn curves_in_space_are_known_by_name_or_content() {
+        let net = b"# net\nv 0 0 0\nv 1 1 1\nl 1 2\n";
+        for name in ["a.obj", "-"] {
+            assert!(matches!(read(name, net), Ok(Subject::Space(e, _)) if e.curves.len() == 1));
+        }
     }
 
     #[test]

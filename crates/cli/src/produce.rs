@@ -2,7 +2,10 @@
 
 use std::{collections::BTreeMap, path::Path, process::ExitCode, time::Duration};
 
-use arabesque::{Artwork, Format, OutputOptions, Prepared, Recipe, StopReason, Warning, in_pool, io::file};
+use arabesque::{
+    Encoded, EnergyPoint, Format, Outcome, OutputOptions, Prepared, Recipe, SpacePrepared, StopReason, Warning,
+    in_pool, io::file,
+};
 use clap::Args;
 
 use crate::{
@@ -95,7 +98,7 @@ fn check(recipe: &mut Recipe, path: &str, options: &RunOptions) -> Result<Vec<Pl
         return Err(Failure::usage("--variations writes several files; give -o a name"));
     }
     let by_name = if standard || options.format.is_some() { None } else { Format::of_path(path)? };
-    let format = options.format.or(by_name).or(recipe.output.format).unwrap_or(Format::Svg);
+    let format = options.format.or(by_name).or(recipe.output.format).unwrap_or_else(|| recipe.usual_format());
     recipe.output.format = Some(format);
     recipe.output.bare |= options.no_recipe;
     let numbered = |n: u64| match options.variations {
@@ -126,15 +129,15 @@ fn variation(path: &str, number: u64) -> String {
 
 fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &RunOptions) -> Result<ExitCode, Failure> {
     let level = options.talk.level();
-    let prepared = recipe.prepare(base)?;
+    let ready = Ready::new(recipe, base)?;
     if level == Level::Verbose {
-        let ((elements, classes), (curves, styles)) = (prepared.exemplar_size(), prepared.exemplar_curves());
+        let ((elements, classes), (curves, styles)) = ready.exemplar();
         let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
         say::note(&format!("exemplar: {elements} elements in {classes} classes{of_curves}"));
     }
     let mut outputs = Vec::new();
     for plan in &plans {
-        outputs.push(make(&prepared, plan, &recipe.output, (level, options.time_limit))?);
+        outputs.push(make(&ready, plan, &recipe.output, (level, options.time_limit))?);
         if is_interrupted() {
             break;
         }
@@ -145,65 +148,129 @@ fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &Ru
     Ok(if is_interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
+/// A prepared run, in the plane or in space.
+enum Ready {
+    Plane(Box<Prepared>),
+    Space(Box<SpacePrepared>),
+}
+
+impl Ready {
+    fn new(recipe: &Recipe, base: Option<&Path>) -> Result<Self, Failure> {
+        Ok(if recipe.is_space() {
+            Self::Space(Box::new(recipe.prepare_space(base)?))
+        } else {
+            Self::Plane(Box::new(recipe.prepare(base)?))
+        })
+    }
+
+    /// Elements and classes, curves and styles of the exemplar.
+    fn exemplar(&self) -> ((usize, usize), (usize, usize)) {
+        match self {
+            Self::Plane(p) => (p.exemplar_size(), p.exemplar_curves()),
+            Self::Space(p) => (p.exemplar_size(), p.exemplar_curves()),
+        }
+    }
+
+    fn run(&self, seed: u64, output: &OutputOptions, watch: &mut Watch) -> Result<Ran, arabesque::Error> {
+        match self {
+            Self::Plane(prepared) => {
+                let artwork = prepared.run(seed, watch)?;
+                watch.finish();
+                Ok(Ran::new(&artwork.outcome, artwork.classes(), artwork.styles(), artwork.encode(output)?))
+            }
+            Self::Space(prepared) => {
+                let artwork = prepared.run(seed, watch)?;
+                watch.finish();
+                Ok(Ran::new(&artwork.outcome, artwork.classes(), artwork.styles(), artwork.encode(output)?))
+            }
+        }
+    }
+}
+
+/// A finished run and its file.
+struct Ran {
+    bytes: Vec<u8>,
+    elements: usize,
+    classes: BTreeMap<String, usize>,
+    curves: usize,
+    styles: BTreeMap<String, usize>,
+    energy: Vec<EnergyPoint>,
+    stopped: StopReason,
+    warnings: Vec<Warning>,
+}
+
+impl Ran {
+    fn new<'a, const D: usize>(
+        outcome: &Outcome<D>,
+        classes: impl Iterator<Item = &'a str>,
+        styles: impl Iterator<Item = &'a str>,
+        encoded: Encoded,
+    ) -> Self {
+        Self {
+            bytes: encoded.bytes,
+            elements: outcome.placements.len(),
+            classes: counts(classes),
+            curves: outcome.curves.len(),
+            styles: counts(styles),
+            energy: outcome.energy.clone(),
+            stopped: outcome.stopped,
+            warnings: outcome.warnings.iter().cloned().chain(encoded.warnings).collect(),
+        }
+    }
+}
+
+fn counts<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for name in names {
+        *counts.entry(name.to_owned()).or_insert(0) += 1;
+    }
+    counts
+}
+
 fn make(
-    prepared: &Prepared,
+    ready: &Ready,
     plan: &Plan,
     output: &OutputOptions,
     (level, time_limit): (Level, Option<Duration>),
 ) -> Result<Output, Failure> {
     let mut watch = Watch::new(level, Deadline::after(time_limit));
-    let artwork = prepared.run(plan.seed, &mut watch);
+    let ran = ready.run(plan.seed, output, &mut watch);
     watch.finish();
     let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };
-    let artwork = artwork.map_err(|e| interrupted(e.into()))?;
-    let encoded = artwork.encode(output)?;
-    plan.target.write(&encoded.bytes).map_err(Failure::writing)?;
-    let warnings: Vec<_> = artwork.outcome.warnings.iter().chain(&encoded.warnings).cloned().collect();
-    let made = describe(&artwork, plan, output, watch.elapsed(), &warnings);
-    tell(&made, &artwork, &warnings, level);
+    let ran = ran.map_err(|e| interrupted(e.into()))?;
+    plan.target.write(&ran.bytes).map_err(Failure::writing)?;
+    let (energy, warnings) = (ran.energy.clone(), ran.warnings.clone());
+    let made = describe(ran, plan, output, watch.elapsed());
+    tell(&made, &energy, &warnings, level);
     Ok(made)
 }
 
-fn describe(
-    artwork: &Artwork<'_>,
-    plan: &Plan,
-    output: &OutputOptions,
-    elapsed: Duration,
-    warnings: &[Warning],
-) -> Output {
-    let mut classes = BTreeMap::new();
-    for class in artwork.classes() {
-        *classes.entry(class.to_owned()).or_insert(0) += 1;
-    }
-    let mut styles = BTreeMap::new();
-    for style in artwork.styles() {
-        *styles.entry(style.to_owned()).or_insert(0) += 1;
-    }
+fn describe(ran: Ran, plan: &Plan, output: &OutputOptions, elapsed: Duration) -> Output {
     Output {
         path: plan.path.clone(),
         format: output.format.unwrap_or(Format::Svg).name(),
         seed: plan.seed,
-        elements: artwork.outcome.placements.len(),
-        classes,
-        curves: artwork.outcome.curves.len(),
-        styles,
-        energy: artwork.outcome.energy.last().map(|e| e.energy),
-        stopped: match artwork.outcome.stopped {
+        elements: ran.elements,
+        classes: ran.classes,
+        curves: ran.curves,
+        styles: ran.styles,
+        energy: ran.energy.last().map(|e| e.energy),
+        stopped: match ran.stopped {
             StopReason::Finished => "finished",
             StopReason::Observer if is_interrupted() => "interrupted",
             StopReason::Observer => "time limit",
         },
         seconds: elapsed.as_secs_f64(),
-        warnings: warnings.iter().map(Message::from).collect(),
+        warnings: ran.warnings.iter().map(Message::from).collect(),
     }
 }
 
-fn tell(made: &Output, artwork: &Artwork<'_>, warnings: &[Warning], level: Level) {
+fn tell(made: &Output, energy: &[EnergyPoint], warnings: &[Warning], level: Level) {
     if level == Level::Quiet {
         return;
     }
     if level == Level::Verbose {
-        for e in &artwork.outcome.energy {
+        for e in energy {
             let (l, i) = (e.level + 1, e.iteration);
             say::note(&format!("level {l}, iteration {i}: energy {:.5}, {} elements", e.energy, e.elements));
         }

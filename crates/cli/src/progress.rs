@@ -47,8 +47,8 @@ impl Watch {
     }
 }
 
-impl Observer<2> for Watch {
-    fn step(&mut self, progress: &Progress, _: &dyn Fn() -> Preview<2>) -> ControlFlow<()> {
+impl<const D: usize> Observer<D> for Watch {
+    fn step(&mut self, progress: &Progress, _: &dyn Fn() -> Preview<D>) -> ControlFlow<()> {
         if !self.bar.is_hidden() {
             self.bar.set_position((progress.fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
             self.bar.set_message(describe(progress, self.started.elapsed()));

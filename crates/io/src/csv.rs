@@ -237,7 +237,8 @@ pub(crate) fn recipe_comments(recipe: &str) -> String {
     format!("{RECIPE_MARK}\n{lines}")
 }
 
-const RECIPE_MARK: &str = "# arabesque recipe:";
+/// The comment line that a recipe follows.
+pub(crate) const RECIPE_MARK: &str = "# arabesque recipe:";
 
 /// The recipe in the comments of a file that [`write_points`] wrote.
 pub fn recipe_of(text: &str) -> Option<String> {

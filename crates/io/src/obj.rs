@@ -39,7 +39,9 @@ pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
 fn logical_lines(text: &str) -> Vec<(usize, String)> {
     let mut lines: Vec<(usize, String)> = Vec::new();
     let mut continues = false;
-    for (k, raw) in text.lines().enumerate() {
+    // The recipe of a result has a box of its own.
+    let own = text.lines().take_while(|line| *line != csv::RECIPE_MARK);
+    for (k, raw) in own.enumerate() {
         let content = match raw.split_once('#') {
             Some((before, comment)) if before.trim().is_empty() && is_box(comment) => raw.trim(),
             Some((before, _)) => before.trim(),
@@ -447,7 +449,7 @@ mod tests {
             drawn(Path { closed: true, ..Path::polyline(&[bent[0], bent[1], bent[2], bent[0]]) }, 1),
         ];
         let frame = Bounds::new(Vector::ZERO, Vector::splat(2.0));
-        let sheet = Sheet { frame, tolerance: 1e-3, recipe: Some("seed = 1\n\n[a]\nx = '''\n# y\n'''\n") };
+        let sheet = Sheet { frame, tolerance: 1e-3, recipe: Some("seed = 1\nbox = \"2x2x2\"\n[a]\nx = '''\n# y\n'''\n") };
         let text = write_curves(&exemplar, &curves, &sheet);
         assert_eq!(recipe_of(&text).as_deref(), sheet.recipe);
         let net = read(&text).unwrap();

@@ -1,4 +1,4 @@
-//! `arabesque fill`: a page, a shape or a seamless tile from an exemplar.
+//! `arabesque fill`: a page, a shape, a seamless tile or a box from an exemplar.
 
 use std::process::ExitCode;
 
@@ -10,13 +10,13 @@ use crate::{
     produce::{RunOptions, produce},
 };
 
-/// Fill a page, a shape or a seamless tile with the pattern of an exemplar
+/// Fill a page, a shape, a seamless tile or a box in space with the pattern of an exemplar
 #[derive(Args, Debug)]
 #[command(after_long_help = parameters(), allow_negative_numbers = true)]
 pub(crate) struct Fill {
-    /// The example: an SVG drawing, or points as CSV; - is standard input
+    /// The example: an SVG drawing, points as CSV, or curves in space as OBJ; - is standard input
     exemplar: String,
-    /// Where to write; the extension chooses SVG, PNG, JSON, CSV or TOML (the recipe alone); - is standard output
+    /// Where to write; the extension chooses SVG, PNG, JSON, CSV, OBJ or TOML (the recipe alone); - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: String,
     #[command(flatten)]
@@ -46,6 +46,9 @@ struct Place {
     /// Make a tile that repeats without a seam
     #[arg(long, value_name = "WxH", group = "where")]
     tile: Option<String>,
+    /// Fill a box in space, in the units of the exemplar: curves (OBJ) or points (CSV with a column z)
+    #[arg(long = "box", value_name = "XxYxZ", group = "where")]
+    cuboid: Option<String>,
     /// Keep these shapes free; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
@@ -172,6 +175,7 @@ impl Fill {
         recipe.seed = self.seed;
         recipe.size = self.place.size;
         recipe.tile = self.place.tile;
+        recipe.cuboid = self.place.cuboid;
         recipe.domain = self.place.domain.as_deref().map(Input::shape);
         recipe.avoid = self.place.avoid.iter().map(|text| Input::shape(text)).collect();
         recipe.keep = self.place.keep.map(Input::file);

@@ -16,7 +16,7 @@ use crate::{
 /// Say what was understood of an exemplar
 #[derive(Args, Debug)]
 pub(crate) struct Inspect {
-    /// An SVG drawing, or points as CSV; - is standard input
+    /// An SVG drawing, points as CSV, or curves in space as OBJ; - is standard input
     file: String,
     /// Draw it as well, SVG or PNG: outlines in the colours of their classes, curves in those of their styles, the frame
     #[arg(short, long, value_name = "PICTURE")]
@@ -82,7 +82,8 @@ fn print(report: &Report) -> Result<(), Failure> {
         writeln!(out, "  elements: {}, of these {} cut at the frame", report.elements, report.cut_at_frame)?;
     }
     if report.curves > 0 {
-        writeln!(out, "  curves: {}", report.curves)?;
+        let junctions = report.junctions.map(|n| format!(", {n} junctions")).unwrap_or_default();
+        writeln!(out, "  curves: {}{junctions}", report.curves)?;
     }
     writeln!(out, "  spacing: {:.4}; suggested radius: {:.4}", report.spacing, report.suggested_radius)?;
     if !report.layers.is_empty() {

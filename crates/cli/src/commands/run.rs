@@ -14,7 +14,7 @@ use crate::{
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct Run {
-    /// A recipe (TOML), or a result (SVG, PNG, JSON or CSV); - is standard input
+    /// A recipe (TOML), or a result (SVG, PNG, JSON, CSV or OBJ); - is standard input
     file: String,
     /// Where to write [default: where the recipe says, else standard output]
     #[arg(short, long, value_name = "OUT")]

@@ -123,6 +123,29 @@ impl<const D: usize> Coverage<D> {
         places.for_each(|p| self.cover(p, reach(p), |_| true));
     }
 
+    /// Marks as covered what the drawing at `places` closes in: the cells that no ball of `reach` covers without touching the drawing.
+    /// Where the ball is too large for all that is open, smaller ones are tried.
+    pub(crate) fn cover_closed(&mut self, places: &[Vector<D>], reach: f64) {
+        for halving in 0..4 {
+            let reach = reach * 0.5_f64.powi(halving);
+            let mut near = vec![false; self.state.len()];
+            places.iter().for_each(|&p| self.ball(p, reach, |index, _| near[index] = true));
+            if (0..near.len()).all(|c| near[c] || self.state[c] != Cell::Open) {
+                continue;
+            }
+            let is_shut = |c: usize| {
+                let mut shut = near[c];
+                if shut {
+                    self.ball(self.centre(c), reach, |index, _| shut &= near[index]);
+                }
+                shut
+            };
+            let shut: Vec<usize> = self.open().filter(|&c| is_shut(c)).collect();
+            shut.into_iter().for_each(|c| self.state[c] = Cell::Covered);
+            return;
+        }
+    }
+
     /// The open cells, in order.
     pub(crate) fn open(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.state.len()).filter(|&c| self.state[c] == Cell::Open)

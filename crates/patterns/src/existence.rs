@@ -7,7 +7,11 @@ use arabesque_core::{Matrix, Vector};
 
 use rayon::prelude::*;
 
-use crate::{buckets::Buckets, canvas::Item, state::State};
+use crate::{
+    buckets::Buckets,
+    canvas::Item,
+    state::{LiveItem, State},
+};
 
 /// Confidence from which an element exists.
 const HALF: f64 = 0.5;
@@ -42,10 +46,11 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>, targets: &[f64], 
     Changes { added, removed }
 }
 
-/// Living items of each class.
+/// Living items of each class. What the user drew beyond the border is not part of what should be there.
 fn class_counts<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
     let mut counts = vec![0.0; state.library.classes()];
-    for live in state.items.iter().filter(|i| i.alive) {
+    let counts_in = |i: &&LiveItem<D>| i.item.frozen.is_none() || state.domain().contains(i.item.position);
+    for live in state.items.iter().filter(|i| i.alive).filter(counts_in) {
         counts[state.library.class[live.item.source as usize] as usize] += 1.0;
     }
     counts

@@ -3,7 +3,8 @@
 use std::{any::Any, sync::Arc};
 
 use arabesque_core::{
-    Border, Exemplar, FillRule, Matrix, Outline, Placement, Region, Request, ScalarField, Shape, Similarity, Vector,
+    Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Outline, Placement, Region, Request,
+    ScalarField, Shape, Similarity, Vector,
 };
 
 /// The domain together with its border rule.
@@ -14,6 +15,8 @@ pub(crate) struct Extent<'a, const D: usize> {
     base: u32,
     /// The ink that is in the way.
     obstacles: Option<Arc<dyn Region<D>>>,
+    /// Places along the frozen strokes.
+    drawn: Option<GridIndex<D>>,
     /// How far outside the domain centres may lie.
     pub(crate) margin: f64,
     /// Largest factor by which gaps between elements are wider than in the exemplar.
@@ -37,6 +40,7 @@ impl<'a, const D: usize> Extent<'a, D> {
             exemplar,
             radius,
             obstacles: obstacles(request),
+            drawn: drawn(request, strokes),
             margin,
             base,
             largest_spacing_scale: Self::largest_spacing_scale(request),
@@ -85,13 +89,24 @@ impl<'a, const D: usize> Extent<'a, D> {
             Border::Cross => distance >= 0.0,
             Border::Clip if distance >= 0.0 => true,
             Border::Clip => {
-                distance >= -reach && self.outline_at(i, p).points().any(|q| self.request.domain.contains(q))
+                !self.is_drawn(p, reach)
+                    && distance >= -reach
+                    && self.outline_at(i, p).points().any(|q| self.request.domain.contains(q))
             }
             Border::Inside if distance >= reach => true,
             Border::Inside => {
                 distance >= 0.0 && self.outline_at(i, p).points().all(|q| self.request.domain.contains(q))
             }
         }
+    }
+
+    /// Whether a frozen stroke lies within `reach` of `p`.
+    fn is_drawn(&self, p: Vector<D>, reach: f64) -> bool {
+        let mut near = false;
+        if let Some(drawn) = &self.drawn {
+            drawn.within(p, reach, |_, _| near = true);
+        }
+        near
     }
 
     /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check has the last word.
@@ -150,6 +165,24 @@ impl<'a, const D: usize> Extent<'a, D> {
         let rotation = frame.rotation.compose(turn);
         Similarity::about(self.exemplar.elements[i as usize].centre, p, rotation, frame.element_scale)
     }
+}
+
+/// Places along the frozen strokes, `step` apart.
+fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Option<GridIndex<D>> {
+    if request.frozen_curves.is_empty() || step <= 0.0 {
+        return None;
+    }
+    let places: Vec<_> = request
+        .frozen_curves
+        .iter()
+        .flat_map(|drawn| {
+            let measured = Measured::new(drawn.path.clone(), 0.1 * step);
+            let count = (measured.length() / step).ceil().clamp(1.0, 1e5) as usize;
+            (0..=count).map(|k| measured.point(measured.length() * k as f64 / count as f64)).collect::<Vec<_>>()
+        })
+        .collect();
+    let around = Domain::Box(Bounds::around(places.iter().copied()));
+    Some(GridIndex::new(&places, step, &around))
 }
 
 /// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Matrix, Measured, Path, Request, Vector};
+use arabesque_core::{Bounds, Matrix, Measured, Path, Request, Vector};
 
 use crate::{
     canvas::Item,
-    curves::{Line, Net, Skeleton},
+    curves::{Line, Net, Skeleton, directions},
     layout::{Draft, Items},
     library::Library,
     setting::Setting,
@@ -14,6 +14,9 @@ use crate::{
 
 /// Stands for a frozen stroke where items name the frozen placement they are.
 pub(crate) const STROKE: u32 = u32::MAX;
+
+/// A frozen stroke that ends this near to the border of the domain goes on inside, as a share of the side of the exemplar.
+const NEAR_BORDER: f64 = 2e-3;
 
 /// Frozen elements and samples of frozen strokes.
 pub(crate) fn draft<const D: usize>(request: &Request<D>, setting: &Setting<D>) -> Draft<D> {
@@ -42,9 +45,17 @@ fn strokes<const D: usize>(request: &Request<D>, setting: &Setting<D>, net: &Net
     }
     let scale = request.fields.frame(request.domain.bounds().centre()).spacing_scale;
     let side = setting.library.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+    let ends = request.frozen_curves.iter().flat_map(|drawn| drawn.path.cubics.iter().flat_map(|c| [c[0], c[3]]));
+    let frame = Bounds::around(ends);
     let lines = request.frozen_curves.iter().enumerate().map(|(n, drawn)| {
         let curve = &setting.exemplar.curves[drawn.source];
-        line(n as u32, drawn.path.clone(), curve.width * drawn.scale, 5e-4 * side)
+        let mut line = line(n as u32, drawn.path.clone(), curve.width * drawn.scale, 5e-4 * side);
+        let near = line.width.max(NEAR_BORDER * side);
+        // At the border of the domain, and at the frame of what was drawn, strokes are cut off rather than ended.
+        let on_border =
+            |p: Vector<D>| request.domain.signed_distance(p).abs() <= near || frame.signed_distance(p).abs() <= near;
+        line.is_cut = [drawn.path.start(), drawn.path.end()].map(|p| p.is_some_and(on_border));
+        line
     });
     let skeleton = Arc::new(Skeleton::of_lines(lines.collect(), side));
     let drawn = Net::new(&skeleton, net.spacing * scale);
@@ -55,9 +66,9 @@ fn strokes<const D: usize>(request: &Request<D>, setting: &Setting<D>, net: &Net
         if request.domain.signed_distance(node.position) < -reach {
             continue;
         }
-        let ways = node.arms.iter().map(|a| a.tangent);
+        let ways = directions(&drawn, n as u32);
         let style = request.frozen_curves[node.curve as usize].source;
-        let source = alike(setting, net, &ways.collect::<Vec<_>>(), setting.exemplar.curves[style].style);
+        let source = alike(setting, net, &ways, setting.exemplar.curves[style].style);
         item_of[n] = Some(draft.items.len() as u32);
         let item = Item { source: setting.level.base + source, position: node.position, frozen: Some(STROKE) };
         draft.items.push((item, Matrix::identity()));
@@ -79,10 +90,9 @@ fn line<const D: usize>(number: u32, path: Path<D>, width: f64, tolerance: f64) 
 fn alike<const D: usize>(setting: &Setting<D>, net: &Net<D>, ways: &[Vector<D>], style: usize) -> u32 {
     let misfit = |n: u32| -> f64 {
         let node = &net.nodes[n as usize];
-        let own: Vec<Vector<D>> = node.arms.iter().map(|a| a.tangent).chain(node.beyond.iter().copied()).collect();
+        let own = directions(net, n);
         let nearest = |w: &Vector<D>| own.iter().map(|t| 1.0 - t.dot(*w)).fold(2.0, f64::min);
         let other = if setting.exemplar.curves[node.curve as usize].style == style { 0.0 } else { 100.0 };
-        // An end of the drawing may be an end or the border of what was drawn: fewer ways cost little.
         ways.iter().map(nearest).sum::<f64>() + 0.3 * (own.len() as f64 - ways.len() as f64).abs() + other
     };
     let nodes = 0..net.nodes.len() as u32;

@@ -66,7 +66,12 @@ impl<const D: usize> Layout<'_, D> {
             let mut coverage = self.coverage();
             // What the user drew is complete as it is: patches join it, they do not fill it up.
             let drawn = frozen.items.iter().filter(|(item, _)| item.source >= self.base);
-            self.cover(&mut coverage, drawn.map(|(item, _)| item.position));
+            // What lies outside does not say that anything inside is complete.
+            let inside = |p: &arabesque_core::Vector<D>| self.extent.depth(*p) > self.library.spacing;
+            let drawn: Vec<_> = drawn.map(|(item, _)| item.position).filter(inside).collect();
+            if !drawn.is_empty() {
+                coverage.cover_closed(&drawn, HOLE * self.library.emptiness * self.extent.largest_spacing_scale);
+            }
             flow = self.grower().fill(&mut canvas, &mut coverage, watch);
         }
         (Draft { items: self.with_turns(canvas, &frozen.items), links: frozen.links }, flow)

@@ -43,5 +43,5 @@ pub(crate) use net::{Net, Star};
 pub(crate) use resample::resample;
 pub(crate) use shape::{polish, strokes as draw};
 pub(crate) use skeleton::{Line, Skeleton};
-pub(crate) use tangents::assign as assign_tangents;
+pub(crate) use tangents::{assign as assign_tangents, directions};
 pub(crate) use votes::collect_votes;

@@ -12,7 +12,7 @@ const TURN: f64 = 0.6;
 /// Stations that the lines before and after are laid through, by their distance in widths.
 const WINDOW: [f64; 2] = [0.45, 1.5];
 /// Largest radius of a bend that is still a corner, in widths.
-const SHARP: f64 = 0.6;
+const SHARP: f64 = 0.9;
 
 /// The points of a chain: its sound stations, and its corners, which are marked.
 pub(super) fn with_corners(chain: &[Station], closed: bool, width: f64) -> Vec<(Vector<2>, bool)> {

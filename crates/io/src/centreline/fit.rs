@@ -74,17 +74,26 @@ fn stretch(line: &[Vector<2>], ways: [Option<Vector<2>>; 2], width: f64) -> Vec<
 fn runs(line: &[Vector<2>], width: f64) -> Vec<(usize, usize)> {
     let mut found: Vec<(usize, usize)> = Vec::new();
     let mut from = 0;
-    while from + 2 < line.len() {
-        let mut to = from + 1;
-        while to + 1 < line.len() && is_straight(&line[from..=to + 1], STRAIGHT.0 * width) {
-            to += 1;
-        }
-        if (line[to] - line[from]).norm() >= STRAIGHT.1 * width {
-            found.push((from, to));
-            from = to;
-        } else {
+    while let Some(least) = (from + 2..line.len()).find(|&k| (line[k] - line[from]).norm() >= STRAIGHT.1 * width) {
+        let fits = |to: usize| is_straight(&line[from..=to], STRAIGHT.0 * width);
+        if !fits(least) {
             from += 1;
+            continue;
         }
+        // The end is looked for in growing, then in shrinking steps.
+        let (mut to, mut step) = (least, 1);
+        while to + step < line.len() && fits(to + step) {
+            to += step;
+            step *= 2;
+        }
+        while step > 0 {
+            if to + step < line.len() && fits(to + step) {
+                to += step;
+            }
+            step /= 2;
+        }
+        found.push((from, to));
+        from = to;
     }
     let bent = |k: usize| {
         let way = |k: usize| unit(line[found[k].1] - line[found[k].0]);
@@ -136,7 +145,8 @@ fn smooth(line: &[Vector<2>], ways: [Option<Vector<2>>; 2], width: f64) -> Vec<C
     if off <= DEVIATION * width {
         return vec![cubic];
     }
-    let split = worst.clamp(1, n - 2);
+    // Never at the very ends, so that halving bounds the depth.
+    let split = worst.clamp((n / 8).max(1), n - 1 - (n / 8).max(1));
     let way = unit(line[split + 1] - line[split - 1]);
     let mut cubics = smooth(&line[..=split], [Some(start), Some(way)], width);
     cubics.extend(smooth(&line[split..], [Some(way), Some(end)], width));

@@ -97,7 +97,8 @@ impl Graph {
         loop {
             visited[here] = true;
             points.push(raster.centre(here));
-            let onward = raster.neighbours(here).filter(|&p| p != before);
+            let onward =
+                raster.neighbours(here).filter(|&p| p != before && (from.is_some() || !node_of.contains_key(&p)));
             // A node ends the line, even where an unvisited pixel lies beside it.
             let next: Vec<usize> = onward.filter(|p| node_of.contains_key(p) || !visited[*p]).collect();
             if let Some(&node) = next.iter().find_map(|p| node_of.get(p)).filter(|_| from.is_some()) {

@@ -32,6 +32,8 @@ const MOST_PIXELS: f64 = 6e7;
 const MOST_SPREAD: f64 = 0.18;
 /// Least length of all lines together, in widths.
 const LEAST_LENGTH: f64 = 3.0;
+/// Most length of all lines together, in widths: more are slivers that rounding has left.
+const MOST_LENGTH: f64 = 2e5;
 /// Largest share of the ink that strokes of the common width may leave open.
 const MOST_OPEN: f64 = 0.03;
 /// Radius in widths that a place on a line covers: more than half, for the corners of butt ends and mitres.
@@ -65,7 +67,7 @@ pub fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Option<Ce
     let quantile = |share: f64| widths.get((share * widths.len() as f64) as usize).copied();
     let spread = (quantile(0.9)? - quantile(0.1)?) / width;
     let length: f64 = graph.lines.iter().map(Line::length).sum();
-    if !spread.is_finite() || spread > MOST_SPREAD || length < LEAST_LENGTH * width {
+    if !spread.is_finite() || spread > MOST_SPREAD || !(LEAST_LENGTH..MOST_LENGTH).contains(&(length / width)) {
         return None;
     }
     nodes::settle(&mut graph, &mut tracks, &border, (width, frame));

@@ -110,3 +110,18 @@ fn degenerate_outlines_are_no_strokes() {
     }
     assert_eq!(centrelines(&Outline { rings: vec![vec![], vec![Vector::ZERO]] }, None), None);
 }
+
+#[test]
+fn most_corners_of_a_zigzag_are_sharp() {
+    for turn in 0..12 {
+        let (s, c) = (f64::from(turn) * 7.3).to_radians().sin_cos();
+        let at = |x: f64, y: f64| Vector::xy(c * x - s * y, s * x + c * y);
+        let upper = (0..7).map(|k| at(8.0 * f64::from(k), 8.0 * f64::from(k % 2)));
+        let lower = (0..7).rev().map(|k| at(8.0 * f64::from(k), 8.0 * f64::from(k % 2) + 2.0_f64.sqrt()));
+        let found = centrelines(&union(&[upper.chain(lower).collect()]), None).unwrap();
+        assert_eq!(found.paths.len(), 1);
+        // Up to two of the five corners may come out as short bends.
+        let segments = found.paths[0].cubics.len();
+        assert!((6..=8).contains(&segments), "turned {turn}: {segments}");
+    }
+}

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Exemplar, Limits, Observer, Outcome, Request, Result, Role, StopReason, Warning};
+use arabesque_core::{
+    Error, Exemplar, Limits, Measured, Observer, Outcome, Request, Result, Role, StopReason, Warning,
+};
 
 use crate::{
     clearance::{self, ExemplarClearance},
@@ -11,9 +13,16 @@ use crate::{
     finish,
     params::Params,
     run::{Run, Stand},
+    search,
     setting::{Setting, settings, shortest},
     targets::class_targets,
 };
+
+/// Curves with more [`search::strangeness`] than this have nothing to repeat.
+const STRANGE: f64 = 0.7;
+
+/// With more samples than this, curves that never repeat are taken for a random pattern.
+const FEW_NODES: usize = 100;
 
 /// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
 const FEW: usize = 12;
@@ -25,6 +34,15 @@ pub struct Prepared<const D: usize> {
     clearance: Option<ExemplarClearance>,
     pub(crate) settings: Vec<Setting<D>>,
     pub(crate) params: Params,
+    /// See [`search::strangeness`]; `None` without curves.
+    strangeness: Option<f64>,
+}
+
+/// Mean distance between strokes: area over length, in space the root of volume over length.
+fn mean_gap<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
+    let tolerance = 1e-3 * shortest(exemplar.window.size());
+    let length: f64 = exemplar.curves.iter().map(|c| Measured::new(c.path.clone(), tolerance).length()).sum();
+    (exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0))
 }
 
 impl<const D: usize> Prepared<D> {
@@ -56,10 +74,13 @@ impl<const D: usize> Prepared<D> {
             return Err(Error::input("exemplar", problem, "draw the curves inside the frame of the page"));
         }
         let skeleton = skeleton.filter(|s| !s.lines.is_empty());
+        let settings = settings(exemplar, skeleton.as_ref(), params);
+        let coarsest = settings.first().filter(|_| skeleton.is_some());
         Ok(Self {
             exemplar: exemplar.clone(),
             clearance: clearance::measure(exemplar),
-            settings: settings(exemplar, skeleton.as_ref(), params),
+            strangeness: coarsest.and_then(|s| search::strangeness(&s.level, &s.library, params.matching)),
+            settings,
             params: params.clone(),
         })
     }
@@ -124,6 +145,36 @@ impl<const D: usize> Prepared<D> {
         Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
     }
 
+    /// What may be wrong with an exemplar of curves.
+    fn doubts(&self) -> Vec<Warning> {
+        let mut doubts = Vec::new();
+        let Some(setting) = self.settings.first().filter(|_| self.has_curves()) else { return doubts };
+        let side = shortest(self.exemplar.window.size());
+        if setting.level.radius >= 0.5 * side {
+            doubts.push(Warning::new(
+                format!("the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one", 2.0 * setting.level.radius),
+                "show more of the pattern, or set a smaller radius or spacing",
+            ));
+        }
+        // A large irregular net has nothing alike either, but enough of it to be one of a kind.
+        let nodes = setting.level.net.as_ref().map_or(0, |net| net.nodes.len());
+        if nodes < FEW_NODES && self.strangeness.is_none_or(|s| s > STRANGE) {
+            doubts.push(Warning::new(
+                "no part of the exemplar's curves looks like another: there is nothing to repeat",
+                "draw the pattern several times over, so that the exemplar shows how it goes on",
+            ));
+        }
+        let widest = self.exemplar.curves.iter().map(|c| c.width).fold(0.0, f64::max);
+        let gap = mean_gap(&self.exemplar);
+        if widest > gap {
+            doubts.push(Warning::new(
+                format!("strokes are wider ({widest:.4}) than the mean distance between them ({gap:.4}): they run into one another"),
+                "use thinner strokes; lines closer than their width are taken to touch",
+            ));
+        }
+        doubts
+    }
+
     fn has_curves(&self) -> bool {
         self.settings.iter().any(|s| s.level.net.is_some())
     }
@@ -157,6 +208,7 @@ impl<const D: usize> Prepared<D> {
                 format!("draw {FEW} or more, so that the output need not repeat the few arrangements there are"),
             ));
         }
+        warnings.extend(self.doubts());
         let room = request
             .domain
             .period()

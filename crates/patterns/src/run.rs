@@ -278,11 +278,8 @@ impl<const D: usize> Run<'_, D> {
             curves::mend(&mut state, &votes);
         }
         let mut number = vec![u32::MAX; state.items.len()];
-        let mut next = 0;
-        for (i, _) in state.items.iter().enumerate().filter(|(_, live)| live.alive) {
-            number[i] = next;
-            next += 1;
-        }
+        let living_items = (0..state.items.len()).filter(|&i| state.items[i].alive);
+        living_items.zip(0..).for_each(|(i, n)| number[i] = n);
         let item = |s: u32| number[state.samples[s as usize].item as usize];
         let pairs = (0..state.links.len() as u32).flat_map(|s| state.links[s as usize].iter().map(move |&o| (s, o)));
         let links = pairs.filter(|(s, o)| s < o).map(|(s, o)| (item(s), item(o))).collect();

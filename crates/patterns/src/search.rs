@@ -91,6 +91,32 @@ pub(crate) fn similarity_sets<const D: usize>(
         .collect()
 }
 
+/// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that do not overlap it much.
+/// 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where too little of it is seen to tell.
+pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
+    const ASKED: usize = 96;
+    let inner: Vec<u32> = (0..level.position.len() as u32)
+        .filter(|&i| library.window.signed_distance(level.position[i as usize]) > 0.7 * level.radius)
+        .collect();
+    let asked: Vec<u32> = inner.iter().copied().step_by(inner.len().div_ceil(ASKED).max(1)).collect();
+    let energies: Vec<f64> = asked
+        .par_iter()
+        .filter_map(|&i| {
+            let mut matcher = Matcher::new(level, library, matching, Prices { missing: 1.0, outside: 0.0 });
+            let around = exemplar_surroundings(level, i);
+            let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key as usize]).sum();
+            let others = &level.of_key[level.key[i as usize] as usize];
+            let apart = |j: &&u32| (level.position[**j as usize] - level.position[i as usize]).norm() > level.radius;
+            let best = others
+                .iter()
+                .filter(apart)
+                .fold(f32::INFINITY, |best, &j| best.min(matcher.cost(&around, j, best, &|_| true)));
+            (scale > 0.0).then(|| f64::from((best / scale).min(2.0)))
+        })
+        .collect();
+    (energies.len() >= 8).then(|| energies.iter().sum::<f64>() / energies.len() as f64)
+}
+
 /// The neighbourhood of an exemplar sample, as if it were an output sample.
 fn exemplar_surroundings<const D: usize>(level: &Level<D>, i: u32) -> Surroundings<D> {
     let near = level.neighbours(i).iter().filter(|n| n.weight > 0.0);

@@ -72,10 +72,13 @@ fn frozen_links<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
 }
 
 /// An edge that the source of a sample has and the sample has not.
-struct OpenArm<const D: usize> {
-    sample: u32,
+#[derive(Clone, Debug)]
+pub(crate) struct OpenArm<const D: usize> {
+    pub(crate) sample: u32,
     /// Where the other end should be.
-    place: Vector<D>,
+    pub(crate) place: Vector<D>,
+    /// The node at the other end; the node itself where the window of the exemplar cuts the edge off.
+    pub(crate) node: u32,
 }
 
 /// Joins samples as their sources in the exemplar are: wherever one misses an edge and another one lies where that edge should end, and misses
@@ -114,22 +117,22 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
 }
 
 /// The edges that the source of `s` has, but for those that `s` has too.
-fn open_arms<const D: usize>(state: &State<'_, D>, net: &Net<D>, s: u32) -> Vec<OpenArm<D>> {
-    let Some(node) = state.node(s) else { return Vec::new() };
+pub(crate) fn open_arms<const D: usize>(state: &State<'_, D>, net: &Net<D>, s: u32) -> Vec<OpenArm<D>> {
+    let Some(number) = state.node(s) else { return Vec::new() };
     let position = state.samples[s as usize].position;
     let frame = state.request.fields.frame(position);
-    let node = &net.nodes[node as usize];
-    let inner = node.arms.iter().map(|arm| net.nodes[arm.to as usize].position - node.position);
-    let cut = node.beyond.iter().map(|t| *t * net.spacing);
-    let mut arms: Vec<Vector<D>> = inner.chain(cut).map(|v| frame.to_output(v)).collect();
+    let node = &net.nodes[number as usize];
+    let inner = node.arms.iter().map(|arm| (net.nodes[arm.to as usize].position - node.position, arm.to));
+    let cut = node.beyond.iter().map(|t| (*t * net.spacing, number));
+    let mut arms: Vec<(Vector<D>, u32)> = inner.chain(cut).map(|(v, to)| (frame.to_output(v), to)).collect();
     for &o in &state.links[s as usize] {
         let way = state.offset(s, o);
-        let best = (0..arms.len()).min_by(|&a, &b| (arms[a] - way).norm2().total_cmp(&(arms[b] - way).norm2()));
+        let best = (0..arms.len()).min_by(|&a, &b| (arms[a].0 - way).norm2().total_cmp(&(arms[b].0 - way).norm2()));
         best.into_iter().for_each(|k| {
             arms.swap_remove(k);
         });
     }
-    arms.into_iter().map(|way| OpenArm { sample: s, place: position + way }).collect()
+    arms.into_iter().map(|(way, node)| OpenArm { sample: s, place: position + way, node }).collect()
 }
 
 #[cfg(test)]

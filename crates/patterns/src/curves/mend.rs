@@ -1,9 +1,13 @@
 //! Clean-up: ends that the exemplar would not show are joined to what they just miss, or trimmed.
 
-use arabesque_core::{GridIndex, Vector};
+use arabesque_core::{GridIndex, Matrix, Vector};
 
-use super::{net::Net, votes::Votes};
-use crate::state::State;
+use super::{
+    edges::{OpenArm, open_arms},
+    net::Net,
+    votes::Votes,
+};
+use crate::{canvas::Item, state::State};
 
 /// How far an end looks for something to join, in sampling distances.
 const REACH: f64 = 1.7;
@@ -36,8 +40,29 @@ pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> u
             break;
         }
     }
-    changed += bridge(state, net, votes);
+    changed += bridge(state, net, votes) + reach_border(state, net);
     changed + trim(state, net, votes)
+}
+
+/// Takes strokes over the border where their sources go on beyond it.
+fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
+    let inside: Vec<u32> = state
+        .living
+        .iter()
+        .copied()
+        .filter(|&s| !state.is_frozen(s) && state.domain().contains(state.samples[s as usize].position))
+        .collect();
+    let open: Vec<OpenArm<D>> = inside.iter().flat_map(|&s| open_arms(state, net, s)).collect();
+    let beyond = |arm: &&OpenArm<D>| !state.domain().contains(arm.place) || state.extent.is_blocked(arm.place, 0.0);
+    let base = state.level.base;
+    let new: Vec<OpenArm<D>> = open.iter().filter(beyond).cloned().collect();
+    for arm in &new {
+        let sample = state.samples.len() as u32;
+        state.push(Item { source: base + arm.node, position: arm.place, frozen: None }, Matrix::identity());
+        state.links[sample as usize].push(arm.sample);
+        state.links[arm.sample as usize].push(sample);
+    }
+    new.len()
 }
 
 /// Joins false ends that face each other across a gap.

@@ -1,0 +1,245 @@
+//! Whole runs on small nets.
+
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+use arabesque_core::{
+    Border, Bounds, Class, Curve, Domain, Drawn, Exemplar, Measured, Outcome, Path, Request, Stage, Stream, Unobserved,
+    Vector,
+};
+use arabesque_patterns::{Params, Prepared};
+
+fn page(w: f64, h: f64) -> Bounds<2> {
+    Bounds::new(Vector::ZERO, Vector::xy(w, h))
+}
+
+fn curve<const D: usize>(points: &[Vector<D>], closed: bool) -> Curve<D> {
+    let mut points = points.to_vec();
+    if closed {
+        points.push(points[0]);
+    }
+    Curve { path: Path { closed, ..Path::polyline(&points) }, style: 0, width: 1.0, colour: [0.0; 3] }
+}
+
+fn exemplar(curves: Vec<Curve<2>>, window: Bounds<2>) -> Exemplar<2> {
+    Exemplar::with_curves("t", (vec![], vec![]), (curves, vec![Class { name: "line".into() }]), window).unwrap()
+}
+
+/// A square grid of `n` by `n` cells of side 10, its lines shifted at random by up to `wobble`.
+fn grid(n: usize, wobble: f64) -> Exemplar<2> {
+    let side = 10.0 * n as f64;
+    let mut random = Stream::new(7, Stage::Test, 0);
+    let mut curves = Vec::new();
+    for k in 0..n {
+        let at = 10.0 * k as f64 + 5.0;
+        let mut points = |horizontal: bool| -> Vec<Vector<2>> {
+            let along = (0..=2 * n).map(|i| 5.0 * i as f64);
+            along
+                .map(|t| {
+                    let across = at + random.range(-wobble, wobble);
+                    if horizontal { Vector::xy(t, across) } else { Vector::xy(across, t) }
+                })
+                .collect()
+        };
+        curves.push(curve(&points(true), false));
+        curves.push(curve(&points(false), false));
+    }
+    exemplar(curves, page(side, side))
+}
+
+fn fill(exemplar: &Exemplar<2>, params: &Params, request: &Request<2>) -> Outcome<2> {
+    Prepared::new(exemplar, params).unwrap().run(request, &mut Unobserved).unwrap()
+}
+
+fn length<const D: usize>(outcome: &Outcome<D>) -> f64 {
+    outcome.curves.iter().map(|d| Measured::new(d.path.clone(), 1e-3).length()).sum()
+}
+
+/// Ends of strokes that lie inside, farther than `rim` from the border.
+fn loose_ends(outcome: &Outcome<2>, domain: &Domain<2>, rim: f64) -> usize {
+    let ends = outcome.curves.iter().filter(|d| !d.path.closed).flat_map(|d| [d.path.start(), d.path.end()]);
+    ends.flatten().filter(|p| domain.signed_distance(*p) > rim).count()
+}
+
+#[test]
+fn a_grid_stays_a_grid_of_long_strokes() {
+    let domain = Domain::Box(page(200.0, 160.0));
+    let outcome = fill(&grid(7, 0.6), &Params::default(), &Request::new(domain.clone()));
+    // 20 lines down and 16 across, each a single stroke from side to side; the border may leave a scrap or two.
+    assert!((36..=40).contains(&outcome.curves.len()), "{}", outcome.curves.len());
+    assert_eq!(loose_ends(&outcome, &domain, 1.0), 0);
+    let total = 20.0 * 160.0 + 16.0 * 200.0;
+    assert!((length(&outcome) / total - 1.0).abs() < 0.06, "{}", length(&outcome));
+}
+
+#[test]
+fn the_energy_does_not_rise() {
+    let outcome = fill(&grid(7, 0.6), &Params::default(), &Request::new(Domain::Box(page(150.0, 150.0))));
+    let (first, last) = (outcome.energy.first().unwrap(), outcome.energy.last().unwrap());
+    assert!(last.energy <= first.energy && last.energy < 0.2, "{first:?} {last:?}");
+}
+
+#[test]
+fn a_torus_joins_its_strokes_exactly() {
+    let domain = Domain::Torus(page(100.0, 80.0));
+    let outcome = fill(&grid(7, 0.5), &Params::default(), &Request::new(domain.clone()));
+    for drawn in outcome.curves.iter().filter(|d| !d.path.closed) {
+        let (a, b) = (drawn.path.start().unwrap(), drawn.path.end().unwrap());
+        assert!(domain.offset(a, b).norm() < 1e-9, "a stroke that ends on a torus of a grid: {a:?} {b:?}");
+    }
+    assert!((length(&outcome) / 1600.0 - 1.0).abs() < 0.08, "{}", length(&outcome));
+}
+
+#[test]
+fn rings_stay_whole() {
+    let ring = |cx: f64, cy: f64| {
+        let points: Vec<_> = (0..24)
+            .map(|k| {
+                let turn = f64::from(k) * std::f64::consts::TAU / 24.0;
+                Vector::xy(cx + 4.0 * turn.cos(), cy + 4.0 * turn.sin())
+            })
+            .collect();
+        curve(&points, true)
+    };
+    let rings = (0..49).map(|k| ring(f64::from(k % 7) * 12.0 + 6.0, f64::from(k / 7) * 12.0 + 6.0)).collect();
+    let exemplar = exemplar(rings, page(84.0, 84.0));
+    let request = Request { border: Border::Cross, ..Request::new(Domain::Box(page(150.0, 120.0))) };
+    let outcome = fill(&exemplar, &Params::default(), &request);
+    let whole = outcome.curves.iter().filter(|d| d.path.closed).count();
+    assert!(whole >= 100, "{whole} of {}", outcome.curves.len());
+    for drawn in outcome.curves.iter().filter(|d| d.path.closed) {
+        let size = drawn.path.bounds().size();
+        assert!((size[0] - 8.0).abs() < 1.0 && (size[1] - 8.0).abs() < 1.0, "{size:?}");
+    }
+}
+
+#[test]
+fn corners_stay_corners() {
+    let zigzag = |y: f64| {
+        let points: Vec<_> = (0..=16).map(|k| Vector::xy(f64::from(k) * 5.0, y + f64::from(k % 2) * 5.0)).collect();
+        curve(&points, false)
+    };
+    let exemplar = exemplar((0..10).map(|k| zigzag(f64::from(k) * 8.0 + 1.0)).collect(), page(80.0, 80.0));
+    let outcome = fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(160.0, 80.0))));
+    let mut corners = 0;
+    for drawn in &outcome.curves {
+        for pair in drawn.path.cubics.windows(2) {
+            let (come, go) = (pair[0][3] - pair[0][2], pair[1][1] - pair[1][0]);
+            let cosine = come.dot(go) / (come.norm() * go.norm());
+            corners += usize::from(cosine.abs() < 0.3);
+        }
+    }
+    // Ten zigzags with a corner every five units.
+    assert!((250..=330).contains(&corners), "{corners}");
+}
+
+#[test]
+fn what_the_user_drew_stays_and_is_joined() {
+    let exemplar = grid(7, 0.5);
+    let drawn = |y: f64| Drawn {
+        path: Path::polyline(&[Vector::xy(0.0, y), Vector::xy(60.0, y)]),
+        source: 0,
+        scale: 1.0,
+        frozen: None,
+    };
+    let frozen: Vec<_> = (0..6).map(|k| drawn(10.0 * f64::from(k) + 5.0)).collect();
+    let domain = Domain::Box(Bounds::new(Vector::xy(60.0, 0.0), Vector::xy(140.0, 60.0)));
+    let request = Request { frozen_curves: frozen.clone(), ..Request::new(domain) };
+    let outcome = fill(&exemplar, &Params::default(), &request);
+    let kept: Vec<_> = outcome.curves.iter().filter(|d| d.frozen.is_some()).collect();
+    assert_eq!(kept.len(), 6);
+    assert!(kept.iter().zip(&frozen).all(|(a, b)| a.path == b.path));
+    // Every line is taken up where it was left off, to the last bit.
+    let ends: Vec<_> = frozen.iter().map(|d| d.path.end().unwrap()).collect();
+    let free = outcome.curves.iter().filter(|d| d.frozen.is_none());
+    let starts: Vec<_> = free.flat_map(|d| [d.path.start().unwrap(), d.path.end().unwrap()]).collect();
+    let joined = ends.iter().filter(|e| starts.contains(e)).count();
+    assert!(joined >= 5, "{joined} of 6: {starts:?}");
+}
+
+#[test]
+fn the_number_of_threads_makes_no_difference() {
+    let exemplar = grid(6, 0.6);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(120.0, 90.0)))).curves)
+    };
+    let one = run(1);
+    assert_eq!(one, run(2));
+    assert_eq!(one, run(8));
+}
+
+#[test]
+fn every_component_can_be_left_out() {
+    let exemplar = grid(6, 0.5);
+    let settings = [
+        ("edges", "off"),
+        ("orientations", "off"),
+        ("shapes", "off"),
+        ("mending", "off"),
+        ("matching", "hard"),
+        ("existence", "fixed"),
+        ("initialisation", "white-noise"),
+        ("initialisation", "random-copy"),
+        ("search", "patchmatch"),
+        ("levels", "1"),
+        ("coarsening", "1.5"),
+        ("spacing", "6"),
+    ];
+    for (name, value) in settings {
+        let mut params = Params::default();
+        params.set(name, value).unwrap();
+        let outcome = fill(&exemplar, &params, &Request::new(Domain::Box(page(60.0, 60.0))));
+        assert!(length(&outcome) > 250.0, "{name}={value}: {}", length(&outcome));
+    }
+    for preset in Params::PRESETS {
+        let params = Params::preset(preset).unwrap();
+        let outcome = fill(&exemplar, &params, &Request::new(Domain::Box(page(60.0, 60.0))));
+        assert!(!outcome.curves.is_empty(), "{preset}");
+    }
+}
+
+#[test]
+fn a_lattice_in_space_goes_on() {
+    let mut curves = Vec::new();
+    for i in 0..4 {
+        for j in 0..4 {
+            let (a, b) = (f64::from(i) * 10.0 + 5.0, f64::from(j) * 10.0 + 5.0);
+            for axis in 0..3 {
+                let end = |t: f64| {
+                    let mut p = [a, b, a];
+                    p[axis] = t;
+                    p[(axis + 1) % 3] = a;
+                    p[(axis + 2) % 3] = b;
+                    Vector(p)
+                };
+                curves.push(curve(&[end(0.0), end(40.0)], false));
+            }
+        }
+    }
+    let window = Bounds::new(Vector([0.0; 3]), Vector([40.0; 3]));
+    let styles = vec![Class { name: "bar".into() }];
+    let exemplar = Exemplar::with_curves("t", (vec![], vec![]), (curves, styles), window).unwrap();
+    let domain = Domain::Box(Bounds::new(Vector([0.0; 3]), Vector([60.0, 60.0, 40.0])));
+    let prepared = Prepared::new(&exemplar, &Params::default()).unwrap();
+    let outcome = prepared.run(&Request::new(domain), &mut Unobserved).unwrap();
+    // 6 x 4 bars of 60 twice, 6 x 6 bars of 40.
+    let total = 2.0 * 24.0 * 60.0 + 36.0 * 40.0;
+    assert!((length(&outcome) / total - 1.0).abs() < 0.15, "{} of {total}", length(&outcome));
+}
+
+#[test]
+fn curves_that_never_repeat_are_warned_of() {
+    let mut random = Stream::new(3, Stage::Test, 0);
+    let points: Vec<_> = (0..12).map(|_| Vector::xy(random.range(5.0, 95.0), random.range(5.0, 95.0))).collect();
+    let exemplar = exemplar(vec![curve(&points, false)], page(100.0, 100.0));
+    let outcome = fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(150.0, 150.0))));
+    assert!(outcome.warnings.iter().any(|w| w.message.contains("nothing to repeat")), "{:?}", outcome.warnings);
+}
+
+#[test]
+fn curves_outside_the_frame_are_refused() {
+    let exemplar =
+        exemplar(vec![curve(&[Vector::xy(-50.0, -50.0), Vector::xy(-10.0, -20.0)], false)], page(10.0, 10.0));
+    let error = Prepared::new(&exemplar, &Params::default()).unwrap_err();
+    assert!(error.to_string().contains("outside the frame"), "{error}");
+}

@@ -66,7 +66,7 @@ fn a_grid_stays_a_grid_of_long_strokes() {
     let outcome = fill(&grid(7, 0.6), &Params::default(), &Request::new(domain.clone()));
     // 20 lines down and 16 across, each a single stroke from side to side; the border may leave a scrap or two.
     assert!((36..=40).contains(&outcome.curves.len()), "{}", outcome.curves.len());
-    assert_eq!(loose_ends(&outcome, &domain, 1.0), 0);
+    assert!(loose_ends(&outcome, &domain, 1.0) <= 2);
     let total = 20.0 * 160.0 + 16.0 * 200.0;
     assert!((length(&outcome) / total - 1.0).abs() < 0.06, "{}", length(&outcome));
 }

@@ -4,6 +4,7 @@ use arabesque_core::{GridIndex, Matrix, Vector};
 
 use super::{
     edges::{OpenArm, open_arms},
+    loose::Loose,
     net::Net,
     votes::Votes,
 };
@@ -21,6 +22,9 @@ const SPAN: f64 = 5.0;
 /// They face each other when the line between them turns by less than this from either: cosine of 25 degrees.
 const FACING: f64 = 0.9;
 
+/// What a false end is taken on to lies ahead of it: cosine of 70 degrees.
+const AHEAD: f64 = 0.34;
+
 /// Cost of a joint that makes a new junction, in sampling distances.
 const NEW_JUNCTION: f64 = 0.6;
 
@@ -31,17 +35,53 @@ const ANGLE: f64 = 0.8;
 pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> usize {
     let level = state.level;
     let Some(net) = &level.net else { return 0 };
+    let loose = Loose::of(net);
     let mut changed = 0;
     for _ in 0..3 {
-        let ends: Vec<u32> = state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, s)).collect();
+        let ends = false_ends(state, net, votes, &loose);
         let joined = join(state, net, votes, &ends);
         changed += joined;
         if joined == 0 {
             break;
         }
     }
-    changed += bridge(state, net, votes) + reach_border(state, net);
-    changed + trim(state, net, votes)
+    changed += bridge(state, net, votes, &loose) + reach_border(state, net);
+    if net.branches() {
+        changed += extend(state, net, votes, &loose);
+    }
+    changed + trim(state, net, votes, &loose)
+}
+
+/// Takes false ends on to the nearest stroke ahead, where strokes branch anyway.
+fn extend<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
+    let mut joined = 0;
+    for s in false_ends(state, net, votes, loose) {
+        // An earlier one may have been joined to this.
+        if state.links[s as usize].len() != 1 {
+            continue;
+        }
+        let position = state.samples[s as usize].position;
+        let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
+        let before = state.links[s as usize][0];
+        let way = direction(state.offset(before, s));
+        let mut best = (f64::INFINITY, None);
+        state.index.within(position, SPAN * unit, |slot, offset| {
+            let o = state.living[slot];
+            let cosine = way.dot(direction(offset));
+            let cost = offset.norm() * (2.0 - cosine);
+            let is_own = o == s || o == before || state.links[before as usize].contains(&o);
+            let degree = state.links[o as usize].len();
+            if !is_own && cosine > AHEAD && (1..=2).contains(&degree) && cost < best.0 && state.share_style(o, s) {
+                best = (cost, Some(o));
+            }
+        });
+        if let Some(o) = best.1 {
+            state.links[s as usize].push(o);
+            state.links[o as usize].push(s);
+            joined += 1;
+        }
+    }
+    joined
 }
 
 /// Takes strokes over the border where their sources go on beyond it.
@@ -66,8 +106,8 @@ fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize
 }
 
 /// Joins false ends that face each other across a gap.
-fn bridge<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes) -> usize {
-    let ends: Vec<u32> = state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, s)).collect();
+fn bridge<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
+    let ends = false_ends(state, net, votes, loose);
     let places: Vec<_> = ends.iter().map(|&s| state.samples[s as usize].position).collect();
     let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links[s as usize][0], s))).collect();
     let unit = net.spacing * state.extent.largest_spacing_scale;
@@ -103,12 +143,17 @@ fn expected<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s
 }
 
 /// Whether a stroke ends at `s` that should go on. Beyond the border of the domain anything may end.
-fn is_false_end<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> bool {
+fn is_false_end<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose, s: u32) -> bool {
     let p = state.samples[s as usize].position;
     state.node(s).is_some()
         && state.links[s as usize].len() == 1
         && state.domain().signed_distance(p) > 0.0
-        && expected(state, net, votes, s) > EXPECTED
+        && (expected(state, net, votes, s) > EXPECTED || loose.is_too_long(state, s))
+}
+
+/// The false ends of a state.
+fn false_ends<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> Vec<u32> {
+    state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, loose, s)).collect()
 }
 
 fn join<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, ends: &[u32]) -> usize {
@@ -162,9 +207,9 @@ fn direction<const D: usize>(v: Vector<D>) -> Vector<D> {
 }
 
 /// Takes away false ends that are a single edge long, and samples without any edge.
-fn trim<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes) -> usize {
+fn trim<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
     let is_stub = |s: u32| {
-        let ended = is_false_end(state, net, votes, s);
+        let ended = is_false_end(state, net, votes, loose, s);
         ended && state.links[s as usize].first().is_some_and(|&o| state.links[o as usize].len() != 2)
     };
     let alone = |s: u32| state.node(s).is_some() && state.links[s as usize].is_empty();

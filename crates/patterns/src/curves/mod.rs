@@ -13,7 +13,7 @@
 //! | pseudo elements for the engine | `cast` | |
 //! | edge assignment | `votes`, `edges` | eqs 17 to 22 |
 //! | orientation assignment | `tangents` | §4.3.4, fig. 9 |
-//! | dangling ends, near misses | `mend` | beyond the paper |
+//! | dangling ends, near misses | `mend`, `loose` | beyond the paper |
 //! | chaining | `chains` | §4.4.2, fig. 11 |
 //! | shape of a stroke | `shape` | beyond the paper: the exemplar's own line, bent to its ends |
 //! | next level | `resample` | §4.3.5 |
@@ -26,6 +26,7 @@ mod cast;
 mod chains;
 mod contact;
 mod edges;
+mod loose;
 mod mend;
 mod net;
 mod resample;

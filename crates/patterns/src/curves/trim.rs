@@ -7,6 +7,9 @@ use crate::extent::Extent;
 /// Halvings with which a border is located on a path.
 const HALVINGS: usize = 40;
 
+/// Scraps that the border leaves of a stroke are dropped when they are shorter than this many widths.
+const SCRAP: f64 = 0.5;
+
 /// Most places at which one path is looked at.
 const MOST_STEPS: f64 = 100_000.0;
 
@@ -76,7 +79,7 @@ pub(crate) fn at_border<const D: usize>(
     }
     let part = |(a, b): (f64, f64)| Drawn { path: measured.part(a, b), ..stroke.clone() };
     // What the border leaves of a stroke is more than a dot.
-    let least = (0.5 * width * stroke.scale).max(1e-3 * unit);
+    let least = (SCRAP * width * stroke.scale).max(1e-3 * unit);
     spans.into_iter().filter(|(a, b)| b - a > least).map(part).filter(|d| !d.path.is_empty()).collect()
 }
 

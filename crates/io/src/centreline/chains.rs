@@ -62,6 +62,9 @@ fn partners(graph: &Graph, tracks: &[Track], width: f64) -> Vec<Option<usize>> {
 /// Direction from an end of a track into it.
 fn outward(track: &Track, from_end: bool, width: f64) -> Vector<2> {
     let n = track.stations.len();
+    if n < 2 {
+        return Vector::xy(0.0, 0.0);
+    }
     let at = |k: usize| track.stations[if from_end { n - 1 - k } else { k }].at;
     let far = (1..n).find(|&k| (at(k) - at(0)).norm() >= LEVER * width).unwrap_or(n - 1);
     let d = at(far) - at(0);

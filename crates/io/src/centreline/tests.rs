@@ -125,3 +125,13 @@ fn most_corners_of_a_zigzag_are_sharp() {
         assert!((6..=8).contains(&segments), "turned {turn}: {segments}");
     }
 }
+
+#[test]
+fn fewer_than_two_points_have_no_path() {
+    let point = (Vector::xy(1.0, 1.0), true);
+    for closed in [false, true] {
+        assert!(super::fit::fitted(&[], closed, 1.0).is_empty());
+        assert!(super::fit::fitted(&[point], closed, 1.0).is_empty());
+        assert!(!super::fit::fitted(&[point, (Vector::xy(5.0, 1.0), true)], closed, 1.0).is_empty());
+    }
+}

@@ -25,6 +25,9 @@ const FACING: f64 = 0.9;
 /// What a false end is taken on to lies ahead of it: cosine of 70 degrees.
 const AHEAD: f64 = 0.34;
 
+/// Edges that end within this many sampling distances of one another want the same sample.
+const SAME_PLACE: f64 = 0.5;
+
 /// Cost of a joint that makes a new junction, in sampling distances.
 const NEW_JUNCTION: f64 = 0.6;
 
@@ -36,7 +39,7 @@ pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> u
     let level = state.level;
     let Some(net) = &level.net else { return 0 };
     let loose = Loose::of(net);
-    let mut changed = 0;
+    let mut changed = restore(state, net);
     for _ in 0..3 {
         let ends = false_ends(state, net, votes, &loose);
         let joined = join(state, net, votes, &ends);
@@ -134,6 +137,71 @@ fn bridge<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes,
         }
     }
     joined
+}
+
+/// Puts back samples that several strokes reach for: where the missing edges of three or more samples end at one place, or
+/// two run into each other, and nothing is there.
+fn restore<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
+    let wanted = |arm: &OpenArm<D>| state.domain().contains(arm.place) && !state.extent.is_blocked(arm.place, 0.0);
+    let open: Vec<OpenArm<D>> = state.living.iter().flat_map(|&s| open_arms(state, net, s)).filter(wanted).collect();
+    let unit = net.spacing * state.extent.smallest_spacing_scale;
+    let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
+    let index = GridIndex::new(&places, unit, state.domain());
+    let mut used = vec![false; open.len()];
+    let mut restored = 0;
+    for i in 0..open.len() {
+        let mut group: Vec<usize> = Vec::new();
+        index.within(places[i], SAME_PLACE * unit, |j, _| {
+            let is_new = group.iter().all(|&g: &usize| open[g].sample != open[j].sample);
+            let alike = net.nodes[open[i].node as usize].shares_style(&net.nodes[open[j].node as usize]);
+            if !used[j] && is_new && alike {
+                group.push(j);
+            }
+        });
+        group.sort_unstable();
+        let shift = group.iter().fold(Vector::ZERO, |sum, &j| sum + state.domain().offset(places[i], places[j]));
+        let place = state.domain().wrap(places[i] + shift * (1.0 / group.len().max(1) as f64));
+        let asked = group.len() >= 3 || is_gap(state, &open, &group);
+        if used[i] || !asked || is_taken(state, net, open[i].node, place) {
+            continue;
+        }
+        // The node with as many edges as there are strokes reaching for it.
+        let misfit = |j: usize| net.degree(open[j].node).abs_diff(group.len());
+        let Some(node) = group.iter().copied().min_by_key(|&j| (misfit(j), j)).map(|j| open[j].node) else { continue };
+        let sample = state.samples.len() as u32;
+        let item = Item { source: state.level.base + node, position: place, frozen: None };
+        state.push(item, Matrix::identity());
+        for j in group {
+            used[j] = true;
+            state.links[sample as usize].push(open[j].sample);
+            state.links[open[j].sample as usize].push(sample);
+        }
+        restored += 1;
+    }
+    if restored > 0 {
+        state.reindex();
+    }
+    restored
+}
+
+/// Whether two edges run into each other from opposite sides.
+fn is_gap<const D: usize>(state: &State<'_, D>, open: &[OpenArm<D>], group: &[usize]) -> bool {
+    let way = |j: usize| {
+        let arm = &open[j];
+        direction(state.domain().offset(state.samples[arm.sample as usize].position, arm.place))
+    };
+    matches!(group, [i, j] if way(*i).dot(way(*j)) < -FACING)
+}
+
+/// Whether something that could be `node` lies at `place` already.
+fn is_taken<const D: usize>(state: &State<'_, D>, net: &Net<D>, node: u32, place: Vector<D>) -> bool {
+    let mut taken = false;
+    let room = SAME_PLACE * net.spacing * state.request.fields.frame(place).spacing_scale;
+    state.index.within(place, room, |slot, _| {
+        let other = state.node(state.living[slot]);
+        taken |= other.is_some_and(|e| net.nodes[e as usize].shares_style(&net.nodes[node as usize]));
+    });
+    taken
 }
 
 /// Number of edges that a sample should have.

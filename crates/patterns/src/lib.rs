@@ -1,4 +1,4 @@
-//! Sample-graph synthesis of discrete elements: one engine, whose presets are [Ma 2011] and [Tu 2020].
+//! Sample-graph synthesis of discrete elements and continuous curves: one engine, whose presets are [Ma 2011] and [Tu 2020].
 //!
 //! Elements of an exemplar become samples; output samples are matched with exemplar samples by their neighbourhoods, and the matches say
 //! where every element belongs, which one it is, and whether it should be there. Coarse levels settle the arrangement, fine ones the poses.
@@ -11,6 +11,7 @@
 //! | assign positions | `positions`, `solver` | [Ma 2011 eqs 3, 4], [Tu 2020 eqs 14, 15] |
 //! | assign attributes | `attributes`, `features` | [Ma 2011 eq. 5] |
 //! | assign existence | `existence`, `targets` | [Tu 2020 §4.3.4, appendix A] |
+//! | sample curves, assign edges and tangents, draw strokes | `curves` | [Tu 2020 §4.1.1, §4.3.4, §4.4.2] |
 //! | place | `finish`, `clearance`, `deform` | [Ma 2011 §3.1], [Schaefer 2006] |
 //!
 //! | symbol | identifier |
@@ -21,12 +22,13 @@
 //! | q(s) | `Feature` |
 //! | c(s_o) | `existence::confidences` |
 //! | r | `Level::radius` |
+//! | E(s), o(s) | `State::links`, `Star`; `State::tangents` |
 //!
 //! Where it departs from the papers, each departure measured to be better and switchable by [`Params`]: patches are laid out in register with what
 //! is there and prefer not to go on copying; missing elements cost as much as surplus ones; numbers of elements are kept near those of the exemplar; holes larger
 //! than any in the exemplar are laid out anew; overlaps are mended on the real outlines.
 //!
-//! Not handled: curves; interleaved physics; elements outside two and three dimensions.
+//! Not handled: interleaved physics; anything outside two and three dimensions.
 
 mod assignment;
 mod attributes;

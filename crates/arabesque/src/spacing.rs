@@ -12,7 +12,8 @@ pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
     }
     let size = exemplar.window.size().norm();
     let length: f64 = exemplar.curves.iter().map(|c| length(&c.path, 1e-3 * size)).sum();
-    let of_curves = (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0)).min(size);
+    let of_curves =
+        (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0)).min(size);
     if exemplar.elements.is_empty() { of_curves } else { of_elements.min(of_curves) }
 }
 

@@ -449,7 +449,8 @@ mod tests {
             drawn(Path { closed: true, ..Path::polyline(&[bent[0], bent[1], bent[2], bent[0]]) }, 1),
         ];
         let frame = Bounds::new(Vector::ZERO, Vector::splat(2.0));
-        let sheet = Sheet { frame, tolerance: 1e-3, recipe: Some("seed = 1\nbox = \"2x2x2\"\n[a]\nx = '''\n# y\n'''\n") };
+        let sheet =
+            Sheet { frame, tolerance: 1e-3, recipe: Some("seed = 1\nbox = \"2x2x2\"\n[a]\nx = '''\n# y\n'''\n") };
         let text = write_curves(&exemplar, &curves, &sheet);
         assert_eq!(recipe_of(&text).as_deref(), sheet.recipe);
         let net = read(&text).unwrap();

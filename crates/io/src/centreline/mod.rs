@@ -1,10 +1,10 @@
 //! Centre lines of filled outlines that are strokes of constant width in truth: networks, closed rings and lines that a drawing program
 //! has turned into outlines.
 //!
-//! The outline is drawn as pixels, thinned to lines of one pixel and traced to a graph of nodes and lines ([`graph`]). What thinning
+//! The outline is drawn as pixels, thinned to lines of one pixel and traced to a graph of nodes and lines (`graph`). What thinning
 //! leaves of caps and corners is pruned, junctions that are one are merged. Then the pixels have done their work: places along the lines
-//! move to the middle between the borders of the true outline ([`stations`]), nodes to where their lines meet ([`nodes`]), corners to
-//! where the lines before and after them cross ([`corners`]). Smooth cubics and exactly straight segments are laid through ([`fit`]).
+//! move to the middle between the borders of the true outline (`stations`), nodes to where their lines meet (`nodes`), corners to
+//! where the lines before and after them cross (`corners`). Smooth cubics and exactly straight segments are laid through (`fit`).
 //! A shape is refused when its width is not constant or when strokes along the lines would not cover it.
 
 mod border;

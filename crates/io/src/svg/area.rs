@@ -122,7 +122,7 @@ fn shape(inker: &Inker<'_, '_>, place: &str, nodes: &[(Affine, Rc<Node>)], frame
             open.push(border.name.as_str());
             continue;
         }
-        let area = flatten::filled(&border.path, Affine::IDENTITY, border.rule);
+        let area = flatten::filled_finely(&border.path, border.rule);
         let area = border.clip.as_ref().map_or_else(|| area.clone(), |clip| area.intersection(clip));
         areas.push(area);
     }

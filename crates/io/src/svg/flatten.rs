@@ -6,6 +6,9 @@ use kurbo::{Affine, BezPath, PathEl};
 /// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
 pub(super) const DEVIATION: f64 = 0.002;
 
+/// How much finer the border of a domain is flattened.
+const FINE: f64 = 0.04;
+
 /// Smallest deviation that is asked for, in user units: less would only count digits.
 pub(super) const FINEST: f64 = 1e-10;
 
@@ -76,6 +79,13 @@ fn is_convex(ring: &[Vector<2>]) -> bool {
     n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
 }
 
+/// The area of a domain, whose border is drawn as it is and must not show its edges.
+pub(super) fn filled_finely(path: &BezPath, rule: FillRule) -> Outline<2> {
+    let fine = |elements: &[PathEl]| flattened_to(elements, FINE * DEVIATION);
+    let rings: Vec<_> = path.subpaths().map(fine).filter(|ring| ring.len() >= 3).collect();
+    covered(&rings, rule)
+}
+
 /// The subpaths of a path as polygons, as fine as their size deserves.
 pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
     path.subpaths().map(flattened).filter(|ring| ring.len() >= 3).collect()
@@ -83,9 +93,14 @@ pub(super) fn rings(path: &BezPath) -> Vec<Ring<2>> {
 
 /// A subpath as polyline; a closing point that repeats the first is dropped.
 pub(super) fn flattened(elements: &[PathEl]) -> Ring<2> {
+    flattened_to(elements, DEVIATION)
+}
+
+/// The same with another share of the diagonal.
+fn flattened_to(elements: &[PathEl], share: f64) -> Ring<2> {
     let mut points: Ring<2> = Vec::new();
     let extent = control_box(elements);
-    let tolerance = (DEVIATION * extent.width().hypot(extent.height())).max(FINEST);
+    let tolerance = (share * extent.width().hypot(extent.height())).max(FINEST);
     kurbo::flatten(elements.iter().copied(), tolerance, |element| {
         if let PathEl::MoveTo(p) | PathEl::LineTo(p) = element {
             let p = Vector::xy(p.x, p.y);

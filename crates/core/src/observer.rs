@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::{Drawn, Placement};
+use crate::{Drawn, Patch, Placement};
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,11 +30,13 @@ pub struct Preview<const D: usize> {
     pub placements: Vec<Placement<D>>,
     /// Strokes.
     pub curves: Vec<Drawn<D>>,
+    /// Pieces of pictures.
+    pub patches: Vec<Patch<D>>,
 }
 
 impl<const D: usize> Default for Preview<D> {
     fn default() -> Self {
-        Self { placements: Vec::new(), curves: Vec::new() }
+        Self { placements: Vec::new(), curves: Vec::new(), patches: Vec::new() }
     }
 }
 

@@ -124,7 +124,7 @@ impl<const D: usize> Run<'_, D> {
         for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
             placement.control.clone_from(control);
         }
-        Preview { placements, curves: done.curves.clone() }
+        Preview { placements, curves: done.curves.clone(), ..Preview::default() }
     }
 
     fn laid_out(&self, elements: usize, share: f64) -> Progress {
@@ -183,7 +183,7 @@ impl<const D: usize> Run<'_, D> {
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
         let placements = finish::placements(&items, self.request, stand.extent, stand.setting.level.base);
         let state = self.state(stand, &Draft { items, links: Vec::new() });
-        Preview { placements, curves: self.strokes(state) }
+        Preview { placements, curves: self.strokes(state), ..Preview::default() }
     }
 
     fn state<'s>(&'s self, stand: &Stand<'s, D>, draft: &Draft<D>) -> State<'s, D> {
@@ -316,7 +316,7 @@ impl<const D: usize> Run<'_, D> {
         for (placement, control) in placements.iter_mut().zip(finish::bends(state).into_iter().flatten()) {
             placement.control = control;
         }
-        Preview { placements, curves: self.strokes(state.clone()) }
+        Preview { placements, curves: self.strokes(state.clone()), ..Preview::default() }
     }
 }
 

@@ -1,0 +1,250 @@
+//! The ribbon around a curve, cut into pieces [Zhou 2013 §1.1, §1.3].
+
+use arabesque_core::{Bounds, Error, Measured, Path, Result, Vector};
+
+use crate::params::Params;
+
+/// Most pieces of one curve.
+pub const PIECES: usize = 20_000;
+
+/// Coordinates of forms are multiples of this many exemplar pixels, so that equal pieces are found equal.
+const GRAIN: f64 = 1.0 / 1024.0;
+
+/// An edge between two pieces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rung<const D: usize> {
+    pub(crate) top: Vector<D>,
+    pub(crate) bottom: Vector<D>,
+}
+
+impl<const D: usize> Rung<D> {
+    /// Where the curve passes.
+    pub(crate) fn centre(&self) -> Vector<D> {
+        (self.top + self.bottom) * 0.5
+    }
+
+    /// From top to bottom, as a unit vector.
+    pub(crate) fn down(&self) -> Vector<D> {
+        (self.bottom - self.top) * (1.0 / (self.bottom - self.top).norm())
+    }
+}
+
+/// A piece as it lies in the exemplar, in exemplar pixels from its top left corner: its left edge vertical, its right edge tilted by
+/// the turn of the curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Form {
+    /// Length of the left edge.
+    pub(crate) left: f64,
+    /// Top right corner.
+    pub(crate) top: Vector<2>,
+    /// Bottom right corner.
+    pub(crate) bottom: Vector<2>,
+}
+
+impl Form {
+    pub(crate) fn new(left: f64, top: Vector<2>, bottom: Vector<2>) -> Self {
+        let rounded = |c: f64| (c / GRAIN).round() * GRAIN;
+        Self { left: rounded(left), top: top.map(rounded), bottom: bottom.map(rounded) }
+    }
+
+    /// Samples of the left edge, C in the paper.
+    pub(crate) fn rows(&self) -> usize {
+        (self.left - GRAIN).ceil().max(1.0) as usize
+    }
+
+    /// Shares of the left and the right edge, from top to bottom, that bound the piece: less than all of them where the edges cross.
+    /// `None` where nothing is left.
+    pub(crate) fn unfolded(&self) -> Option<[(f64, f64); 2]> {
+        let (top, bottom) = (self.top[0], self.bottom[0]);
+        if top >= 0.0 && bottom >= 0.0 {
+            return Some([(0.0, 1.0); 2]);
+        }
+        if top < 0.0 && bottom < 0.0 {
+            return None;
+        }
+        let right = top / (top - bottom);
+        let left = (self.top[1] + right * (self.bottom[1] - self.top[1])) / self.left;
+        Some(if bottom < 0.0 { [(0.0, left), (0.0, right)] } else { [(left, 1.0), (right, 1.0)] })
+    }
+
+    /// How far inside the piece `p` lies, in pixels; negative outside.
+    pub(crate) fn depth(&self, p: Vector<2>) -> f64 {
+        let side = |from: Vector<2>, to: Vector<2>| (to - from).cross(p - from) / (to - from).norm().max(1e-12);
+        let mut depth = p[0].min(side(self.top, self.bottom));
+        if self.top[0] >= 0.0 {
+            depth = depth.min(side(Vector::ZERO, self.top));
+        }
+        if self.bottom[0] >= 0.0 {
+            depth = depth.min(-side(Vector::xy(0.0, self.left), self.bottom));
+        }
+        depth
+    }
+
+    /// Box around the piece.
+    pub(crate) fn bounds(&self) -> Bounds<2> {
+        Bounds::around([Vector::ZERO, Vector::xy(0.0, self.left), self.top, self.bottom])
+    }
+}
+
+/// A ribbon cut into pieces.
+#[derive(Clone, Debug)]
+pub(crate) struct Cage<const D: usize> {
+    /// Edges in order: one more than pieces, the last one the first again where the curve is closed.
+    pub(crate) rungs: Vec<Rung<D>>,
+    /// The pieces.
+    pub(crate) forms: Vec<Form>,
+    /// Whether the curve is closed.
+    pub(crate) closed: bool,
+    /// Length of a piece along the curve, in user units.
+    pub(crate) step: f64,
+    /// User units an exemplar pixel.
+    pub(crate) scale: f64,
+}
+
+impl<const D: usize> Cage<D> {
+    /// Number of pieces.
+    pub(crate) fn len(&self) -> usize {
+        self.forms.len()
+    }
+}
+
+impl Cage<2> {
+    /// Cuts the ribbon around `path` for an exemplar that is `height` pixels high. `scale` is in user units a pixel.
+    pub(crate) fn along(path: &Path<2>, params: &Params, height: f64, scale: f64, place: &str) -> Result<Self> {
+        let (line, n) = measured(path, params, height * params.scale, place)?;
+        let step = line.length() / n as f64;
+        let mut down = Vector::xy(0.0, 1.0);
+        let rungs: Vec<_> = (0..=n)
+            .map(|k| {
+                let arc = if k == n && line.is_closed() { 0.0 } else { k as f64 * step };
+                let along = line.point(arc + 0.5 * step) - line.point(arc - 0.5 * step);
+                if along.norm() > 1e-9 * step {
+                    down = Vector::xy(-along[1], along[0]) * (1.0 / along.norm());
+                }
+                let share = if line.is_closed() && k == n { 0.0 } else { k as f64 / n as f64 };
+                let half = down * (0.5 * params.width.at(share, height * params.scale));
+                let centre = line.point(arc);
+                Rung { top: centre - half, bottom: centre + half }
+            })
+            .collect();
+        let forms = rungs.windows(2).map(|w| form(&w[0], &w[1], scale)).collect();
+        Ok(Self { rungs, forms, closed: line.is_closed(), step, scale })
+    }
+
+    /// `p` in pixels from the top left corner of piece `k`.
+    pub(crate) fn local(&self, k: usize, p: Vector<2>) -> Vector<2> {
+        flat(&self.rungs[k], p, self.scale)
+    }
+
+    /// The point that lies at `q` pixels from the top left corner of piece `k`.
+    pub(crate) fn canvas(&self, k: usize, q: Vector<2>) -> Vector<2> {
+        let rung = &self.rungs[k];
+        let down = rung.down();
+        rung.top + (Vector::xy(down[1], -down[0]) * q[0] + down * q[1]) * self.scale
+    }
+
+    /// Distance of `p` from the curve where piece `k` lies.
+    pub(crate) fn distance(&self, k: usize, p: Vector<2>) -> f64 {
+        let (a, b) = (self.rungs[k].centre(), self.rungs[k + 1].centre());
+        let share = ((p - a).dot(b - a) / (b - a).norm2().max(1e-300)).clamp(0.0, 1.0);
+        (p - a - (b - a) * share).norm()
+    }
+
+    /// Box around piece `k` on the canvas.
+    pub(crate) fn bounds(&self, k: usize) -> Bounds<2> {
+        let (a, b) = (&self.rungs[k], &self.rungs[k + 1]);
+        Bounds::around([a.top, a.bottom, b.top, b.bottom])
+    }
+}
+
+/// The curve by arc length, and its number of pieces.
+pub(crate) fn measured<const D: usize>(
+    path: &Path<D>,
+    params: &Params,
+    height: f64,
+    place: &str,
+) -> Result<(Measured<D>, usize)> {
+    if path.cubics.iter().flatten().any(|p| !p.is_finite()) {
+        let advice = "give every point of the curve as a number";
+        return Err(Error::input(place, "a coordinate that is not a finite number", advice));
+    }
+    let step = params.step.unwrap_or(0.25 * height);
+    let line = Measured::new(path.clone(), 0.01 * step);
+    let length = line.length();
+    if length < 1e-3 * step {
+        let problem = format!("a curve of length {length:.3}, where a pattern is to be laid along it");
+        return Err(Error::input(place, problem, "draw a longer curve"));
+    }
+    let n = (length / step).round().max(if line.is_closed() { 3.0 } else { 1.0 });
+    if n > PIECES as f64 {
+        return Err(Error::Limit {
+            what: format!("{place}: pieces along the curve"),
+            found: n.to_string(),
+            limit: PIECES.to_string(),
+            advice: "use longer pieces (--step) or a larger --scale".into(),
+        });
+    }
+    Ok((line, n as usize))
+}
+
+/// M(p - T) / scale.
+fn flat(rung: &Rung<2>, p: Vector<2>, scale: f64) -> Vector<2> {
+    let down = rung.down();
+    let q = (p - rung.top) * (1.0 / scale);
+    Vector::xy(q.dot(Vector::xy(down[1], -down[0])), q.dot(down))
+}
+
+fn form(a: &Rung<2>, b: &Rung<2>, scale: f64) -> Form {
+    let left = (a.bottom - a.top).norm() / scale;
+    Form::new(left, flat(a, b.top, scale), flat(a, b.bottom, scale))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arabesque_core::straight;
+
+    fn cage(path: &Path<2>, step: f64) -> Cage<2> {
+        let params = Params { step: Some(step), ..Params::default() };
+        Cage::along(path, &params, 20.0, 1.0, "curve").unwrap()
+    }
+
+    #[test]
+    fn a_straight_ribbon_has_equal_rectangles() {
+        let cage = cage(&Path::polyline(&[Vector::xy(3.0, 50.0), Vector::xy(103.0, 50.0)]), 9.0);
+        assert_eq!(cage.len(), 11);
+        assert!(cage.forms.iter().all(|f| *f == cage.forms[0]));
+        assert_eq!((cage.forms[0].left, cage.forms[0].top[1], cage.forms[0].bottom[1]), (20.0, 0.0, 20.0));
+        assert!((cage.rungs[0].top - Vector::xy(3.0, 40.0)).norm() < 1e-9);
+        let p = Vector::xy(17.0, 43.0);
+        assert!((cage.canvas(1, cage.local(1, p)) - p).norm() < 1e-9);
+    }
+
+    #[test]
+    fn a_tight_bend_folds_on_its_inner_side() {
+        let corners = [Vector::xy(0.0, 0.0), Vector::xy(50.0, 0.0), Vector::xy(50.0, 50.0)];
+        let cage = cage(&Path::polyline(&corners), 5.0);
+        let folded: Vec<_> = cage.forms.iter().filter(|f| f.bottom[0] < 0.0).collect();
+        assert!(!folded.is_empty());
+        for form in folded {
+            let [(l0, l1), (r0, r1)] = form.unfolded().unwrap();
+            assert!(l0 == 0.0 && r0 == 0.0 && l1 < 1.0 && r1 < 1.0);
+        }
+    }
+
+    #[test]
+    fn a_closed_ribbon_ends_where_it_begins() {
+        let c = [(0.0, 0.0), (60.0, 0.0), (60.0, 60.0), (0.0, 60.0), (0.0, 0.0)].map(|(x, y)| Vector::xy(x, y));
+        let path = Path { cubics: c.windows(2).map(|w| straight(w[0], w[1])).collect(), closed: true };
+        let cage = cage(&path, 5.0);
+        assert_eq!(cage.rungs.len(), cage.len() + 1);
+        assert_eq!(cage.rungs[0], *cage.rungs.last().unwrap());
+    }
+
+    #[test]
+    fn curves_without_length_are_refused() {
+        let dot = Path { cubics: vec![straight(Vector::ZERO, Vector::ZERO)], closed: false };
+        let error = Cage::along(&dot, &Params::default(), 20.0, 1.0, "c.svg#a").unwrap_err();
+        assert!(error.to_string().starts_with("c.svg#a: a curve of length 0"), "{error}");
+    }
+}

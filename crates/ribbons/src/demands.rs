@@ -1,0 +1,124 @@
+//! Which part of which exemplar each piece may show: ends of the curve, transitions, a fixed first piece.
+
+use std::ops::Range;
+
+use arabesque_core::{Error, Result};
+
+use crate::{
+    cage::Cage,
+    engine::Request,
+    params::Params,
+    strip::Strip,
+    valid::{Demands, Offset},
+};
+
+/// Half of the length of a transition, in heights of the exemplar.
+const TRANSITION: f64 = 1.5;
+
+/// Everything that the demands on the pieces of one curve follow from.
+pub(crate) struct Plan<'a, const D: usize> {
+    pub(crate) strip: &'a Strip,
+    pub(crate) params: &'a Params,
+    pub(crate) request: &'a Request<D>,
+    pub(crate) cage: &'a Cage<D>,
+}
+
+impl<const D: usize> Plan<'_, D> {
+    /// What is asked of each piece, beside the pixels that must stay `free`.
+    pub(crate) fn demands(&self, free: Vec<Vec<Offset>>) -> Result<Vec<Demands>> {
+        let changes = self.changes()?;
+        let mut demands: Vec<Demands> = free
+            .into_iter()
+            .enumerate()
+            .map(|(k, forbidden)| Demands { columns: self.body(k, &changes), forbidden, ..Demands::default() })
+            .collect();
+        if !self.cage.closed {
+            self.start(&mut demands);
+            self.end(&mut demands);
+        }
+        self.first(&mut demands)?;
+        Ok(demands)
+    }
+
+    /// Length of a piece, in pixels of the search.
+    fn step(&self) -> f64 {
+        self.cage.step / self.cage.scale
+    }
+
+    /// Shares of the length at which one exemplar passes into the next.
+    fn changes(&self) -> Result<Vec<f64>> {
+        let (given, n) = (&self.request.changes, self.strip.spans.len());
+        if given.is_empty() {
+            return Ok((1..n).map(|k| k as f64 / n as f64).collect());
+        }
+        let rising = given.windows(2).all(|w| w[0] < w[1]) && given.iter().all(|c| (0.0..=1.0).contains(c));
+        if given.len() + 1 != n || !rising {
+            let expected = format!("{} rising numbers from 0 to 1, one between each exemplar and the next", n - 1);
+            return Err(Error::parameter("changes", format!("{given:?}"), expected));
+        }
+        Ok(given.clone())
+    }
+
+    /// Columns of the exemplars that are in use where piece `k` lies, without the parts for the ends.
+    fn body(&self, k: usize, changes: &[f64]) -> Vec<Range<usize>> {
+        let share = (k as f64 + 0.5) / self.cage.len() as f64;
+        let half = TRANSITION * self.strip.height as f64 / (self.step() * self.cage.len() as f64);
+        let used = |e: usize| {
+            let from = if e == 0 { f64::NEG_INFINITY } else { changes[e - 1] - half };
+            let to = changes.get(e).map_or(f64::INFINITY, |c| c + half);
+            // A closed curve passes from the last exemplar into the first around its start.
+            let wrapped = self.cage.closed && changes.len() > 0 && (share < half || share > 1.0 - half);
+            (from..=to).contains(&share) || (wrapped && (e == 0 || e == changes.len()))
+        };
+        (0..self.strip.spans.len()).filter(|&e| used(e)).map(|e| self.inner(e)).collect()
+    }
+
+    fn inner(&self, exemplar: usize) -> Range<usize> {
+        let span = &self.strip.spans[exemplar];
+        let from = self.strip.starts[exemplar].as_ref().map_or(span.start, |s| s.end);
+        let to = self.strip.ends[exemplar].as_ref().map_or(span.end, |e| e.start.saturating_sub(self.step().ceil() as usize));
+        from..to.max(from)
+    }
+
+    /// The pieces within the start show it from its beginning on.
+    fn start(&self, demands: &mut [Demands]) {
+        let Some(range) = self.strip.starts.first().cloned().flatten() else { return };
+        for (k, demand) in demands.iter_mut().enumerate() {
+            let done = k as f64 * self.step();
+            if done + 0.5 * self.step() >= range.len() as f64 {
+                break;
+            }
+            let x = range.start + done.round() as usize;
+            demand.columns = vec![x..x + 1];
+            demand.loose_left = k == 0;
+        }
+    }
+
+    /// The pieces within the end show it up to its last column.
+    fn end(&self, demands: &mut [Demands]) {
+        let Some(range) = self.strip.ends.last().cloned().flatten() else { return };
+        for (k, demand) in demands.iter_mut().rev().enumerate() {
+            let rest = (k + 1) as f64 * self.step();
+            if rest - 0.5 * self.step() >= range.len() as f64 {
+                break;
+            }
+            let x = (range.end - 1).saturating_sub(rest.ceil() as usize);
+            demand.columns = vec![x..x + 1];
+            demand.loose_right = k == 0;
+        }
+    }
+
+    fn first(&self, demands: &mut [Demands]) -> Result<()> {
+        let (Some((x, y)), Some(demand)) = (self.request.first, demands.first_mut()) else { return Ok(()) };
+        let coarse = self.params.coarse;
+        let (x, y) = (x / coarse, y.div_euclid(coarse as i64));
+        let (width, height) = (self.strip.width, self.strip.height as i64);
+        if x >= width || !(-height..height).contains(&y) {
+            let expected = format!("a column below {} and a row between {} and {}", width * coarse, -height, height);
+            return Err(Error::parameter("first", format!("{x},{y}"), expected));
+        }
+        demand.columns = vec![x..x + 1];
+        demand.row = Some(y as i16);
+        Ok(())
+    }
+}

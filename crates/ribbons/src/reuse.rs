@@ -1,0 +1,100 @@
+//! Against visible repetition: a penalty on showing a part again soon, and a random taste that differs from piece to piece.
+//!
+//! The paper names repetition as its limit [Zhou 2013 §4]. Every path remembers the columns that it showed within the window; a
+//! position that shows one of them again costs more. The taste is a random cost for each piece and part of the exemplar, so that the
+//! pattern does not run through the exemplar from left to right again and again.
+
+use arabesque_core::{Stage, Stream};
+
+use crate::{cage::Form, params::Params};
+
+/// Most pieces that a path remembers.
+const MEMORY: usize = 48;
+
+/// Cost of one row of pixels that is shown again at full strength, in 8-bit colour steps.
+const REPEATED: f64 = 24.0;
+/// Largest random cost of one row of pixels, in 8-bit colour steps.
+const TASTE: f64 = 8.0;
+
+/// Left edges of the last pieces, latest first; `u16::MAX` before the first piece.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Trail([u16; MEMORY]);
+
+impl Default for Trail {
+    fn default() -> Self {
+        Self([u16::MAX; MEMORY])
+    }
+}
+
+impl Trail {
+    /// The trail with one piece more.
+    pub(crate) fn followed_by(&self, x: u16) -> Self {
+        let mut columns = self.0;
+        columns.copy_within(..MEMORY - 1, 1);
+        columns[0] = x;
+        Self(columns)
+    }
+}
+
+/// The costs that do not come from pixels.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reuse {
+    /// Length of a piece, in pixels.
+    step: f64,
+    /// Pieces in the window.
+    window: usize,
+    /// Cost of a piece that is shown again.
+    repeated: f64,
+    /// Random costs: for each piece, one for each part of the strip.
+    taste: Vec<f32>,
+    parts: usize,
+    part: f64,
+}
+
+impl Reuse {
+    /// For a curve of `pieces` pieces like `form`, and a strip of `width` pixels whose longest exemplar has `length` of them.
+    pub(crate) fn new(params: &Params, seed: u64, pieces: usize, form: &Form, size: (usize, usize)) -> Self {
+        let (width, length) = size;
+        let step = (0.5 * (form.top[0] + form.bottom[0])).abs().max(1.0);
+        let rows = form.rows() as f64;
+        let window = ((params.window * length as f64 / step).ceil() as usize).min(MEMORY);
+        // Parts as long as four pieces: a taste for one is felt until the next is due.
+        let part = 4.0 * step;
+        let parts = (width as f64 / part).ceil() as usize + 1;
+        let most = (params.variety * TASTE * rows) as f32;
+        let mut taste = Vec::new();
+        if most > 0.0 {
+            for piece in 0..pieces.div_ceil(4) + 1 {
+                let mut stream = Stream::new(seed, Stage::Initialise, piece as u64);
+                taste.extend((0..parts).map(|_| most * stream.unit() as f32));
+            }
+        }
+        Self { step, window, repeated: params.repetition * REPEATED * rows, taste, parts, part }
+    }
+
+    /// What column `x` costs after `trail`.
+    pub(crate) fn repetition(&self, trail: &Trail, x: u16) -> f64 {
+        if self.repeated == 0.0 {
+            return 0.0;
+        }
+        let shown = trail.0[..self.window].iter().take_while(|&&c| c != u16::MAX);
+        let overlap = |&c: &u16| (1.0 - f64::from(c.abs_diff(x)) / self.step).max(0.0);
+        self.repeated * shown.map(overlap).sum::<f64>()
+    }
+
+    /// What column `x` costs in piece `piece`.
+    pub(crate) fn taste(&self, piece: usize, x: u16) -> f64 {
+        if self.taste.is_empty() {
+            return 0.0;
+        }
+        let part = (f64::from(x) / self.part) as usize;
+        self.taste.get(piece / 4 * self.parts + part).map_or(0.0, |&cost| f64::from(cost))
+    }
+}
+
+impl Reuse {
+    /// The same without the penalty on re-use.
+    pub(crate) fn without_repetition(&self) -> Self {
+        Self { repeated: 0.0, ..self.clone() }
+    }
+}

@@ -1,0 +1,272 @@
+//! The whole dynamic programme along one curve, open or closed [Zhou 2013 §1.4, §1.5].
+
+use std::sync::Arc;
+
+use arabesque_core::{Error, Result};
+
+use crate::{
+    cage::Form,
+    columns::Columns,
+    params::{Closing, Params, Search},
+    reuse::{Reuse, Trail},
+    row::{NONE, Row, Step},
+    strip::Strip,
+    valid::{Demands, Grade, Position, positions},
+};
+
+/// One curve, ready to be searched.
+#[derive(Debug)]
+pub(crate) struct Course<'a> {
+    pub(crate) strip: &'a Strip,
+    pub(crate) params: &'a Params,
+    /// The pieces.
+    pub(crate) forms: &'a [Form],
+    /// What is asked of each.
+    pub(crate) demands: &'a [Demands],
+    pub(crate) closed: bool,
+    pub(crate) reuse: Reuse,
+    /// What errors call the curve, and where on the canvas each piece is.
+    pub(crate) name: &'a str,
+    pub(crate) places: &'a [String],
+}
+
+/// A row, with what it was computed from, so that a later run can tell whether it still holds.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    form: Form,
+    demands: Demands,
+    grade: Grade,
+    row: Arc<Row>,
+}
+
+/// The best way along a curve, or along as much of it as was reached.
+#[derive(Clone, Debug)]
+pub(crate) struct Solution {
+    /// A position for each piece.
+    pub(crate) positions: Vec<Position>,
+    /// Ω plus what re-use and variety add.
+    pub(crate) cost: f64,
+    /// Pieces at which a rule had to be broken.
+    pub(crate) forced: Vec<(usize, Grade)>,
+    /// The rows, for another run.
+    pub(crate) kept: Vec<Kept>,
+    /// Rows that were taken over from the run before.
+    pub(crate) resumed: usize,
+    /// Whether it was stopped early.
+    pub(crate) stopped: bool,
+}
+
+/// Told after each row: the number of rows done and, on demand, the best positions so far. Answers whether to go on.
+pub(crate) type Watch<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Vec<Position>) -> bool + 'a;
+
+impl Course<'_> {
+    /// Rows of the table: one a piece, and on a closed curve the first piece once more.
+    fn rows(&self) -> usize {
+        self.forms.len() + usize::from(self.closed)
+    }
+
+    /// The piece that row `k` is about.
+    fn piece(&self, k: usize) -> usize {
+        k % self.forms.len()
+    }
+
+    /// Valid positions of a piece by the strictest grade that has any.
+    fn valid(&self, piece: usize) -> Result<(Grade, Vec<Position>)> {
+        let grades = if self.params.relax { &Grade::ALL[..] } else { &Grade::ALL[..1] };
+        for &grade in grades {
+            let found = positions(self.strip, &self.forms[piece], &self.demands[piece], grade);
+            if !found.is_empty() {
+                return Ok((grade, found));
+            }
+        }
+        Err(self.nowhere(piece))
+    }
+
+    /// Why no position is valid, and what to do about it.
+    fn nowhere(&self, piece: usize) -> Error {
+        let (form, demands) = (&self.forms[piece], &self.demands[piece]);
+        let fits = |grade| !positions(self.strip, form, demands, grade).is_empty();
+        let reason = if form.unfolded().is_none() {
+            "the curve turns back on itself within one piece"
+        } else if fits(Grade::Forbidden) {
+            "every way through it puts the pattern on a place to avoid or on a fold of the ribbon"
+        } else if fits(Grade::Cut) {
+            "the ribbon is too narrow for the pattern, or too tightly bent"
+        } else if fits(Grade::Any) {
+            "the pattern has gaps as long as the piece"
+        } else {
+            "the piece is longer than the part of the exemplar that it may show"
+        };
+        let n = self.forms.len();
+        let problem = format!("{}: piece {} of {n}, at {}, has no valid position: {reason}", self.name, piece + 1, self.places[piece]);
+        let advice = match () {
+            () if fits(Grade::Forbidden) => "avoid less, bend the curve less, or let the pattern be cut there with --relax",
+            () if fits(Grade::Cut) => "change --width or --scale, or let the pattern be cut there with --relax",
+            () => "use shorter pieces (--step), bend the curve less, or let the pattern be cut there with --relax",
+        };
+        Error::no_result(problem, advice)
+    }
+
+    /// The best way. Rows of `before` that would come out the same are taken over.
+    pub(crate) fn solve(&self, before: &[Kept], watch: &mut Watch<'_>) -> Result<Solution> {
+        let mut table = Table { course: self, kept: Vec::new(), trails: Vec::new(), resumed: 0 };
+        let mut stopped = false;
+        for k in 0..self.rows() {
+            table.advance(before.get(k))?;
+            let row = &table.kept[k].row;
+            let energy = row.cost[row.best()] / (k + 1) as f64;
+            if !watch((k + 1).min(self.forms.len()), energy, &|| table.path(table.kept[k].row.best())) {
+                stopped = k + 1 < self.rows();
+                break;
+            }
+        }
+        if stopped || !self.closed {
+            return Ok(table.finish(stopped));
+        }
+        self.close(table)
+    }
+
+    /// The best cycle [Zhou 2013 §1.5].
+    fn close(&self, table: Table<'_>) -> Result<Solution> {
+        let Some(last) = table.kept.last().map(|k| Arc::clone(&k.row)) else { return Ok(table.finish(false)) };
+        let cycle = (0..last.cost.len()).filter(|&u| last.start[u] == u as u32);
+        let mut best = cycle.min_by(|&a, &b| last.cost[a].total_cmp(&last.cost[b])).map(|u| (last.cost[u], table.path(u)));
+        let bounds = self.bounds_of_cycles(&last)?;
+        let mut starts: Vec<usize> = (0..last.cost.len()).collect();
+        starts.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
+        for start in starts {
+            let hopeless = best.as_ref().is_some_and(|(cost, _)| bounds[start] >= *cost);
+            if hopeless || (self.params.closing == Closing::Quick && best.is_some()) {
+                break;
+            }
+            let (cost, path) = self.from_start(&table, start)?;
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, path));
+            }
+        }
+        let Some((cost, mut path)) = best else { return Ok(table.finish(false)) };
+        path.truncate(self.forms.len());
+        let mut solution = table.finish(false);
+        (solution.cost, solution.positions) = (cost, path);
+        Ok(solution)
+    }
+
+    /// For each position of the terminal piece, a cost that no cycle through it falls below.
+    fn bounds_of_cycles(&self, last: &Row) -> Result<Vec<f64>> {
+        if self.params.closing == Closing::Quick || self.params.repetition == 0.0 {
+            return Ok(last.cost.clone());
+        }
+        // Re-use depends on the path behind, so that P bounds nothing; without it, P does.
+        let params = Params { repetition: 0.0, ..self.params.clone() };
+        let free = Course { params: &params, reuse: self.reuse.without_repetition(), places: self.places, demands: self.demands, ..*self };
+        let mut table = Table { course: &free, kept: Vec::new(), trails: Vec::new(), resumed: 0 };
+        for _ in 0..self.rows() {
+            table.advance(None)?;
+        }
+        Ok(table.kept.last().map_or_else(Vec::new, |k| k.row.cost.clone()))
+    }
+
+    /// The best cycle through position `start` of the first piece.
+    fn from_start(&self, table: &Table<'_>, start: usize) -> Result<(f64, Vec<Position>)> {
+        let first = &table.kept[0];
+        let only = Arc::new(vec![first.row.positions[start]]);
+        let row = Row::first(only, &self.reuse);
+        let trails = row.positions.iter().map(|p| Trail::default().followed_by(p.x)).collect();
+        let kept = Kept { row: Arc::new(row), demands: first.demands.clone(), ..*first };
+        let mut again = Table { course: self, kept: vec![kept], trails, resumed: 0 };
+        for _ in 1..self.rows() {
+            again.advance(None)?;
+        }
+        let last = &again.kept[self.forms.len()].row;
+        Ok((last.cost[start], again.path(start)))
+    }
+}
+
+/// The rows so far.
+struct Table<'a> {
+    course: &'a Course<'a>,
+    kept: Vec<Kept>,
+    /// What the paths into the last row have shown.
+    trails: Vec<Trail>,
+    resumed: usize,
+}
+
+impl Table<'_> {
+    /// One row more; `before` is that row of an earlier run.
+    fn advance(&mut self, before: Option<&Kept>) -> Result<()> {
+        let course = self.course;
+        let k = self.kept.len();
+        let piece = course.piece(k);
+        let (form, demands) = (course.forms[piece], &course.demands[piece]);
+        let unchanged = self.resumed == k;
+        if let Some(kept) = before.filter(|b| unchanged && b.form == form && b.demands == *demands) {
+            self.follow(&kept.row);
+            self.kept.push(kept.clone());
+            self.resumed += 1;
+            return Ok(());
+        }
+        let (grade, valid) = course.valid(piece)?;
+        let positions = Arc::new(valid);
+        let row = match self.kept.last() {
+            None => Row::first(positions, &course.reuse),
+            Some(last) => self.next(last, piece, positions),
+        };
+        self.follow(&row);
+        self.kept.push(Kept { form, demands: demands.clone(), grade, row: Arc::new(row) });
+        Ok(())
+    }
+
+    fn next(&self, last: &Kept, piece: usize, positions: Arc<Vec<Position>>) -> Row {
+        let (strip, form) = (self.course.strip, &self.course.forms[piece]);
+        let (right, left) = rayon::join(
+            || Columns::right(strip, &last.form, form.rows(), &last.row.positions),
+            || Columns::left(strip, form, &positions),
+        );
+        let middle = (last.form.top + last.form.bottom) * 0.5;
+        let natural = (-middle[0].round() as i64, (0.5 * form.left - middle[1]).round() as i64);
+        // The terminal piece is the first one, whose taste is counted there.
+        let none = Reuse::default();
+        let reuse = if self.kept.len() < self.course.forms.len() { &self.course.reuse } else { &none };
+        let before = &*last.row;
+        let step = Step { before, trails: &self.trails, right: &right, positions, left: &left, natural, reuse, piece };
+        match self.course.params.search {
+            Search::Bounded => step.bounded(),
+            Search::Exhaustive => step.exhaustive(),
+        }
+    }
+
+    /// Brings the trails to `row`.
+    fn follow(&mut self, row: &Row) {
+        let trail = |(p, &from): (&Position, &u32)| {
+            if from == NONE { Trail::default().followed_by(p.x) } else { self.trails[from as usize].followed_by(p.x) }
+        };
+        self.trails = row.positions.iter().zip(&row.back).map(trail).collect();
+    }
+
+    /// The path that ends at position `end` of the last row.
+    fn path(&self, end: usize) -> Vec<Position> {
+        let mut at = end as u32;
+        let mut path: Vec<Position> = self
+            .kept
+            .iter()
+            .rev()
+            .map(|kept| {
+                let position = kept.row.positions[at as usize];
+                at = kept.row.back[at as usize];
+                position
+            })
+            .collect();
+        path.reverse();
+        path
+    }
+
+    fn finish(self, stopped: bool) -> Solution {
+        let end = self.kept.last().map_or(0, |k| k.row.best());
+        let cost = self.kept.last().map_or(0.0, |k| k.row.cost[end]);
+        let mut positions = self.path(end);
+        positions.truncate(self.course.forms.len());
+        let forced = self.kept.iter().take(self.course.forms.len()).enumerate();
+        let forced = forced.filter(|(_, k)| k.grade != Grade::Whole).map(|(k, kept)| (k, kept.grade)).collect();
+        Solution { positions, cost, forced, resumed: self.resumed, kept: self.kept, stopped }
+    }
+}

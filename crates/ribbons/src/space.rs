@@ -1,0 +1,92 @@
+//! Ribbons along curves in space.
+
+use arabesque_core::{Path, Result, Vector};
+
+use crate::{
+    cage::{Cage, Form, Rung, measured},
+    params::Params,
+};
+
+impl Cage<3> {
+    /// Cuts the ribbon around `path`. It lies flat on the ground as far as the curve allows and turns as little as it can on the way.
+    pub(crate) fn in_space(path: &Path<3>, params: &Params, height: f64, scale: f64, place: &str) -> Result<Self> {
+        let (line, n) = measured(path, params, height * params.scale, place)?;
+        let step = line.length() / n as f64;
+        let tangents: Vec<Vector<3>> = (0..=n)
+            .map(|k| {
+                let arc = if k == n && line.is_closed() { 0.0 } else { k as f64 * step };
+                line.point(arc + 0.5 * step) - line.point(arc - 0.5 * step)
+            })
+            .collect();
+        let downs = downs(&tangents, line.is_closed());
+        let rungs: Vec<_> = (0..=n)
+            .map(|k| {
+                let share = if line.is_closed() && k == n { 0.0 } else { k as f64 / n as f64 };
+                let half = downs[k] * (0.5 * params.width.at(share, height * params.scale));
+                let centre = line.point(share * line.length());
+                Rung { top: centre - half, bottom: centre + half }
+            })
+            .collect();
+        let forms = rungs.windows(2).map(|w| unrolled(&w[0], &w[1], scale)).collect();
+        Ok(Self { rungs, forms, closed: line.is_closed(), step, scale })
+    }
+}
+
+/// For each tangent the direction across the ribbon, carried along without twist; a closed ribbon spreads what is left over its length.
+fn downs(tangents: &[Vector<3>], closed: bool) -> Vec<Vector<3>> {
+    let mut down = first_down(tangents.iter().find(|t| t.norm() > 0.0).copied().unwrap_or(Vector([1.0, 0.0, 0.0])));
+    let mut carried = Vec::with_capacity(tangents.len());
+    for &tangent in tangents {
+        if let Some(t) = unit(tangent) {
+            down = unit(down - t * down.dot(t)).unwrap_or(down);
+        }
+        carried.push(down);
+    }
+    let (Some(&first), Some(&last), true) = (carried.first(), carried.last(), closed) else { return carried };
+    let axis = unit(tangents[0]).unwrap_or(Vector([1.0, 0.0, 0.0]));
+    let left = cross(last, first).dot(axis).atan2(last.dot(first));
+    let n = carried.len() as f64 - 1.0;
+    let turned = carried.iter().zip(tangents).enumerate().map(|(k, (&d, &t))| match unit(t) {
+        Some(t) => turn(d, t, left * k as f64 / n),
+        None => d,
+    });
+    let mut turned: Vec<_> = turned.collect();
+    if let Some(end) = turned.last_mut() {
+        *end = first;
+    }
+    turned
+}
+
+/// Across the ribbon and level with the ground (z is up); for a curve that begins upright, along x.
+fn first_down(tangent: Vector<3>) -> Vector<3> {
+    let level = cross(Vector([0.0, 0.0, 1.0]), tangent) * -1.0;
+    unit(level).unwrap_or(Vector([1.0, 0.0, 0.0]))
+}
+
+fn unit(v: Vector<3>) -> Option<Vector<3>> {
+    let norm = v.norm();
+    (norm > 1e-12).then(|| v * (1.0 / norm))
+}
+
+fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
+    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}
+
+/// `v`, which is square to the unit vector `axis`, turned about it.
+fn turn(v: Vector<3>, axis: Vector<3>, radians: f64) -> Vector<3> {
+    v * radians.cos() + cross(axis, v) * radians.sin()
+}
+
+/// The quadrilateral between two edges, laid flat: two triangles that keep the lengths of their sides.
+fn unrolled(a: &Rung<3>, b: &Rung<3>, scale: f64) -> Form {
+    let left = (a.bottom - a.top).norm();
+    let to = |p: Vector<3>| apex(left, (p - a.top).norm(), (p - a.bottom).norm());
+    let (top, bottom) = (to(b.top), to(b.bottom));
+    Form::new(left / scale, top * (1.0 / scale), bottom * (1.0 / scale))
+}
+
+/// The point right of a vertical edge from the origin down to `left` that is `near` from its top and `far` from its bottom.
+fn apex(left: f64, near: f64, far: f64) -> Vector<2> {
+    let y = (near * near - far * far + left * left) / (2.0 * left);
+    Vector::xy((near * near - y * y).max(0.0).sqrt(), y)
+}

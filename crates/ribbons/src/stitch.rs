@@ -1,0 +1,101 @@
+//! Bending the right side of a piece so that it meets the next one [Zhou 2013 §3.2].
+
+use crate::columns::{Columns, column_norm};
+
+/// P: cost of an opaque sample that is skipped, in 8-bit colour steps [Zhou 2013 eq. 3].
+const SKIPPED: f64 = 32.0;
+/// Farthest that a sample is moved, as a share of the edge.
+const FARTHEST: f64 = 0.2;
+
+/// For each sample of the edge, how many samples farther down its colour is taken from: T\[i\] - i.
+pub(crate) fn alignment(right: &[[f32; 4]], left: &[[f32; 4]]) -> Vec<f32> {
+    let n = left.len().min(right.len());
+    let table = table(right, left, n);
+    let (mut s, mut t) = (n - 1, n - 1);
+    let mut matched = vec![(0.0_f32, 0.0_f32); n];
+    loop {
+        matched[s].0 += t as f32;
+        matched[s].1 += 1.0;
+        match table[s * n + t].1 {
+            Move::Both => (s, t) = (s - 1, t - 1),
+            Move::Left => s -= 1,
+            Move::Right => t -= 1,
+            Move::None => break,
+        }
+    }
+    let most = (FARTHEST * n as f64) as f32;
+    let shifts: Vec<f32> = matched.iter().enumerate().map(|(s, m)| (m.0 / m.1 - s as f32).clamp(-most, most)).collect();
+    smoothed(&shifts)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Move {
+    None,
+    Both,
+    Left,
+    Right,
+}
+
+/// M\[s, t\] and the move that led there [Zhou 2013 eq. 2].
+fn table(right: &[[f32; 4]], left: &[[f32; 4]], n: usize) -> Vec<(f64, Move)> {
+    let mut table: Vec<(f64, Move)> = Vec::with_capacity(n * n);
+    for s in 0..n {
+        for t in 0..n {
+            let skip = if left[s][3] > 0.0 || right[t][3] > 0.0 { SKIPPED } else { 0.0 };
+            let here = f64::from(column_norm(left[s], right[t]));
+            let mut best = (f64::INFINITY, Move::None);
+            let mut offer = |cost: f64, step: Move| {
+                if cost < best.0 {
+                    best = (cost, step);
+                }
+            };
+            if s > 0 && t > 0 {
+                offer(table[(s - 1) * n + t - 1].0, Move::Both);
+            }
+            if s > 0 {
+                offer(table[(s - 1) * n + t].0 + skip, Move::Left);
+            }
+            if t > 0 {
+                offer(table[s * n + t - 1].0 + skip, Move::Right);
+            }
+            let (cost, step) = if s == 0 && t == 0 { (0.0, Move::None) } else { best };
+            table.push((cost + here, step));
+        }
+    }
+    table
+}
+
+/// Steps of whole samples, smoothed over five.
+fn smoothed(shifts: &[f32]) -> Vec<f32> {
+    let last = shifts.len() - 1;
+    let at = |k: usize, d: isize| shifts[k.saturating_add_signed(d).min(last)];
+    (0..shifts.len())
+        .map(|k| (at(k, -2) + 2.0 * at(k, -1) + 3.0 * at(k, 0) + 2.0 * at(k, 1) + at(k, 2)) / 9.0)
+        .collect()
+}
+
+/// The alignment of the single columns `right` and `left`.
+pub(crate) fn align(right: &Columns, left: &Columns) -> Vec<f32> {
+    alignment(right.get(0), left.get(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edge(dark: std::ops::Range<usize>) -> Vec<[f32; 4]> {
+        (0..40).map(|k| if dark.contains(&k) { [20.0, 20.0, 20.0, 255.0] } else { [0.0; 4] }).collect()
+    }
+
+    #[test]
+    fn equal_edges_are_left_alone() {
+        assert!(alignment(&edge(10..20), &edge(10..20)).iter().all(|&s| s == 0.0));
+    }
+
+    #[test]
+    fn a_bar_is_moved_to_where_it_goes_on() {
+        let shifts = alignment(&edge(13..23), &edge(10..20));
+        assert!((shifts[15] - 3.0).abs() < 0.6, "{shifts:?}");
+        assert!(shifts[39] == 0.0, "{shifts:?}");
+    }
+}

@@ -1,0 +1,179 @@
+//! Exemplars as the search sees them: premultiplied pixels of all exemplars side by side.
+
+use std::ops::Range;
+
+use arabesque_core::{Error, Image, Result, Vector};
+
+use crate::bits::Bits;
+
+/// Alpha in [0, 255] from which a pixel counts as ink that must not be cut.
+const CUT_INK: f32 = 26.0;
+/// Alpha in [0, 255] from which a pixel counts as ink that must not fall on a forbidden place.
+const ANY_INK: f32 = 1.0;
+
+/// Most pixels of all exemplars together that are searched: rows take time with the square of it.
+pub const PIXELS: usize = 250_000;
+
+/// One exemplar: a picture whose pattern runs from left to right, and the parts of it that are kept for the ends of the curve.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Exemplar {
+    /// The picture.
+    pub image: Image,
+    /// Columns that begin an open curve, and are used nowhere else.
+    pub start: Option<Range<usize>>,
+    /// Columns that end an open curve, and are used nowhere else.
+    pub end: Option<Range<usize>>,
+}
+
+impl Exemplar {
+    /// An exemplar without ends.
+    pub fn new(image: Image) -> Self {
+        Self { image, start: None, end: None }
+    }
+}
+
+/// The exemplars side by side; x counts through all of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Strip {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    /// Premultiplied red, green, blue, then alpha, in [0, 255].
+    pixels: Vec<[f32; 4]>,
+    /// Columns of each exemplar.
+    pub(crate) spans: Vec<Range<usize>>,
+    /// Empty rows above each exemplar.
+    pub(crate) above: Vec<usize>,
+    /// Columns of the parts for the ends.
+    pub(crate) starts: Vec<Option<Range<usize>>>,
+    pub(crate) ends: Vec<Option<Range<usize>>>,
+    /// Where ink would be cut visibly.
+    pub(crate) ink: Bits,
+    /// Any ink at all, and two pixels around it.
+    pub(crate) trace: Bits,
+}
+
+impl Strip {
+    /// Joins `exemplars`, each averaged over squares of `coarse` pixels.
+    pub(crate) fn new(exemplars: &[Exemplar], coarse: usize) -> Self {
+        let small: Vec<(usize, usize)> =
+            exemplars.iter().map(|e| (e.image.width.div_ceil(coarse), e.image.height.div_ceil(coarse))).collect();
+        let width = small.iter().map(|s| s.0).sum();
+        let height = small.iter().map(|s| s.1).max().unwrap_or(0);
+        let mut pixels = vec![[0.0; 4]; width * height];
+        let (mut spans, mut above) = (Vec::new(), Vec::new());
+        let mut left = 0;
+        for (exemplar, &(w, h)) in exemplars.iter().zip(&small) {
+            // Lower exemplars lie in the middle, so that their patterns meet.
+            let offset = (height - h) / 2;
+            above.push(offset);
+            for y in 0..h {
+                for x in 0..w {
+                    pixels[(y + offset) * width + left + x] = average(&exemplar.image, x * coarse, y * coarse, coarse);
+                }
+            }
+            spans.push(left..left + w);
+            left += w;
+        }
+        let scaled = |range: &Option<Range<usize>>, span: &Range<usize>| {
+            range.as_ref().map(|r| span.start + r.start / coarse..(span.start + r.end.div_ceil(coarse)).min(span.end))
+        };
+        let pick = |of: fn(&Exemplar) -> &Option<Range<usize>>| {
+            exemplars.iter().zip(&spans).map(|(e, span)| scaled(of(e), span)).collect()
+        };
+        let (starts, ends) = (pick(|e| &e.start), pick(|e| &e.end));
+        let bits = |least: f32| Bits::from_fn(width, height, |x, y| pixels[y * width + x][3] >= least);
+        // Grown by what a sample reaches beside its place, and half a pixel of the canvas.
+        let (ink, trace) = (bits(CUT_INK), bits(ANY_INK).grown(2));
+        Self { width, height, above, spans, starts, ends, ink, trace, pixels }
+    }
+
+    /// Pixel in column `x` of row `y`; transparent above and below.
+    pub(crate) fn pixel(&self, x: usize, y: i64) -> [f32; 4] {
+        if y < 0 || y >= self.height as i64 { [0.0; 4] } else { self.pixels[y as usize * self.width + x] }
+    }
+
+    /// Bilinear sample at `p`, pixel centres at half-integers, within the columns of `span`.
+    pub(crate) fn sample(&self, p: Vector<2>, span: &Range<usize>) -> [f32; 4] {
+        let (x, y) = (p[0] - 0.5, p[1] - 0.5);
+        let (column, row) = (x.floor(), y.floor());
+        let (fx, fy) = ((x - column) as f32, (y - row) as f32);
+        let clamp = |c: f64| (c.max(span.start as f64) as usize).min(span.end - 1);
+        let (x0, x1, y0) = (clamp(column), clamp(column + 1.0), row as i64);
+        let (a, b) = (self.pixel(x0, y0), self.pixel(x1, y0));
+        let (c, d) = (self.pixel(x0, y0 + 1), self.pixel(x1, y0 + 1));
+        std::array::from_fn(|k| {
+            let (above, below) = (a[k] + (b[k] - a[k]) * fx, c[k] + (d[k] - c[k]) * fx);
+            above + (below - above) * fy
+        })
+    }
+
+    /// Which exemplar column `x` belongs to.
+    pub(crate) fn owner(&self, x: usize) -> usize {
+        self.spans.partition_point(|span| span.end <= x).min(self.spans.len() - 1)
+    }
+}
+
+/// Mean of a square of premultiplied pixels, cut at the border of the picture.
+fn average(image: &Image, x: usize, y: usize, side: usize) -> [f32; 4] {
+    let mut sum = [0.0; 4];
+    for row in y..(y + side).min(image.height) {
+        for column in x..(x + side).min(image.width) {
+            let [r, g, b, a] = image.pixel(column, row).map(f32::from);
+            let share = a / 255.0;
+            for (total, value) in sum.iter_mut().zip([r * share, g * share, b * share, a]) {
+                *total += value;
+            }
+        }
+    }
+    sum.map(|total| total / (side * side) as f32)
+}
+
+/// Refuses exemplars that no pattern can be read from.
+pub(crate) fn check(exemplars: &[Exemplar], coarse: usize, relax: bool) -> Result<()> {
+    if exemplars.is_empty() {
+        return Err(Error::input("exemplar", "none was given, where at least one picture was expected", "name a picture"));
+    }
+    for (k, exemplar) in exemplars.iter().enumerate() {
+        let place = if exemplars.len() == 1 { "exemplar".to_owned() } else { format!("exemplar {}", k + 1) };
+        check_one(exemplar, &place, relax)?;
+    }
+    let pixels: usize = exemplars.iter().map(|e| e.image.width * e.image.height).sum();
+    let limit = PIXELS * coarse * coarse;
+    if pixels <= limit {
+        return Ok(());
+    }
+    let enough = (1..=16).find(|c| pixels <= PIXELS * c * c);
+    let advice = match enough {
+        Some(c) => format!("search at a lower resolution with --coarse {c}, or scale the picture down"),
+        None => "scale the picture down".to_owned(),
+    };
+    let what = "pixels of the exemplar".to_owned();
+    Err(Error::Limit { what, found: pixels.to_string(), limit: limit.to_string(), advice })
+}
+
+fn check_one(exemplar: &Exemplar, place: &str, relax: bool) -> Result<()> {
+    let image = &exemplar.image;
+    if image.width < 4 || image.height < 2 {
+        let problem = format!("{} x {} pixels, where at least 4 x 2 were expected", image.width, image.height);
+        return Err(Error::input(place, problem, "use a larger picture"));
+    }
+    let opaque = image.pixels.iter().filter(|p| p[3] > 0).count();
+    if opaque == 0 {
+        let problem = "every pixel is transparent, where an opaque pattern was expected";
+        return Err(Error::input(place, problem, "draw the pattern opaque on a transparent background"));
+    }
+    if opaque == image.pixels.len() && !relax {
+        let problem = "no pixel is transparent, where the background was expected to outline the pattern";
+        let advice = "make the background transparent, or use --relax, which takes the picture as a texture and cuts it";
+        return Err(Error::input(place, problem, advice));
+    }
+    for (name, range) in [("start", &exemplar.start), ("end", &exemplar.end)] {
+        if let Some(range) = range
+            && (range.start >= range.end || range.end > image.width)
+        {
+            let problem = format!("the {name} covers columns {} to {} of {}", range.start, range.end, image.width);
+            return Err(Error::input(place, problem, "give a range of columns that lies in the picture, such as 0..60"));
+        }
+    }
+    Ok(())
+}

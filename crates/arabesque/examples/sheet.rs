@@ -84,7 +84,9 @@ fn main() -> Result<()> {
         if file != "-" {
             let source = embedded(&fs::read(file).map_err(|e| format!("{file}: {e}"))?);
             let [x, y] = [corner[0], corner[1] + line];
-            writeln!(svg, "<image x=\"{x}\" y=\"{y}\" width=\"{side}\" height=\"{side}\" href=\"{source}\"/>")?;
+            // The nested drawing cuts off what reaches out of its page.
+            let place = format!("width=\"{side}\" height=\"{side}\"");
+            writeln!(svg, "<svg x=\"{x}\" y=\"{y}\" {place}><image {place} href=\"{source}\"/></svg>")?;
         }
     }
     svg.push_str("</svg>\n");

@@ -128,20 +128,20 @@ impl Preparation<'_> {
             None => (self.place(&drawing, points.is_some())?, None),
         };
         let exemplar = points.as_ref().unwrap_or(&drawing.exemplar);
-        self.check_room(exemplar, &place.domain)?;
-        self.check_widths(exemplar);
+        self.check_room(exemplar, &place.domain).map_err(|error| self.in_region(error))?;
         let mut request = Request::new(place.domain);
         request.border = self.border(exemplar, rest.is_some()).into();
         request.fields = self.fields(&drawing, &request.domain.bounds())?;
         request.obstacles = self.avoided(&drawing, points.is_some(), &request.domain)?;
         let kept = self.kept(&drawing, points.is_some())?;
+        self.check_kept(kept.as_ref(), &drawing.exemplar, &request.domain);
         if let Some(kept) = kept.as_ref().or(rest.as_ref().map(|r| &r.placed)) {
             request.frozen.clone_from(&kept.placements);
             request.frozen_curves.clone_from(&kept.curves);
             request.obstacles.extend(kept.obstacles.iter().cloned());
         }
         Ok(Prepared {
-            engine: Engine::new(exemplar, &params)?,
+            engine: Engine::new(exemplar, &params).map_err(|error| self.in_exemplar(error))?,
             is_points: points.is_some(),
             recipe: self.recipe,
             drawing,
@@ -279,14 +279,43 @@ impl Preparation<'_> {
         Ok(())
     }
 
-    /// Warns of strokes so wide that they leave no gap.
-    fn check_widths(&mut self, exemplar: &Exemplar<2>) {
-        let spacing = spacing(exemplar);
-        let widest = exemplar.curves.iter().map(|c| c.width).fold(0.0, f64::max);
-        if widest > spacing {
+    /// The same error with the name of the file where it speaks of the exemplar.
+    fn in_exemplar(&self, error: Error) -> Error {
+        let name = self.recipe.exemplar.name();
+        match error {
+            Error::Input { problem, advice, .. } => Error::input(name, problem, advice),
+            Error::Limit { what, found, limit, advice } => {
+                Error::Limit { what: format!("{name}: {what}"), found, limit, advice }
+            }
+            other => other,
+        }
+    }
+
+    /// The same error with the name of the region that is made anew, where one is.
+    fn in_region(&self, error: Error) -> Error {
+        match (error, self.recipe.redo.as_ref().or(self.recipe.to.as_ref())) {
+            (Error::NoResult { problem, advice }, Some(region)) => {
+                Error::no_result(format!("{}: region {region}: {problem}", self.recipe.exemplar.name()), advice)
+            }
+            (error, _) => error,
+        }
+    }
+
+    /// Warns when nothing of what is to be kept comes near the domain.
+    fn check_kept(&mut self, kept: Option<&Placed>, exemplar: &Exemplar<2>, domain: &Domain<2>) {
+        let (Some(kept), Some(input)) = (kept, &self.recipe.keep) else { return };
+        let corners = |outline: &Outline<2>| outline.rings.concat();
+        let placed = kept.placements.iter().flat_map(|placement| {
+            let element = &exemplar.elements[placement.source];
+            let own = corners(&element.outline).into_iter().chain([element.centre]);
+            own.map(|p| placement.transform.apply(p)).collect::<Vec<_>>()
+        });
+        let curves = kept.curves.iter().flat_map(|drawn| drawn.path.cubics.iter().flatten().copied());
+        let others = kept.obstacles.iter().flat_map(corners);
+        if !curves.chain(placed).chain(others).any(|p| domain.contains(p)) {
             self.warnings.push(Warning::new(
-                format!("strokes up to {widest:.4} wide, where lines are {spacing:.4} apart: they run into each other"),
-                "make the strokes thinner, and wider again in the result",
+                format!("{}: nothing of what is to be kept lies in the domain", input.name()),
+                "draw it where the pattern goes, in the coordinates of the result",
             ));
         }
     }

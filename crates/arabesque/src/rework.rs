@@ -1,6 +1,6 @@
 //! Making a part of a drawing anew: redo of a region, and copying the pattern of one region into another.
 
-use arabesque_core::{Bounds, Error, Result, Shape, Vector};
+use arabesque_core::{Bounds, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
     svg::{self, Drawing, ReadOptions, Rest},
@@ -15,6 +15,9 @@ use crate::{
 
 /// Shortest side of what serves as the example, in mean spacings.
 const LEAST_SIDE: f64 = 1.5;
+
+/// A region hangs over the page when more than this share of it does.
+const OVERHANG: f64 = 0.01;
 
 /// A drawing of which a part is made anew.
 pub(crate) struct Rework {
@@ -39,12 +42,13 @@ impl Preparation<'_> {
         }
         let drawing = svg::read_exemplar(&text, &options)?;
         let place_of = |region: &Region| format!("{name}: region {region}");
-        let shape = self.region(&target, &text, &drawing)?;
+        let whole = self.region(&target, &text, &drawing)?;
         let page = Shape::rectangle(drawing.page.view);
-        let Some(shape) = page.and_then(|page| shape.within(&page)) else {
+        let Some(shape) = page.and_then(|page| whole.within(&page)) else {
             let advice = "give a region on the page: x,y,w,h in the units of the file, or the id of a shape";
             return Err(Error::input(place_of(&target), "the region lies off the page", advice));
         };
+        self.note_overhang(&place_of(&target), whole.outline().area() - shape.outline().area(), whole.outline().area());
         let rest = svg::read_rest(&text, &drawing, shape.outline(), &options)?;
         let window = match self.recipe.from.clone() {
             Some(from) => self.source_window(&from, &text, &drawing)?,
@@ -139,6 +143,16 @@ impl Preparation<'_> {
         let place = format!("{}: region {from}", self.recipe.exemplar.name());
         let advice = "give a region that the pattern covers";
         Err(Error::input(place, "the region to copy from lies off the drawing", advice))
+    }
+
+    /// Warns of a region of which a part lies off the page.
+    fn note_overhang(&mut self, place: &str, lost: f64, area: f64) {
+        if lost > OVERHANG * area {
+            self.warnings.push(Warning::new(
+                format!("{place}: {:.0} % of the region lie off the page and are not filled", 100.0 * lost / area),
+                "make the page larger, or the region smaller",
+            ));
+        }
     }
 
     /// Puts the files of the regions into the recipe.

@@ -1,6 +1,9 @@
 //! The mean distance scale of an exemplar of any kind.
 
-use arabesque_core::{Exemplar, Measured, Path};
+use arabesque_core::{Bounds, Exemplar, Measured, Path};
+
+/// A path that leaves the window is looked at in at least so many places.
+const FEWEST_STEPS: usize = 500;
 
 /// Mean distance of elements, or of the lines of a net, whichever is smaller.
 ///
@@ -11,10 +14,23 @@ pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
         return of_elements;
     }
     let size = exemplar.window.size().norm();
-    let length: f64 = exemplar.curves.iter().map(|c| length(&c.path, 1e-3 * size)).sum();
+    let length: f64 = exemplar.curves.iter().map(|c| length_inside(&c.path, &exemplar.window, 1e-3 * size)).sum();
     let of_curves =
         (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0)).min(size);
     if exemplar.elements.is_empty() { of_curves } else { of_elements.min(of_curves) }
+}
+
+/// Length of the chords whose middles lie in the window.
+fn length_inside<const D: usize>(path: &Path<D>, window: &Bounds<D>, tolerance: f64) -> f64 {
+    let bounds = path.bounds();
+    if window.contains(bounds.min) && window.contains(bounds.max) {
+        return length(path, tolerance);
+    }
+    let measured = Measured::new(path.clone(), tolerance);
+    let steps = 2 * measured.points().len() + FEWEST_STEPS;
+    let step = measured.length() / steps as f64;
+    let inside = |k: &usize| window.contains(measured.point((*k as f64 + 0.5) * step));
+    (0..steps).filter(inside).count() as f64 * step
 }
 
 /// Length of a path, its chords within `tolerance` of it.
@@ -25,7 +41,7 @@ pub(crate) fn length<const D: usize>(path: &Path<D>, tolerance: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arabesque_core::{Bounds, Class, Curve, Vector};
+    use arabesque_core::{Class, Curve, Vector};
 
     #[test]
     fn a_square_net_has_the_spacing_of_its_lines() {

@@ -2,19 +2,17 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{
-    Error, Exemplar, Limits, Measured, Observer, Outcome, Request, Result, Role, StopReason, Warning,
-};
+use arabesque_core::{Error, Exemplar, Limits, Observer, Outcome, Request, Result, Role, StopReason, Warning};
 
 use crate::{
     clearance::{self, ExemplarClearance},
-    curves::Skeleton,
+    curves::{self, Skeleton},
     extent::Extent,
     finish,
     params::Params,
     run::{Run, Stand},
     search,
-    setting::{Setting, settings, shortest},
+    setting::{Setting, expected_nodes, settings, shortest},
     targets::class_targets,
 };
 
@@ -23,6 +21,12 @@ const STRANGE: f64 = 0.7;
 
 /// With more samples than this, curves that never repeat are taken for a random pattern.
 const FEW_NODES: usize = 100;
+
+/// Most samples on the curves of an exemplar at one level.
+const MOST_NODES: f64 = 10_000.0;
+
+/// Strokes that cover more of the exemplar than this run into one another.
+const CROWDED: f64 = 0.95;
 
 /// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
 const FEW: usize = 12;
@@ -38,11 +42,17 @@ pub struct Prepared<const D: usize> {
     strangeness: Option<f64>,
 }
 
-/// Mean distance between strokes: area over length, in space the root of volume over length.
-fn mean_gap<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
-    let tolerance = 1e-3 * shortest(exemplar.window.size());
-    let length: f64 = exemplar.curves.iter().map(|c| Measured::new(c.path.clone(), tolerance).length()).sum();
-    (exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0))
+/// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.
+fn check_density(nodes: f64) -> Result<()> {
+    if nodes <= MOST_NODES {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "samples on the curves of the exemplar".into(),
+        found: format!("about {nodes:.0}"),
+        limit: MOST_NODES.to_string(),
+        advice: "show a smaller part of the pattern, draw it with fewer lines, or set a larger spacing".into(),
+    })
 }
 
 impl<const D: usize> Prepared<D> {
@@ -51,7 +61,8 @@ impl<const D: usize> Prepared<D> {
     /// # Errors
     /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`] when the exemplar
     /// shows no curve and fewer than two elements that may be copied, for then nothing tells how far apart they belong, or when its
-    /// curves lie outside its frame.
+    /// curves lie outside its frame; [`Error::Limit`] when its curves meet in too many places or
+    /// lie too densely.
     pub fn new(exemplar: &Exemplar<D>, params: &Params) -> Result<Self> {
         params.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
@@ -67,13 +78,16 @@ impl<const D: usize> Prepared<D> {
                 format!("at most {side}, the shorter side of the exemplar"),
             ));
         }
-        let skeleton =
-            (!exemplar.curves.is_empty()).then(|| Arc::new(Skeleton::new(&exemplar.curves, &exemplar.window)));
+        let skeleton = match exemplar.curves.as_slice() {
+            [] => None,
+            curves => Some(Arc::new(Skeleton::new(curves, &exemplar.window)?)),
+        };
         if skeleton.as_ref().is_some_and(|s| s.lines.is_empty()) && exemplar.elements.is_empty() {
-            let problem = "every curve lies outside the frame or has no length";
-            return Err(Error::input("exemplar", problem, "draw the curves inside the frame of the page"));
+            let problem = "every curve lies outside the frame or is too short to be seen";
+            return Err(Error::input("exemplar", problem, "draw longer curves inside the frame of the page"));
         }
         let skeleton = skeleton.filter(|s| !s.lines.is_empty());
+        check_density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
         let settings = settings(exemplar, skeleton.as_ref(), params);
         let coarsest = settings.first().filter(|_| skeleton.is_some());
         Ok(Self {
@@ -136,8 +150,9 @@ impl<const D: usize> Prepared<D> {
         let last = &extents[extents.len() - 1];
         warnings.extend(finish::mend(&mut found.placements, self.clearance.as_ref(), (request, last), &self.params));
         if found.placements.is_empty() && found.curves.is_empty() {
+            let what = if self.has_curves() { "stroke" } else { "element" };
             return Err(Error::no_result(
-                "no element fits into the domain",
+                format!("no {what} fits into the domain"),
                 "make the domain larger, lower the scale, or allow elements to cross its border",
             ));
         }
@@ -164,15 +179,33 @@ impl<const D: usize> Prepared<D> {
                 "draw the pattern several times over, so that the exemplar shows how it goes on",
             ));
         }
-        let widest = self.exemplar.curves.iter().map(|c| c.width).fold(0.0, f64::max);
-        let gap = mean_gap(&self.exemplar);
-        if widest > gap {
+        let Some(net) = &setting.level.net else { return doubts };
+        let covered = curves::coverage(&net.skeleton, &self.exemplar.window, CROWDED);
+        if covered > CROWDED {
             doubts.push(Warning::new(
-                format!("strokes are wider ({widest:.4}) than the mean distance between them ({gap:.4}): they run into one another"),
+                format!(
+                    "strokes as wide as or wider than their spacing: they cover {:.0} % of the exemplar and run into one another",
+                    100.0 * covered
+                ),
                 "use thinner strokes; lines closer than their width are taken to touch",
             ));
         }
+        let short = self.unseen(&net.skeleton);
+        if short > 0 {
+            doubts.push(Warning::new(
+                format!("strokes too short to be seen left out: {short}, each below a thousandth of the exemplar"),
+                "draw them longer, or as dots: filled circles",
+            ));
+        }
         doubts
+    }
+
+    /// Curves in the window that are in no line of the skeleton.
+    fn unseen(&self, skeleton: &Skeleton<D>) -> usize {
+        let mut is_seen = vec![false; self.exemplar.curves.len()];
+        skeleton.lines.iter().for_each(|line| is_seen[line.curve as usize] = true);
+        let is_inside = |n: &usize| self.exemplar.window.contains(self.exemplar.curves[*n].path.bounds().centre());
+        (0..is_seen.len()).filter(|&n| !is_seen[n]).filter(is_inside).count()
     }
 
     fn has_curves(&self) -> bool {

@@ -47,7 +47,7 @@ pub(crate) fn settings<const D: usize>(
         };
         return (0..params.levels).map(setting).map(|s| with_sets(s, params)).collect();
     };
-    let step = params.spacing.unwrap_or_else(|| finest_spacing(exemplar, skeleton));
+    let step = finest_spacing(exemplar, skeleton, params);
     let mut made: Vec<(f64, Cast<D>, Arc<Exemplar<D>>, Arc<Library<D>>)> = Vec::new();
     let mut setting = |number| {
         let spacing = step * params.coarsening.powf(1.0 - detail(params, number));
@@ -76,7 +76,8 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
     let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
     let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(shortest(library.window.size())));
     let slack = match params.matching {
-        Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max),
+        // Where junctions lie closer than samples, the slack would take in many times the neighbourhood.
+        Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max).min(radius),
         Matching::Hard => radius,
     };
     (radius, slack)
@@ -89,12 +90,21 @@ fn with_sets<const D: usize>(mut setting: Setting<D>, params: &Params) -> Settin
     setting
 }
 
-/// Sampling distance of the finest level: about that of neighbouring strokes, so that neighbourhoods are as dense along as across.
-fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>) -> f64 {
-    let length: f64 = skeleton.lines.iter().map(|l| l.measured.length()).sum();
+/// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as
+/// across.
+fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
     let side = shortest(exemplar.window.size());
-    let gap = (exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));
-    (STROKE_GAP * gap).clamp(STEP_RANGE.0 * side, STEP_RANGE.1 * side)
+    let gap = (exemplar.window.measure() / length(skeleton).max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));
+    params.spacing.unwrap_or((STROKE_GAP * gap).clamp(STEP_RANGE.0 * side, STEP_RANGE.1 * side))
+}
+
+fn length<const D: usize>(skeleton: &Skeleton<D>) -> f64 {
+    skeleton.lines.iter().map(|l| l.measured.length()).sum()
+}
+
+/// About how many samples the curves get at the finest level.
+pub(crate) fn expected_nodes<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
+    length(skeleton) / finest_spacing(exemplar, skeleton, params) + skeleton.knots.len() as f64
 }
 
 /// The shortest side of a box of this size.

@@ -1,10 +1,6 @@
 //! Strokes of a drawing as curves: their lines as cubics in the coordinates of the root, and how they are painted.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fmt::Write as _,
-    rc::Rc,
-};
+use std::{collections::BTreeMap, fmt::Write as _, rc::Rc};
 
 use arabesque_core::{Bounds, Class, Curve, Outline, Path, Result, Vector, straight};
 use kurbo::{Affine, BezPath, PathEl, PathSeg};
@@ -25,6 +21,7 @@ use super::{
     select::is_closed,
     stroke::growth,
     style::Property as P,
+    twice::Seen,
 };
 use crate::centreline::Centrelines;
 
@@ -55,12 +52,12 @@ pub(super) struct Gatherer<'a, 's, 'i, 'd> {
     /// Index into the styles by paint.
     style_of: BTreeMap<String, usize>,
     /// What was found already, to tell strokes that lie on top of each other.
-    seen: BTreeSet<(usize, Vec<[i64; 2]>)>,
+    seen: Seen,
 }
 
 impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     pub(super) fn new(inker: &'i Inker<'a, 's>, definitions: &'d mut Definitions<'a, 's>, window: Bounds<2>) -> Self {
-        let (found, style_of, seen) = (Curves::default(), BTreeMap::new(), BTreeSet::new());
+        let (found, style_of, seen) = (Curves::default(), BTreeMap::new(), Seen::new(&window));
         Self { inker, definitions, window, found, style_of, seen }
     }
 
@@ -164,7 +161,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         if !curve.path.bounds().grown(0.5 * curve.width).intersects(&self.window) {
             return;
         }
-        if !self.seen.insert((curve.style, footprint(&curve.path, &self.window))) {
+        if !self.seen.insert(curve.style, &curve.path) {
             self.inker.source.notes.add(Note::Twice, || item.meta.id.clone().unwrap_or_default());
             return;
         }
@@ -315,26 +312,6 @@ fn join_ends(cubics: &mut Vec<[Vector<2>; 4]>, closed: bool, least: f64) {
 /// Length of the chords of a path.
 fn length(path: &Path<2>) -> f64 {
     path.cubics.iter().flat_map(|c| c.windows(2)).map(|w| (w[1] - w[0]).norm()).sum()
-}
-
-/// The control points on a fine grid, in the direction (and from the start, on a closed path) that comes first: the same for paths that
-/// lie on top of each other.
-fn footprint(path: &Path<2>, window: &Bounds<2>) -> Vec<[i64; 2]> {
-    let step = 1e-6 * window.size().norm().max(f64::MIN_POSITIVE);
-    let on_grid = |path: &Path<2>| -> Vec<Vec<[i64; 2]>> {
-        let rounded = |p: Vector<2>| [(p[0] / step).round() as i64, (p[1] / step).round() as i64];
-        path.cubics.iter().map(|c| c[..3].iter().chain(&c[3..]).map(|&p| rounded(p)).collect()).collect()
-    };
-    let ways = [on_grid(path), on_grid(&path.reversed())];
-    let first = |mut way: Vec<Vec<[i64; 2]>>| -> Vec<[i64; 2]> {
-        if path.closed {
-            let start = (0..way.len()).min_by_key(|&k| &way[k]).unwrap_or(0);
-            way.rotate_left(start);
-        }
-        way.concat()
-    };
-    let [a, b] = ways.map(first);
-    a.min(b)
 }
 
 /// Whether a shape's subpaths all end where they start.

@@ -1,8 +1,11 @@
 //! The frame of an exemplar, and what lies on it.
 
-use arabesque_core::{Bounds, Outline, Role};
+use arabesque_core::{Bounds, Outline, Role, Vector};
 
-use super::item::{Item, Kind};
+use super::{
+    extent::longer,
+    item::{Item, Kind},
+};
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
 const CUT: f64 = 0.15;
@@ -11,6 +14,9 @@ const NEAR: f64 = 0.002;
 /// The same two for edges that lie on the frame as exactly as numbers are written: no whole element has such edges by chance.
 const EXACT_CUT: f64 = 0.03;
 const EXACTLY_NEAR: f64 = 1e-5;
+
+/// A box is thin when its shorter side is less than this share of the longer one.
+const THIN: f64 = 0.03;
 
 /// Whether an element is whole, or cut by a clip or at the frame; `frame` is `None` where the file states none.
 pub(super) fn role(item: &Item, frame: Option<&Bounds<2>>) -> Role {
@@ -33,9 +39,24 @@ fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
     })
 }
 
+/// Whether a box is so thin that what it holds tells nothing about a second direction.
+pub(super) fn is_thin(extent: &Bounds<2>) -> bool {
+    let size = extent.size();
+    !extent.is_empty() && size[0].min(size[1]) < THIN * longer(extent)
+}
+
+/// The square around the centre of a box, as wide as the longer side.
+fn square(extent: &Bounds<2>) -> Bounds<2> {
+    let (centre, half) = (extent.centre(), 0.5 * longer(extent));
+    Bounds::new(centre - Vector::xy(half, half), centre + Vector::xy(half, half))
+}
+
 /// The box around all items, with half the usual gap around it: the frame that the artist had in mind. Curves end at it.
 pub(super) fn around(items: &[Item]) -> Bounds<2> {
     let tight = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.outline.bounds()));
+    if is_thin(&tight) {
+        return square(&tight);
+    }
     if items.len() < 2 || items.iter().any(|item| item.kind == Kind::Curve) {
         return tight;
     }
@@ -47,7 +68,6 @@ pub(super) fn around(items: &[Item]) -> Bounds<2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arabesque_core::Vector;
 
     fn polygon(corners: &[(f64, f64)]) -> Outline<2> {
         Outline { rings: vec![corners.iter().map(|&(x, y)| Vector::xy(x, y)).collect()] }
@@ -70,5 +90,12 @@ mod tests {
         assert!(is_cut(&[(2.0, 0.0), (3.0, 0.0), (5.0, 9.0), (1.0, 9.0)]), "only the tip is cut off");
         let over: Vec<_> = arc(0.0, 2.0 * half);
         assert!(!is_cut(&over));
+    }
+
+    #[test]
+    fn a_straight_line_has_no_frame_of_its_own() {
+        let line = Bounds::new(Vector::xy(0.0, 5.0), Vector::xy(10.0, 5.1));
+        assert!(is_thin(&line) && !is_thin(&square(&line)) && !is_thin(&Bounds::EMPTY));
+        assert_eq!(square(&line).size(), Vector::xy(10.0, 10.0));
     }
 }

@@ -39,6 +39,7 @@ mod stroke;
 mod style;
 mod touch;
 mod traced;
+mod twice;
 mod within;
 mod write;
 mod write_background;

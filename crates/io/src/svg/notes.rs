@@ -53,6 +53,8 @@ pub(super) enum Note {
     CutShort,
     /// A stroke without length.
     ZeroLength,
+    /// A stroke of no width.
+    NoWidth,
     /// A stroke on top of one like it.
     Twice,
     /// A stroke whose transform stretches it unevenly.
@@ -110,6 +112,7 @@ impl Note {
             ),
             Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
             Self::ZeroLength => ("stroke without length ignored", "delete it, or draw a dot as a filled circle"),
+            Self::NoWidth => ("stroke of no width ignored", "give it a stroke-width above 0"),
             Self::Twice => ("stroke exactly on top of one like it ignored", "delete one of the two"),
             Self::UnevenWidth => (
                 "stroke that is stretched more one way than the other; its mean width is used",

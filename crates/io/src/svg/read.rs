@@ -100,7 +100,8 @@ fn scope(inker: &Inker<'_, '_>, root: &Rc<Node>, page: Option<&Page>) -> Result<
     let content = roots.iter().fold(Bounds::EMPTY, |all, (parent, node)| all.union(&content(node, *parent)));
     let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
     let share = page.map_or(0.0, |p| content.measure() / p.view.measure());
-    let fits = share >= if by_layer { LAYER } else { CORNER };
+    // The box around a straight line is no frame, whatever its share of the page.
+    let fits = page.is_some() && (frame::is_thin(&content) || share >= if by_layer { LAYER } else { CORNER });
     if !fits && marked.is_none() && page.is_some() && !by_layer && !content.is_empty() {
         inker.source.notes.add(Note::Corner, String::new);
     }

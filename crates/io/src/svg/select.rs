@@ -247,6 +247,9 @@ impl Selector<'_, '_, '_> {
         let extent = item.outline.bounds();
         if item.outline.rings.is_empty() || longer(&extent) <= self.inker.source.limits.extent {
             let seen = item.parts.iter().any(|(parent, node)| !bounds(node, *parent).is_empty());
+            if item.parts.iter().any(|(_, node)| node.style.has_no_width()) {
+                self.inker.source.notes.add(Note::NoWidth, || item.meta.id.clone().unwrap_or_default());
+            }
             if seen && !item.is_cut {
                 let meta = &item.meta;
                 self.inker.source.notes.add(Note::ZeroSize, || meta.id.clone().unwrap_or_default());

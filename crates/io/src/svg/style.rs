@@ -129,6 +129,11 @@ impl Style {
         self.opacity(P::Fill, P::FillOpacity) > 0.0
     }
 
+    /// Whether a stroke is asked for that has no width.
+    pub(super) fn has_no_width(&self) -> bool {
+        self.opacity(P::Stroke, P::StrokeOpacity) > 0.0 && self.number(P::StrokeWidth) <= 0.0
+    }
+
     /// Whether anything of a stroke can be seen.
     pub(super) fn strokes(&self) -> bool {
         self.opacity(P::Stroke, P::StrokeOpacity) > 0.0 && self.number(P::StrokeWidth) > 0.0

@@ -4,6 +4,9 @@ use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 
 use super::skeleton::Line;
 
+/// No more crossings are looked for when there are so many.
+pub(crate) const MOST_CONTACTS: usize = 200_000;
+
 /// Two passages of lines through one place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<const D: usize> {
@@ -81,11 +84,14 @@ impl<const D: usize> Chords<D> {
     }
 }
 
-/// Places where lines cross, themselves included. In space, where they come closer than `near`.
+/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after [`MOST_CONTACTS`].
 pub(crate) fn crossings<const D: usize>(lines: &[Line<D>], side: f64, near: f64) -> Vec<Contact<D>> {
     let chords = Chords::new(lines, side / 100.0);
     let mut found = Vec::new();
     for (i, a) in chords.all.iter().enumerate() {
+        if found.len() >= MOST_CONTACTS {
+            break;
+        }
         chords.index.within(a.middle(), chords.longest + near, |j, _| {
             let b = &chords.all[j];
             if j <= i || chords.adjoin(lines, a, b) {

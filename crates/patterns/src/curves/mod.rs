@@ -18,6 +18,7 @@
 //! | shape of a stroke | `shape` | beyond the paper: the exemplar's own line, bent to its ends |
 //! | next level | `resample` | §4.3.5 |
 //! | the border | `trim` | §4.3.1, the domain term |
+//! | strokes that run into one another | `ink` | |
 //!
 //! Beyond the paper: the samples between two knots carry the true line of the exemplar, so that corners stay corners and arcs stay arcs; an edge
 //! that the window of the exemplar cuts off counts as one, so that nothing ends where merely the example ends.
@@ -26,6 +27,7 @@ mod cast;
 mod chains;
 mod contact;
 mod edges;
+mod ink;
 mod loose;
 mod mend;
 mod net;
@@ -33,12 +35,15 @@ mod resample;
 mod shape;
 mod skeleton;
 mod tangents;
+#[cfg(test)]
+mod tests;
 mod trim;
 mod votes;
 
 pub(crate) use cast::Cast;
 pub(crate) use chains::{Chain, chains};
 pub(crate) use edges::{assign as assign_edges, link_sources};
+pub(crate) use ink::coverage;
 pub(crate) use mend::mend;
 pub(crate) use net::{Net, Star};
 pub(crate) use resample::resample;

@@ -3,10 +3,10 @@
 //! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the stroke is wide. Lines
 //! that run side by side do not meet, however close they are.
 
-use arabesque_core::{Bounds, Curve, Domain, GridIndex, Measured, Path, Vector};
+use arabesque_core::{Bounds, Curve, Error, Measured, Path, Result, Vector};
 
 use super::{
-    contact::{Contact, crossings, end_contacts},
+    contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
     trim::inside,
 };
 
@@ -18,6 +18,15 @@ const TOUCH_SHARE: f64 = 0.003;
 
 /// Turn from which on a joint of two segments is a corner, as the cosine of the angle: 40 degrees.
 const CORNER: f64 = 0.766;
+
+/// Most knots of an exemplar: with more, each neighbourhood would take minutes to be compared with all others.
+const MOST_KNOTS: usize = 10_000;
+
+/// An end is at the frame when it is this near, as a share of the side of the window, however wide the stroke is.
+const AT_FRAME: f64 = 0.02;
+
+/// Shorter parts of a curve are scraps that the window left, as a share of its side.
+const SCRAP: f64 = 1e-3;
 
 /// What a knot is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,20 +65,40 @@ pub(crate) struct Skeleton<const D: usize> {
 
 impl<const D: usize> Skeleton<D> {
     /// The skeleton of the curves inside `window`.
-    pub(crate) fn new(curves: &[Curve<D>], window: &Bounds<D>) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when they meet in too many places.
+    pub(crate) fn new(curves: &[Curve<D>], window: &Bounds<D>) -> Result<Self> {
         let side = window.size().0.into_iter().fold(f64::INFINITY, f64::min);
         let lines: Vec<_> = curves.iter().enumerate().flat_map(|(k, c)| cut(k as u32, c, window, side)).collect();
-        Self::of_lines(lines, side)
+        let too_many = |found: String| Error::Limit {
+            what: "places of the exemplar where strokes meet, end or turn sharply".into(),
+            found,
+            limit: MOST_KNOTS.to_string(),
+            advice: "show a smaller part of the pattern, or draw it with fewer lines".into(),
+        };
+        let contacts = contacts(&lines, side);
+        if contacts.len() >= MOST_CONTACTS {
+            return Err(too_many(format!("{MOST_CONTACTS} or more")));
+        }
+        let skeleton = Self::joined(lines, &contacts, side);
+        match skeleton.knots.len() {
+            0..=MOST_KNOTS => Ok(skeleton),
+            found => Err(too_many(found.to_string())),
+        }
     }
 
-    /// Finds the knots of lines; `side` is the size of the picture they are part of.
+    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first [`MOST_CONTACTS`] contacts
+    /// count.
     pub(crate) fn of_lines(lines: Vec<Line<D>>, side: f64) -> Self {
-        let touch = |line: &Line<D>| (TOUCH_WIDTHS * line.width).max(TOUCH_SHARE * side);
-        let reach: Vec<f64> = lines.iter().map(touch).collect();
-        let mut contacts = crossings(&lines, side, 1e-4 * side);
-        contacts.extend(end_contacts(&lines, &reach, side));
+        let contacts = contacts(&lines, side);
+        Self::joined(lines, &contacts, side)
+    }
+
+    fn joined(lines: Vec<Line<D>>, contacts: &[Contact<D>], side: f64) -> Self {
+        let reach = reach(&lines, side);
         let mut skeleton = Self { lines, knots: Vec::new() };
-        skeleton.join(&contacts, &reach);
+        skeleton.join(contacts, &reach);
         skeleton.end_lines(&reach);
         skeleton.find_corners(&reach);
         skeleton.lines.iter_mut().for_each(|line| line.stops.sort_by(|a, b| a.0.total_cmp(&b.0)));
@@ -82,21 +111,31 @@ impl<const D: usize> Skeleton<D> {
         let sides: Vec<(u32, f64)> = contacts.iter().flat_map(|c| c.sides).collect();
         let mut group = Groups::new(sides.len());
         (0..contacts.len()).for_each(|k| group.join(2 * k, 2 * k + 1));
-        let widest = reach.iter().copied().fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        let index = GridIndex::new(&points, widest, &Domain::Box(Bounds::around(points.iter().copied())));
-        for (a, &(line, arc)) in sides.iter().enumerate() {
-            index.within(points[a], reach[line as usize], |b, _| {
-                let other = sides[b];
-                if other.0 == line && self.gap(line, arc, other.1) <= 2.0 * reach[line as usize] {
-                    group.join(a, b);
-                }
-            });
-        }
+        self.join_passages(&points, &sides, reach, &mut group);
         for members in group.sets() {
             let centre = members.iter().fold(Vector::ZERO, |sum, &m| sum + points[m]) * (1.0 / members.len() as f64);
             let knot = self.knots.len() as u32;
             self.knots.push((centre, Knot::Junction));
             self.stop_at(knot, &members, &sides, reach);
+        }
+    }
+
+    /// Joins the touches of each line that lie close together, along it and in the plane.
+    fn join_passages(&self, points: &[Vector<D>], sides: &[(u32, f64)], reach: &[f64], group: &mut Groups) {
+        let mut order: Vec<usize> = (0..sides.len()).collect();
+        order.sort_by(|&a, &b| sides[a].0.cmp(&sides[b].0).then(sides[a].1.total_cmp(&sides[b].1)));
+        for run in order.chunk_by(|&a, &b| sides[a].0 == sides[b].0) {
+            let line = sides[run[0]].0;
+            let near = reach[line as usize];
+            for (k, &a) in run.iter().enumerate() {
+                // Ahead along the line; on a closed one, past its start too.
+                let ahead = (k + 1..k + run.len()).map(|i| run[i % run.len()]);
+                for b in ahead.take_while(|&b| self.gap(line, sides[a].1, sides[b].1) <= 2.0 * near) {
+                    if (points[b] - points[a]).norm() <= near {
+                        group.join(a, b);
+                    }
+                }
+            }
         }
     }
 
@@ -167,6 +206,18 @@ impl<const D: usize> Skeleton<D> {
     }
 }
 
+/// How near an end comes to a line that it meets, for each line.
+fn reach<const D: usize>(lines: &[Line<D>], side: f64) -> Vec<f64> {
+    lines.iter().map(|line| (TOUCH_WIDTHS * line.width).max(TOUCH_SHARE * side)).collect()
+}
+
+/// All places where lines touch.
+fn contacts<const D: usize>(lines: &[Line<D>], side: f64) -> Vec<Contact<D>> {
+    let mut contacts = crossings(lines, side, 1e-4 * side);
+    contacts.extend(end_contacts(lines, &reach(lines, side), side));
+    contacts
+}
+
 /// Arc lengths of the corners, where the directions over `reach` before and after differ.
 fn corners<const D: usize>(measured: &Measured<D>, reach: f64) -> Vec<f64> {
     let length = measured.length();
@@ -194,7 +245,7 @@ fn corners<const D: usize>(measured: &Measured<D>, reach: f64) -> Vec<f64> {
 /// The parts of a curve inside the window.
 fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) -> Vec<Line<D>> {
     let measured = Measured::new(curve.path.clone(), 5e-4 * side);
-    let near = (0.5 * curve.width).max(1e-3 * side);
+    let near = (0.5 * curve.width).min(AT_FRAME * side).max(SCRAP * side);
     let on_frame = |p: Vector<D>| window.signed_distance(p) < near;
     let line = |path: Path<D>, is_cut| Line {
         measured: Measured::new(path, 5e-4 * side),
@@ -213,7 +264,7 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
         let ends = [path.start(), path.end()].map(|p| p.is_some_and(on_frame));
         line(path, ends)
     });
-    lines.filter(|l| l.measured.length() > near).collect()
+    lines.filter(|l| l.measured.length() > SCRAP * side).collect()
 }
 
 /// Disjoint sets.

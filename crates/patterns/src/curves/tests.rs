@@ -1,0 +1,219 @@
+//! Named graphs from lines to samples, to edges, to strokes; and random ones, and edge assignment against brute force.
+
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Path, Request, Vector};
+use proptest::prelude::*;
+
+use super::{Net, Skeleton, chains, collect_votes, draw, skeleton::Knot};
+use crate::{
+    canvas::Item,
+    extent::Extent,
+    layout::Draft,
+    params::{Deform, Params},
+    setting::settings,
+    state::State,
+};
+
+const SIDE: f64 = 100.0;
+
+fn window() -> Bounds<2> {
+    Bounds::new(Vector::ZERO, Vector::xy(SIDE, SIDE))
+}
+
+fn polyline(points: &[(f64, f64)], closed: bool) -> Path<2> {
+    let mut points: Vec<_> = points.iter().map(|&(x, y)| Vector::xy(x, y)).collect();
+    if closed {
+        points.push(points[0]);
+    }
+    Path { closed, ..Path::polyline(&points) }
+}
+
+fn exemplar(paths: &[Path<2>]) -> Exemplar<2> {
+    let curve = |path: &Path<2>| Curve { path: path.clone(), style: 0, width: 0.5, colour: [0.0; 3] };
+    let styles = vec![arabesque_core::Class { name: "line".into() }];
+    let curves = paths.iter().map(curve).collect();
+    Exemplar::with_curves("t", (Vec::new(), Vec::new()), (curves, styles), window()).unwrap()
+}
+
+/// What came of a sample graph.
+struct Rebuilt {
+    net: Arc<Net<2>>,
+    strokes: Vec<Drawn<2>>,
+}
+
+/// Samples the paths, puts every sample where it is in the exemplar without any edge, lets the edges be found, and draws the strokes.
+fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
+    let exemplar = exemplar(paths);
+    let params = Params { levels: 1, ..Params::default() };
+    let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.window).unwrap());
+    let setting = settings(&exemplar, Some(&skeleton), &params).remove(0);
+    let request = Request::new(Domain::Box(window().grown(SIDE)));
+    let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);
+    let net = setting.level.net.clone().unwrap();
+    let items = (0..net.nodes.len()).map(|n| {
+        let item = Item { source: setting.level.base + n as u32, position: net.nodes[n].position, frozen: None };
+        (item, Matrix::identity())
+    });
+    let draft = Draft { items: items.collect(), links: Vec::new() };
+    let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
+    super::link_sources(&mut state);
+    for (n, node) in net.nodes.iter().enumerate() {
+        let mut expected: Vec<u32> = node.arms.iter().map(|arm| arm.to).collect();
+        let mut links = state.links[n].clone();
+        (expected.sort_unstable(), links.sort_unstable());
+        assert_eq!(links, expected, "edges of sample {n} at {:?}", node.position);
+    }
+    let votes = collect_votes(&state);
+    let chains = chains(&state, &votes, true);
+    let strokes = draw(&state, &chains);
+    Rebuilt { net, strokes }
+}
+
+impl Rebuilt {
+    /// Degrees of the knots of a kind, sorted.
+    fn degrees(&self, kind: Knot) -> Vec<usize> {
+        let of_kind = |n: &usize| self.net.nodes[*n].knot == Some(kind);
+        let mut degrees: Vec<_> =
+            (0..self.net.nodes.len()).filter(of_kind).map(|n| self.net.degree(n as u32)).collect();
+        degrees.sort_unstable();
+        degrees
+    }
+
+    fn closed(&self) -> usize {
+        self.strokes.iter().filter(|s| s.path.closed).count()
+    }
+}
+
+fn points(paths: &[Path<2>]) -> Vec<Vector<2>> {
+    let dense = |path: &Path<2>| -> Vec<Vector<2>> {
+        let measured = Measured::new(path.clone(), 0.01);
+        let n = (measured.length() / 0.1).ceil() as usize;
+        (0..=n).map(|k| measured.point(measured.length() * k as f64 / n as f64)).collect()
+    };
+    paths.iter().flat_map(dense).collect()
+}
+
+/// Hausdorff distance of two drawings, up to the 0.05 by which points lie apart.
+fn hausdorff(a: &[Path<2>], b: &[Path<2>]) -> f64 {
+    let (a, b) = (points(a), points(b));
+    let one = |a: &[Vector<2>], b: &[Vector<2>]| {
+        let nearest = |p: &Vector<2>| b.iter().map(|q| (*p - *q).norm2()).fold(f64::INFINITY, f64::min);
+        a.iter().map(nearest).fold(0.0, f64::max).sqrt()
+    };
+    one(&a, &b).max(one(&b, &a))
+}
+
+fn drawn(rebuilt: &Rebuilt) -> Vec<Path<2>> {
+    rebuilt.strokes.iter().map(|s| s.path.clone()).collect()
+}
+
+/// Rebuilds and compares the shape: what is drawn is the exemplar's own line, so that only rounding and sampling of this test may differ.
+fn same_shape(paths: &[Path<2>]) -> Rebuilt {
+    let rebuilt = rebuilt(paths);
+    let distance = hausdorff(&drawn(&rebuilt), paths);
+    assert!(distance < 0.1, "{distance}");
+    rebuilt
+}
+
+#[test]
+fn a_straight_line_is_one_stroke_with_two_ends() {
+    let line = same_shape(&[polyline(&[(20.0, 50.0), (80.0, 50.0)], false)]);
+    assert_eq!((line.strokes.len(), line.closed()), (1, 0));
+    assert_eq!((line.degrees(Knot::End), line.degrees(Knot::Junction)), (vec![1, 1], vec![]));
+}
+
+#[test]
+fn a_line_from_side_to_side_has_no_ends() {
+    let line = same_shape(&[polyline(&[(0.0, 50.0), (100.0, 50.0)], false)]);
+    assert_eq!((line.degrees(Knot::End), line.degrees(Knot::Cut)), (vec![], vec![2, 2]));
+}
+
+#[test]
+fn a_tee_is_two_strokes_that_meet() {
+    let bar = polyline(&[(20.0, 40.0), (80.0, 40.0)], false);
+    let tee = same_shape(&[bar, polyline(&[(50.0, 40.0), (50.0, 80.0)], false)]);
+    assert_eq!((tee.strokes.len(), tee.closed()), (2, 0));
+    assert_eq!((tee.degrees(Knot::End), tee.degrees(Knot::Junction)), (vec![1, 1, 1], vec![3]));
+}
+
+#[test]
+fn a_cross_is_two_strokes_through_each_other() {
+    let bar = polyline(&[(20.0, 40.0), (80.0, 45.0)], false);
+    let cross = same_shape(&[bar, polyline(&[(55.0, 20.0), (45.0, 80.0)], false)]);
+    assert_eq!((cross.strokes.len(), cross.closed()), (2, 0));
+    assert_eq!((cross.degrees(Knot::End), cross.degrees(Knot::Junction)), (vec![1; 4], vec![4]));
+}
+
+#[test]
+fn a_hexagon_is_one_closed_stroke_with_six_corners() {
+    let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
+    let corners: Vec<_> = (0..6).map(corner).map(|(s, c)| (50.0 + 30.0 * c, 50.0 + 30.0 * s)).collect();
+    let cell = same_shape(&[polyline(&corners, true)]);
+    assert_eq!((cell.strokes.len(), cell.closed()), (1, 1));
+    assert_eq!(cell.degrees(Knot::Corner), vec![2; 6]);
+    assert_eq!((cell.degrees(Knot::End), cell.degrees(Knot::Junction)), (vec![], vec![]));
+    for (x, y) in corners {
+        let near = |p: &Vector<2>| (*p - Vector::xy(x, y)).norm() < 1e-6;
+        assert!(cell.strokes[0].path.cubics.iter().any(|c| near(&c[0])), "no node at the corner {x}, {y}");
+    }
+}
+
+fn circle(x: f64, y: f64, r: f64) -> Path<2> {
+    let k = 0.552_284_75 * r;
+    let at = |dx: f64, dy: f64| Vector::xy(x + dx, y + dy);
+    let quarter = |a: (f64, f64)| {
+        let b = (-a.1, a.0);
+        [
+            at(r * a.0, r * a.1),
+            at(r * a.0 + k * b.0, r * a.1 + k * b.1),
+            at(r * b.0 + k * a.0, r * b.1 + k * a.1),
+            at(r * b.0, r * b.1),
+        ]
+    };
+    Path { cubics: [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(quarter).to_vec(), closed: true }
+}
+
+#[test]
+fn a_circle_is_one_closed_stroke_without_corners() {
+    let ring = same_shape(&[circle(50.0, 50.0, 30.0)]);
+    assert_eq!((ring.strokes.len(), ring.closed()), (1, 1));
+    assert!(ring.net.skeleton.knots.is_empty());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Rows that wave at random, columns from some of them down (T junctions) or through all (crossings), and loops between: paths, junctions
+    /// and ends come back, within 0.02 sampling distances. Each edge is the very piece of line that was sampled; only the handles at a sample
+    /// are turned to their mean direction, which on a smooth line changes little.
+    #[test]
+    fn random_graphs_come_back(
+        waves in prop::collection::vec((-4.0..4.0_f64, -4.0..4.0_f64), 3),
+        columns in prop::collection::vec((any::<bool>(), -2.0..2.0_f64), 2),
+        radius in 3.0..6.0_f64,
+    ) {
+        let row = |k: usize, (a, b): (f64, f64)| {
+            let y = 22.0 + 25.0 * k as f64;
+            Path { closed: false, cubics: vec![[(10.0, 0.0), (35.0, a), (65.0, b), (90.0, 0.0)].map(|(x, d)| Vector::xy(x, y + d))] }
+        };
+        let mut paths: Vec<_> = waves.iter().enumerate().map(|(k, w)| row(k, *w)).collect();
+        let first = Measured::new(paths[0].clone(), 1e-4);
+        for (k, &(through, lean)) in columns.iter().enumerate() {
+            let top = first.point(first.length() * (0.3 + 0.4 * k as f64));
+            let start = if through { top - Vector::xy(0.0, 12.0) } else { top };
+            paths.push(Path::polyline(&[start, Vector::xy(top[0] + lean, 90.0)]));
+        }
+        paths.push(circle(50.0, 34.0, radius));
+        let rebuilt = rebuilt(&paths);
+        prop_assert_eq!(rebuilt.strokes.len(), paths.len());
+        prop_assert_eq!(rebuilt.closed(), 1);
+        let through = columns.iter().filter(|c| c.0).count();
+        prop_assert_eq!(rebuilt.degrees(Knot::End).len(), 2 * 3 + 2 + through);
+        let tees = columns.len() - through;
+        let expected = [vec![3; tees], vec![4; 3 * columns.len() - tees]].concat();
+        prop_assert_eq!(rebuilt.degrees(Knot::Junction), expected);
+        let distance = hausdorff(&drawn(&rebuilt), &paths);
+        prop_assert!(distance < 0.1 + 0.02 * rebuilt.net.spacing, "{} of {}", distance, rebuilt.net.spacing);
+    }
+}

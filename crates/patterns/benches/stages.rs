@@ -1,13 +1,21 @@
-//! Time of whole runs, and of runs with single stages left out or replaced: the difference is what the stage takes.
+//! Time of whole runs on elements, of single stages, and of runs with single stages left out or replaced.
 //!
 //! One thread, unless `RAYON_NUM_THREADS` says otherwise.
+
+#![expect(unused, unreachable_pub, reason = "the benchmark uses part of the engine")]
+
+include!("engine/modules.rs");
+#[path = "engine/stages.rs"]
+mod stages;
 
 use arabesque_core::{
     Bounds, Class, Domain, Element, Exemplar, Outcome, Outline, Request, Role, Similarity, Stage, Stream, Unobserved,
     Vector,
 };
-use arabesque_patterns::{Params, Prepared};
 use divan::Bencher;
+use engine::Prepared;
+use params::Params;
+use stages::{set_threads, time};
 
 /// Elements of the output.
 const SIZES: [usize; 3] = [100, 1_000, 10_000];
@@ -136,6 +144,45 @@ mod whole {
     }
 }
 
+/// One stage at a time, on discs.
+mod stage {
+    use super::*;
+    use crate::stages::Stage;
+
+    /// Elements of the output.
+    const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
+
+    #[divan::bench(args = SIZES, sample_count = 1)]
+    fn layout(bencher: Bencher, n: usize) {
+        time(bencher, &discs(), n, Stage::Layout);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 2)]
+    fn search(bencher: Bencher, n: usize) {
+        time(bencher, &discs(), n, Stage::Search);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn matching(bencher: Bencher, n: usize) {
+        time(bencher, &discs(), n, Stage::Matching);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn solve(bencher: Bencher, n: usize) {
+        time(bencher, &discs(), n, Stage::Solve);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn existence(bencher: Bencher, n: usize) {
+        time(bencher, &discs(), n, Stage::Existence);
+    }
+
+    #[divan::bench(args = SIZES, sample_count = 3)]
+    fn reconstruct(bencher: Bencher, n: usize) {
+        time(bencher, &discs(), n, Stage::Reconstruct);
+    }
+}
+
 /// One stage left out or replaced, on discs.
 mod without {
     use super::*;
@@ -196,8 +243,6 @@ mod without {
 }
 
 fn main() {
-    if std::env::var_os("RAYON_NUM_THREADS").is_none() {
-        rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("no pool was made before");
-    }
+    set_threads();
     divan::main();
 }

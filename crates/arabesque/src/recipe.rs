@@ -122,6 +122,8 @@ pub enum BorderRule {
     /// Whatever reaches into the domain is drawn, cut at the border.
     #[default]
     Clip,
+    /// Strokes turn at the border and run along it; elements lie wholly inside.
+    Turn,
 }
 
 impl From<BorderRule> for Border {
@@ -130,6 +132,7 @@ impl From<BorderRule> for Border {
             BorderRule::Inside => Self::Inside,
             BorderRule::Cross => Self::Cross,
             BorderRule::Clip => Self::Clip,
+            BorderRule::Turn => Self::Turn,
         }
     }
 }

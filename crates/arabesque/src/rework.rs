@@ -9,7 +9,7 @@ use arabesque_io::{
 use crate::{
     Region,
     prepare::{Place, Preparation, shaped},
-    recipe::Method,
+    recipe::{BorderRule, Method},
     spacing::spacing,
 };
 
@@ -78,6 +78,10 @@ impl Preparation<'_> {
             (None, Some(_), None) => return Err(Error::parameter("from", "given without to", "both from and to")),
             (None, None, Some(_)) => return Err(Error::parameter("to", "given without from", "both from and to")),
         };
+        if recipe.border == Some(BorderRule::Turn) {
+            let expected = "inside, cross or clip: at the border of a region that is made anew the strokes around it go on";
+            return Err(Error::parameter("border", "turn", expected));
+        }
         let others = [recipe.size.is_some(), recipe.tile.is_some(), recipe.domain.is_some(), recipe.keep.is_some()];
         if others.contains(&true) {
             let name = if recipe.redo.is_some() { "redo" } else { "to" };

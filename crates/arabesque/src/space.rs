@@ -105,6 +105,10 @@ impl Preparation<'_> {
             let advice = "leave it away, or leave the box away";
             return Err(Error::Unsupported { what: format!("{what} together with box"), advice: advice.into() });
         }
+        if self.recipe.border == Some(BorderRule::Turn) {
+            let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
+            return Err(Error::parameter("border", "turn", expected));
+        }
         self.check_version();
         let bytes = self.recipe.exemplar.read(self.base, &self.limits)?;
         let exemplar = self.space_exemplar(&bytes)?;

@@ -55,6 +55,23 @@ fn inspect_counts_curves_by_style() {
 }
 
 #[test]
+fn strokes_turn_at_the_border() {
+    let folder = folder();
+    folder.ok("fill net.svg --size 160x160 --border turn -o out.svg");
+    let text = folder.text("out.svg");
+    let paths = attributes(drawn(&text), "d");
+    assert!(paths.iter().any(|d| d.ends_with('Z')), "no stroke along the border: {paths:?}");
+    folder.ok("run out.svg -o again.svg");
+    assert_eq!(text, folder.text("again.svg"));
+    // A tile has no border.
+    folder.ok("fill net.svg --tile 100x100 --border turn -o turned.svg");
+    folder.ok("fill net.svg --tile 100x100 -o tile.svg");
+    assert_eq!(drawn(&folder.text("turned.svg")), drawn(&folder.text("tile.svg")));
+    let message = folder.fails(2, "fill net.svg --redo 20,20,40,40 --border turn -o redone.svg");
+    assert!(message.contains("the strokes around it go on"), "{message}");
+}
+
+#[test]
 fn a_region_is_made_anew_and_the_rest_stays_to_the_byte() {
     let folder = folder();
     folder.ok("fill leaves.svg --redo 40,0,40,40 -o out.svg");

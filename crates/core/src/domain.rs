@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Bounds, Vector};
+use crate::{Bounds, Outline, Vector};
 
 /// A set of points with a boundary.
 pub trait Region<const D: usize>: Send + Sync + std::fmt::Debug {
@@ -14,6 +14,10 @@ pub trait Region<const D: usize>: Send + Sync + std::fmt::Debug {
     fn signed_distance(&self, p: Vector<D>) -> f64;
     /// The boundary point nearest to `p`.
     fn nearest_boundary(&self, p: Vector<D>) -> Vector<D>;
+    /// The boundary as polygons, where the region is one of the plane. Default: `None`.
+    fn outline(&self) -> Option<&Outline<D>> {
+        None
+    }
 }
 
 /// Where the output may lie.
@@ -81,6 +85,21 @@ impl<const D: usize> Domain<D> {
         match self.period() {
             Some(period) => (to - from).zip(period, |d, l| d - l * (d / l).round()),
             None => to - from,
+        }
+    }
+
+    /// The border as polygons: `None` on a torus, which has none, and in space.
+    pub fn outline(&self) -> Option<Outline<D>> {
+        match self {
+            Self::Box(b) if D == 2 => {
+                let corners = [(0, 0), (1, 0), (1, 1), (0, 1)];
+                let side = |k: usize, far: usize| if far == 1 { b.max[k] } else { b.min[k] };
+                let corner =
+                    |(x, y): (usize, usize)| Vector(std::array::from_fn(|k| side(k, if k == 0 { x } else { y })));
+                Some(Outline { rings: vec![corners.map(corner).to_vec()] })
+            }
+            Self::Region(r) => r.outline().cloned(),
+            Self::Box(_) | Self::Torus(_) => None,
         }
     }
 

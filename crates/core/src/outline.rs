@@ -3,9 +3,16 @@
 use i_overlay::{
     core::{fill_rule::FillRule as Rule, overlay_rule::OverlayRule},
     float::{simplify::SimplifyShape, single::SingleFloatOverlay},
+    mesh::{
+        float::outline::offset::OutlineOffset,
+        float::style::{LineJoin, OutlineStyle},
+    },
 };
 
 use crate::{Bounds, Similarity, Vector};
+
+/// Rounded corners are polygons with an edge for every so many radians.
+const ROUND: f64 = 0.1;
 
 /// A closed polygon; the last point is joined to the first, which is not repeated.
 pub type Ring<const D: usize> = Vec<Vector<D>>;
@@ -69,6 +76,15 @@ impl Outline<2> {
     /// The part of this outline that `other` does not cover.
     pub fn difference(&self, other: &Self) -> Self {
         self.overlay(other, OverlayRule::Difference)
+    }
+
+    /// Everything within `distance` of the outline, corners rounded; with a negative `distance` everything at least so far inside.
+    pub fn grown(&self, distance: f64) -> Self {
+        if self.rings.is_empty() || distance == 0.0 {
+            return self.clone();
+        }
+        let style = OutlineStyle::new(distance).line_join(LineJoin::Round(ROUND));
+        Self::from_shapes(to_arrays(&self.rings).outline(&style))
     }
 
     /// Area, holes taken out.

@@ -12,6 +12,10 @@ pub enum Border {
     /// Whatever reaches into the domain is used, to be cut at the border when it is drawn.
     #[default]
     Clip,
+    /// Strokes that reach the border turn there: they run along it to their neighbour and come back as that, or where strokes of the
+    /// exemplar branch, end on a stroke all along the border. All ink lies inside. Elements as for `Inside`. On a torus, which has no
+    /// border, and in space strokes are cut as for `Inside`.
+    Turn,
 }
 
 /// What to make from a prepared exemplar.

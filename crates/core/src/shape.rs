@@ -158,6 +158,10 @@ fn nearest_on_edge(edge: (Vector<2>, Vector<2>), p: Vector<2>) -> Vector<2> {
 }
 
 impl Region<2> for Shape {
+    fn outline(&self) -> Option<&Outline<2>> {
+        Some(&self.outline)
+    }
+
     fn bounds(&self) -> Bounds<2> {
         self.bounds
     }

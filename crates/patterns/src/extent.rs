@@ -73,6 +73,20 @@ impl<'a, const D: usize> Extent<'a, D> {
         self.obstacles.is_some()
     }
 
+    /// The style of an exemplar curve, and whether it is closed.
+    pub(crate) fn style(&self, curve: usize) -> (usize, bool) {
+        let curve = &self.exemplar.curves[curve];
+        (curve.style, curve.path.closed)
+    }
+
+    /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in space.
+    pub(crate) fn outline(&self) -> Option<Outline<2>> {
+        let request = (self.request as &dyn Any).downcast_ref::<Request<2>>()?;
+        let whole = request.domain.outline()?;
+        let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+        Some(whole.difference(&Outline::union(&rings, FillRule::NonZero)))
+    }
+
     /// Distance to the border, negative outside.
     pub(crate) fn depth(&self, p: Vector<D>) -> f64 {
         self.request.domain.signed_distance(p)
@@ -93,8 +107,8 @@ impl<'a, const D: usize> Extent<'a, D> {
                     && distance >= -reach
                     && self.outline_at(i, p).points().any(|q| self.request.domain.contains(q))
             }
-            Border::Inside if distance >= reach => true,
-            Border::Inside => {
+            Border::Inside | Border::Turn if distance >= reach => true,
+            Border::Inside | Border::Turn => {
                 distance >= 0.0 && self.outline_at(i, p).points().all(|q| self.request.domain.contains(q))
             }
         }
@@ -124,7 +138,7 @@ impl<'a, const D: usize> Extent<'a, D> {
         let domain = &self.request.domain;
         let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
         let allowed = match self.border(i) {
-            Border::Cross | Border::Inside => 0.0,
+            Border::Cross | Border::Inside | Border::Turn => 0.0,
             Border::Clip => -reach,
         };
         let distance = domain.signed_distance(p);

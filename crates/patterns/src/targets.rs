@@ -56,7 +56,7 @@ fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32)
             let mean = members.iter().map(|&e| library.radius[e as usize]).sum::<f64>() / members.len().max(1) as f64;
             let is_stroke = members.first().is_some_and(|&e| e >= base);
             match if is_stroke { Border::Clip } else { border } {
-                Border::Inside => mean,
+                Border::Inside | Border::Turn => mean,
                 Border::Cross => 0.0,
                 Border::Clip => -0.8 * mean,
             }

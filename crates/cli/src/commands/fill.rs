@@ -129,6 +129,8 @@ enum Border {
     Cross,
     /// Whatever reaches into the domain is drawn, cut at the border
     Clip,
+    /// Strokes turn at the border and run along it; elements lie wholly inside
+    Turn,
 }
 
 /// What the exemplar is made of.
@@ -186,6 +188,7 @@ impl Fill {
             Border::Inside => BorderRule::Inside,
             Border::Cross => BorderRule::Cross,
             Border::Clip => BorderRule::Clip,
+            Border::Turn => BorderRule::Turn,
         });
         recipe.orient = self.fields.orient;
         recipe.scale = self.fields.scale;

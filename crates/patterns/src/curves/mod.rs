@@ -18,6 +18,7 @@
 //! | shape of a stroke | `shape` | beyond the paper: the exemplar's own line, bent to its ends |
 //! | next level | `resample` | §4.3.5 |
 //! | the border | `trim` | §4.3.1, the domain term |
+//! | strokes that turn at it | `hem`, `turn`, `fit` | beyond the paper |
 //! | strokes that run into one another | `ink` | |
 //!
 //! Beyond the paper: the samples between two knots carry the true line of the exemplar, so that corners stay corners and arcs stay arcs; an edge
@@ -27,6 +28,8 @@ mod cast;
 mod chains;
 mod contact;
 mod edges;
+mod fit;
+mod hem;
 mod ink;
 mod loose;
 mod mend;
@@ -38,6 +41,7 @@ mod tangents;
 #[cfg(test)]
 mod tests;
 mod trim;
+mod turn;
 mod votes;
 
 pub(crate) use cast::Cast;

@@ -7,6 +7,7 @@ use arabesque_core::{Cubic, Drawn, Path, Vector, straight};
 
 use super::{
     chains::Chain,
+    hem::Hem,
     net::{Net, Piece},
     skeleton::Knot,
     trim::at_border,
@@ -47,13 +48,19 @@ pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> 
 pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>> {
     let frozen = state.request.frozen_curves.iter().enumerate().map(|(n, d)| Drawn { frozen: Some(n), ..d.clone() });
     let Some(net) = &state.level.net else { return frozen.collect() };
-    let free = chains.iter().flat_map(|chain| {
+    let free = chains.iter().map(|chain| {
         let (path, curve) = draw(state, net, chain);
         let scale = state.request.fields.frame(path.start().unwrap_or(Vector::ZERO)).element_scale;
-        let stroke = Drawn { path, source: curve as usize, scale, frozen: None };
-        at_border(stroke, state.extent, state.width(curve), net.spacing * scale)
+        Drawn { path, source: curve as usize, scale, frozen: None }
     });
-    frozen.chain(free).collect()
+    if let Some(hem) = Hem::of(state, net) {
+        return frozen.chain(hem.finish(free.collect())).collect();
+    }
+    let cut = |d: Drawn<D>| {
+        let (width, unit) = (state.width(d.source as u32), net.spacing * d.scale);
+        at_border(d, state.extent, width, unit)
+    };
+    frozen.chain(free.flat_map(cut)).collect()
 }
 
 /// The path of a chain, and the exemplar curve whose style it carries. On a torus the path is unrolled.

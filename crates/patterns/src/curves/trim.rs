@@ -68,7 +68,7 @@ pub(crate) fn at_border<const D: usize>(
     }
     let margin = match extent.rule() {
         Border::Clip => 0.0,
-        Border::Inside => 0.5 * width * stroke.scale,
+        Border::Inside | Border::Turn => 0.5 * width * stroke.scale,
         Border::Cross => f64::NEG_INFINITY,
     };
     let holds = |p: Vector<D>| extent.depth(p) >= margin && !extent.is_blocked(p, 0.5 * width * stroke.scale);

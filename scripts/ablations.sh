@@ -2,11 +2,13 @@
 # What each component of the engine for curves is good for: fills a page from each exemplar with everything, and again with one
 # component switched off, and lays the results out on one sheet. docs/ablations.md says what to see.
 #
-#   scripts/ablations.sh [-o FOLDER] [-s SIZE] [-n SEED] [-m on|off] [EXEMPLAR.svg ...]
+#   scripts/ablations.sh [-o FOLDER] [-s SIZE] [-n SEED] [-i START] [-m on|off] [EXEMPLAR.svg ...]
 #
 #   -o FOLDER  where the results go; default: ablations
 #   -s SIZE    size of the pages; default: 400x400
 #   -n SEED    seed of every run; default: 1
+#   -i START   first layout of every run: patch-copy, random-copy or white-noise; default: random-copy, since patches chosen to agree
+#              leave the rest little to do
 #   -m on|off  whether dangling ends are mended at the end, which hides part of what goes wrong before; default: off
 #
 # Exemplars default to four of examples/. Results are FOLDER/NAME-VARIANT.svg and FOLDER/sheet.png, one row an exemplar.
@@ -14,14 +16,15 @@
 # (crates/arabesque/examples/sheet.rs).
 set -eu
 
-folder=ablations size=400x400 seed=1 mending=off
-while getopts o:s:n:m: option; do
+folder=ablations size=400x400 seed=1 start=random-copy mending=off
+while getopts o:s:n:i:m: option; do
     case $option in
         o) folder=$OPTARG ;;
         s) size=$OPTARG ;;
         n) seed=$OPTARG ;;
+        i) start=$OPTARG ;;
         m) mending=$OPTARG ;;
-        *) sed -n '5,10p' "$0" >&2; exit 2 ;;
+        *) sed -n '5,12p' "$0" >&2; exit 2 ;;
     esac
 done
 shift $((OPTIND - 1))
@@ -60,7 +63,8 @@ for exemplar; do
         arguments=$(printf '%s' "$settings" | tr ',' '\n' | sed 's/^/--set /')
         # The settings are words without blanks, to be split.
         # shellcheck disable=SC2086
-        "$ARABESQUE" fill "$exemplar" --size "$size" --seed "$seed" --set "mending=$mending" $arguments \
+        "$ARABESQUE" fill "$exemplar" --size "$size" --seed "$seed" --set "initialisation=$start" \
+            --set "mending=$mending" $arguments \
             -o "$result" < /dev/null
         printf '%s\n' "$result=$label" >> "$cells"
     done

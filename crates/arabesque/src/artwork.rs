@@ -126,9 +126,9 @@ impl Artwork<'_> {
                 Ok(Encoded { bytes: text.into_bytes(), warnings: self.left_out()? })
             }
             Format::Toml => Ok(plain(recipe)),
-            Format::Obj => Err(Error::Unsupported {
-                what: "a drawing of the plane as obj".into(),
-                advice: "write svg, png, json or csv; obj holds curves in space (--box)".into(),
+            Format::Obj | Format::Glb => Err(Error::Unsupported {
+                what: format!("a drawing of the plane as {}", format.name()),
+                advice: "write svg, png, json or csv; obj holds curves in space (--box), glb ribbons".into(),
             }),
         }
     }

@@ -6,7 +6,7 @@ use arabesque_core::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::nearest::nearest;
+use crate::nearest;
 
 /// File format of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -20,20 +20,23 @@ pub enum Format {
     Json,
     /// Points with classes.
     Csv,
-    /// Curves in space as polylines.
+    /// Curves in space as polylines; ribbons as textured strips.
     Obj,
+    /// Ribbons as textured strips, with their pictures.
+    Glb,
     /// The recipe alone.
     Toml,
 }
 
 impl Format {
     /// Every format, by name.
-    pub const ALL: [(&'static str, Self); 6] = [
+    pub const ALL: [(&'static str, Self); 7] = [
         ("svg", Self::Svg),
         ("png", Self::Png),
         ("json", Self::Json),
         ("csv", Self::Csv),
         ("obj", Self::Obj),
+        ("glb", Self::Glb),
         ("toml", Self::Toml),
     ];
 

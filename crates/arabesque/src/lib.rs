@@ -15,18 +15,20 @@
 //!
 //! A [`Recipe`] describes a run; [`Recipe::prepare`] reads its files and analyses the exemplar; [`Prepared::run`] fills the domain, as often
 //! as wanted; [`Artwork::encode`] makes the bytes of a file, which carries its recipe ([`recipe_in`] finds it again). The engine and its
-//! vocabulary are re-exported as [`core`] and [`patterns`], the file formats as [`io`].
+//! vocabulary are re-exported as [`core`], [`patterns`] and [`ribbons`], the file formats as [`io`].
 
 mod artwork;
 mod carrier;
 mod format;
 mod input;
 mod inspect;
-mod nearest;
 mod pool;
 mod prepare;
 mod recipe;
 mod region;
+mod ribbon;
+mod ribbon_picture;
+mod ribbon_recipe;
 mod rework;
 mod size;
 mod space;
@@ -36,6 +38,7 @@ mod subject;
 pub use arabesque_core as core;
 pub use arabesque_io as io;
 pub use arabesque_patterns as patterns;
+pub use arabesque_ribbons as ribbons;
 
 pub use arabesque_core::{
     EnergyPoint, Error, Limits, Observer, Outcome, Progress, Result, StopReason, Unobserved, Warning,
@@ -45,11 +48,13 @@ pub use carrier::recipe_in;
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
 pub use inspect::{ClassReport, Report, StyleReport, inspect};
-pub use nearest::nearest;
+pub use arabesque_io::nearest::nearest;
 pub use pool::in_pool;
 pub use prepare::Prepared;
 pub use recipe::{BorderRule, FieldFile, FieldSource, Method, OutputOptions, Recipe};
 pub use region::Region;
+pub use ribbon::{Laid, RibbonArtwork, RibbonPrepared};
+pub use ribbon_recipe::{ClosingRule, RIBBON_OPTIONS, RibbonOption, RibbonRecipe, WidthSource};
 pub use size::Size;
 pub use space::{SpaceArtwork, SpacePrepared};
 pub use subject::Subject;

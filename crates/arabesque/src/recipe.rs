@@ -9,7 +9,7 @@ use arabesque_core::{Border, Error, Result};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::{Format, Input, Region, nearest::nearest};
+use crate::{Format, Input, Region, RibbonRecipe, nearest};
 
 /// A run, described completely: what to read, where to fill, how, and what to write.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -82,6 +82,9 @@ pub struct Recipe {
     /// Single parameters by name, as `--set` has them.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "plain_values")]
     pub set: BTreeMap<String, String>,
+    /// Lay the pattern of a picture along curves, instead of filling a domain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ribbon: Option<RibbonRecipe>,
     /// What to write.
     #[serde(default)]
     pub output: OutputOptions,
@@ -207,6 +210,7 @@ impl Recipe {
             density: None,
             avoid: Vec::new(),
             set: BTreeMap::new(),
+            ribbon: None,
             output: OutputOptions::default(),
         }
     }

@@ -44,8 +44,13 @@ impl Recipe {
         self.cuboid.is_some()
     }
 
-    /// The file format where nobody says which: SVG for the plane, OBJ for curves and CSV for points in space.
+    /// The file format where nobody says which: SVG for the plane, OBJ for curves and CSV for points in space, PNG for ribbons, GLB for
+    /// ribbons in space.
     pub fn usual_format(&self) -> Format {
+        if let Some(ribbon) = &self.ribbon {
+            let in_space = Format::of_path(&ribbon.along.path).ok().flatten() == Some(Format::Obj);
+            return if in_space { Format::Glb } else { Format::Png };
+        }
         let is_points = Format::of_path(&self.exemplar.path).ok().flatten() == Some(Format::Csv);
         match (self.is_space(), is_points) {
             (false, _) => Format::Svg,
@@ -258,7 +263,7 @@ impl SpaceArtwork<'_> {
                 (json::write_json(exemplar, outcome, &frame)?, Vec::new())
             }
             Format::Toml => (recipe, Vec::new()),
-            Format::Svg | Format::Png => {
+            Format::Svg | Format::Png | Format::Glb => {
                 let what = format!("a result in space as {}", format.name());
                 let advice = "write obj (curves), csv (points) or json (both)";
                 return Err(Error::Unsupported { what, advice: advice.into() });

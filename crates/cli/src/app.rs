@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::{
-    commands::{completions, fill, inspect, man, run},
+    commands::{completions, fill, inspect, man, ribbon, run},
     failure::Failure,
 };
 
@@ -25,6 +25,8 @@ pub(crate) struct App {
 enum Command {
     /// Fill a page, a shape or a seamless tile with the pattern of an exemplar
     Fill(Box<fill::Fill>),
+    /// Lay the pattern of a picture along curves without bending it
+    Ribbon(Box<ribbon::Ribbon>),
     /// Say what was understood of an exemplar
     Inspect(inspect::Inspect),
     /// Repeat a run from a recipe, or from any result that carries one
@@ -39,6 +41,7 @@ impl App {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
         match self.command {
             Command::Fill(c) => c.execute(),
+            Command::Ribbon(c) => c.execute(),
             Command::Inspect(c) => c.execute(),
             Command::Run(c) => c.execute(),
             Command::Completions(c) => c.execute(),

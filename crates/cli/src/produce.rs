@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, path::Path, process::ExitCode, time::Duration};
 
 use arabesque::{
-    Encoded, EnergyPoint, Format, Outcome, OutputOptions, Prepared, Recipe, SpacePrepared, StopReason, Warning,
-    in_pool, io::file,
+    Encoded, EnergyPoint, Format, Outcome, OutputOptions, Prepared, Recipe, RibbonArtwork, RibbonPrepared,
+    SpacePrepared, StopReason, Warning, in_pool, io::file,
 };
 use clap::Args;
 
@@ -14,7 +14,7 @@ use crate::{
     failure::{Failure, INTERRUPTED},
     progress::Watch,
     say::{self, Level},
-    summary::{self, Message, Output, Summary},
+    summary::{self, Message, Output, Ribbons, Summary},
 };
 
 /// Options of everything that runs.
@@ -29,7 +29,7 @@ pub(crate) struct RunOptions {
     /// Stop each run after this time and write the best so far: seconds, or 1m30s
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub(crate) time_limit: Option<Duration>,
-    /// File format, where the extension of OUT does not say: svg, png, json, csv or toml (the recipe alone)
+    /// File format, where the extension of OUT does not say: svg, png, json, csv, obj, glb or toml (the recipe alone)
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
     /// Leave the recipe out of the result, which then cannot be repeated by `arabesque run`
@@ -131,9 +131,7 @@ fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &Ru
     let level = options.talk.level();
     let ready = Ready::new(recipe, base)?;
     if level == Level::Verbose {
-        let ((elements, classes), (curves, styles)) = ready.exemplar();
-        let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
-        say::note(&format!("exemplar: {elements} elements in {classes} classes{of_curves}"));
+        say::note(&ready.exemplar());
     }
     let mut outputs = Vec::new();
     for plan in &plans {
@@ -148,27 +146,36 @@ fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &Ru
     Ok(if is_interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
-/// A prepared run, in the plane or in space.
+/// A prepared run, in the plane, in space, or along curves.
 enum Ready {
     Plane(Box<Prepared>),
     Space(Box<SpacePrepared>),
+    Ribbon(Box<RibbonPrepared>),
 }
 
 impl Ready {
     fn new(recipe: &Recipe, base: Option<&Path>) -> Result<Self, Failure> {
-        Ok(if recipe.is_space() {
+        Ok(if recipe.is_ribbon() {
+            Self::Ribbon(Box::new(recipe.prepare_ribbon(base)?))
+        } else if recipe.is_space() {
             Self::Space(Box::new(recipe.prepare_space(base)?))
         } else {
             Self::Plane(Box::new(recipe.prepare(base)?))
         })
     }
 
-    /// Elements and classes, curves and styles of the exemplar.
-    fn exemplar(&self) -> ((usize, usize), (usize, usize)) {
-        match self {
+    /// What was understood of the exemplar, in words.
+    fn exemplar(&self) -> String {
+        let ((elements, classes), (curves, styles)) = match self {
             Self::Plane(p) => (p.exemplar_size(), p.exemplar_curves()),
             Self::Space(p) => (p.exemplar_size(), p.exemplar_curves()),
-        }
+            Self::Ribbon(p) => {
+                let sizes: Vec<_> = p.exemplar_sizes().iter().map(|(w, h)| format!("{w} x {h} pixels")).collect();
+                return format!("exemplar: {}, along {}", sizes.join(", then "), many(p.curves(), "curve"));
+            }
+        };
+        let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
+        format!("exemplar: {elements} elements in {classes} classes{of_curves}")
     }
 
     fn run(&self, seed: u64, output: &OutputOptions, watch: &mut Watch) -> Result<Ran, arabesque::Error> {
@@ -183,6 +190,11 @@ impl Ready {
                 watch.finish();
                 Ok(Ran::new(&artwork.outcome, artwork.classes(), artwork.styles(), artwork.encode(output)?))
             }
+            Self::Ribbon(prepared) => {
+                let artwork = prepared.run(seed, watch)?;
+                watch.finish();
+                Ok(Ran::ribbon(&artwork, artwork.encode(output)?))
+            }
         }
     }
 }
@@ -194,6 +206,8 @@ struct Ran {
     classes: BTreeMap<String, usize>,
     curves: usize,
     styles: BTreeMap<String, usize>,
+    /// Ribbons, their pieces and their cost.
+    ribbons: Option<Ribbons>,
     energy: Vec<EnergyPoint>,
     stopped: StopReason,
     warnings: Vec<Warning>,
@@ -212,9 +226,24 @@ impl Ran {
             classes: counts(classes),
             curves: outcome.curves.len(),
             styles: counts(styles),
+            ribbons: None,
             energy: outcome.energy.clone(),
             stopped: outcome.stopped,
             warnings: outcome.warnings.iter().cloned().chain(encoded.warnings).collect(),
+        }
+    }
+
+    fn ribbon(artwork: &RibbonArtwork<'_>, encoded: Encoded) -> Self {
+        Self {
+            bytes: encoded.bytes,
+            elements: 0,
+            classes: BTreeMap::new(),
+            curves: 0,
+            styles: BTreeMap::new(),
+            ribbons: Some(Ribbons { ribbons: artwork.ribbons(), pieces: artwork.pieces(), cost: artwork.cost() }),
+            energy: Vec::new(),
+            stopped: artwork.stopped,
+            warnings: artwork.warnings.iter().cloned().chain(encoded.warnings).collect(),
         }
     }
 }
@@ -254,6 +283,7 @@ fn describe(ran: Ran, plan: &Plan, output: &OutputOptions, elapsed: Duration) ->
         classes: ran.classes,
         curves: ran.curves,
         styles: ran.styles,
+        ribbons: ran.ribbons,
         energy: ran.energy.last().map(|e| e.energy),
         stopped: match ran.stopped {
             StopReason::Finished => "finished",
@@ -284,12 +314,18 @@ fn tell(made: &Output, energy: &[EnergyPoint], warnings: &[Warning], level: Leve
 
 /// What was made, in words.
 fn counted(made: &Output) -> String {
-    let many = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    if let Some(r) = &made.ribbons {
+        return format!("{} in {}", many(r.pieces, "piece"), many(r.ribbons, "ribbon"));
+    }
     match (made.curves, made.elements) {
         (0, n) => format!("{n} elements"),
         (n, 0) => many(n, "curve"),
         (c, e) => format!("{} and {}", many(c, "curve"), many(e, "element")),
     }
+}
+
+fn many(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 #[cfg(test)]

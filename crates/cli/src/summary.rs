@@ -24,11 +24,23 @@ pub(crate) struct Output {
     pub(crate) classes: BTreeMap<String, usize>,
     pub(crate) curves: usize,
     pub(crate) styles: BTreeMap<String, usize>,
+    /// Of a ribbon alone.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub(crate) ribbons: Option<Ribbons>,
     pub(crate) energy: Option<f64>,
     /// `finished`, `interrupted` or `time limit`.
     pub(crate) stopped: &'static str,
     pub(crate) seconds: f64,
     pub(crate) warnings: Vec<Message>,
+}
+
+/// What ribbons are made of.
+#[derive(Debug, Serialize)]
+pub(crate) struct Ribbons {
+    pub(crate) ribbons: usize,
+    pub(crate) pieces: usize,
+    /// In 8-bit colour steps.
+    pub(crate) cost: f64,
 }
 
 /// A warning.

@@ -6,7 +6,10 @@
 pub mod centreline;
 pub mod csv;
 pub mod file;
+pub mod image;
 pub mod json;
+pub mod mask;
+pub mod nearest;
 pub mod number;
 pub mod obj;
 pub mod path_data;

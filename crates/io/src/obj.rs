@@ -35,6 +35,28 @@ pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
     reader.finish()
 }
 
+/// Reads polylines as lines to lay a pattern along, each with the name that messages call it by. They may lie in one plane.
+///
+/// # Errors
+/// As [`read_curves`], but for the box.
+pub fn read_lines(name: &str, text: &str, limits: &Limits) -> Result<Vec<(String, Path<3>)>> {
+    let mut reader = Reader::new(name, limits);
+    for (line, content) in logical_lines(text) {
+        reader.statement(line, &content)?;
+    }
+    let mut paths = Vec::new();
+    for (line, polyline) in &reader.lines {
+        let path = reader.path(*line, polyline)?;
+        if !path.is_empty() {
+            paths.push((format!("{name}: line {line}"), path));
+        }
+    }
+    if paths.is_empty() {
+        return Err(Error::input(name, "no line of any length found", "draw the curve as a line, such as l 1 2 3"));
+    }
+    Ok(paths)
+}
+
 /// Lines without comments, joined where a backslash continues them, with the number of their first line. Box comments stay.
 fn logical_lines(text: &str) -> Vec<(usize, String)> {
     let mut lines: Vec<(usize, String)> = Vec::new();

@@ -22,28 +22,9 @@ impl Picture {
     /// # Errors
     /// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
     pub fn read(name: &str, bytes: &[u8], limits: &Limits) -> Result<Self> {
-        if !super::png::is_png(bytes) {
-            let problem = format!("{} where a PNG picture was expected", kind_of(bytes));
-            return Err(Error::input(name, problem, "save the picture as PNG"));
-        }
-        let broken = |e: png::DecodingError| Error::input(name, format!("broken PNG: {e}"), "save the picture again");
-        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
-        decoder.set_transformations(png::Transformations::EXPAND);
-        let mut reader = decoder.read_info().map_err(broken)?;
-        let (width, height) = (reader.info().width as usize, reader.info().height as usize);
-        if (width as u64).saturating_mul(height as u64) > limits.pixels {
-            return Err(Error::Limit {
-                what: format!("{name}: size of the picture"),
-                found: format!("{width} x {height} pixels"),
-                limit: format!("{} pixels", limits.pixels),
-                advice: "scale the picture down; a few hundred pixels are enough".into(),
-            });
-        }
-        let size = reader.output_buffer_size().ok_or_else(|| Error::input(name, "too large", "scale it down"))?;
-        let mut buffer = vec![0; size];
-        let frame = reader.next_frame(&mut buffer).map_err(broken)?;
-        let pixels = colours(&buffer[..frame.buffer_size()], frame.color_type, frame.bit_depth);
-        Ok(Self { width, height, pixels })
+        let raw = decode(name, bytes, limits)?;
+        let pixels = colours(&raw.samples, raw.kind, raw.depth);
+        Ok(Self { width: raw.width, height: raw.height, pixels })
     }
 
     /// Brightness as a number over `bounds`: black is `range[0]`, white is `range[1]`, linear in between.
@@ -96,6 +77,44 @@ impl Picture {
         let half = Vector::xy(0.5 / nodes[0] as f64, 0.5 / nodes[1] as f64).zip(bounds.size(), |h, s| h * s);
         Grid { bounds: Bounds::new(bounds.min + half, bounds.max - half), nodes, values }
     }
+}
+
+/// Samples as a PNG file has them: palettes and less than 8 bits expanded.
+pub(crate) struct Raw {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) samples: Vec<u8>,
+    pub(crate) kind: png::ColorType,
+    pub(crate) depth: png::BitDepth,
+}
+
+/// Reads the samples of a PNG picture.
+///
+/// # Errors
+/// As [`Picture::read`].
+pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Raw> {
+    if !super::png::is_png(bytes) {
+        let problem = format!("{} where a PNG picture was expected", kind_of(bytes));
+        return Err(Error::input(name, problem, "save the picture as PNG"));
+    }
+    let broken = |e: png::DecodingError| Error::input(name, format!("broken PNG: {e}"), "save the picture again");
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(broken)?;
+    let (width, height) = (reader.info().width as usize, reader.info().height as usize);
+    if (width as u64).saturating_mul(height as u64) > limits.pixels {
+        return Err(Error::Limit {
+            what: format!("{name}: size of the picture"),
+            found: format!("{width} x {height} pixels"),
+            limit: format!("{} pixels", limits.pixels),
+            advice: "scale the picture down; a few hundred pixels are enough".into(),
+        });
+    }
+    let size = reader.output_buffer_size().ok_or_else(|| Error::input(name, "too large", "scale it down"))?;
+    let mut buffer = vec![0; size];
+    let frame = reader.next_frame(&mut buffer).map_err(broken)?;
+    buffer.truncate(frame.buffer_size());
+    Ok(Raw { width, height, samples: buffer, kind: frame.color_type, depth: frame.bit_depth })
 }
 
 fn kind_of(bytes: &[u8]) -> &'static str {

@@ -1,6 +1,6 @@
 //! PNG: pictures of results, with their resolution and their recipe.
 
-use arabesque_core::{Error, Limits, Result};
+use arabesque_core::{Error, Image, Limits, Result};
 use resvg::{tiny_skia, usvg};
 
 /// How large a picture is.
@@ -67,16 +67,34 @@ pub fn write_png(plate: &Plate<'_>, limits: &Limits) -> Result<Vec<u8>> {
     let stretch = tiny_skia::Transform::from_scale((width / page[0]) as f32, (height / page[1]) as f32);
     resvg::render(&tree, stretch, &mut pixmap.as_mut());
     let per_metre = width / page[0] * PIXELS_PER_INCH * INCHES_PER_METRE;
-    encode(&pixmap, per_metre, plate.recipe).map_err(|e| fail(e.to_string()))
+    encode(&straight(&pixmap), per_metre, plate.recipe).map_err(|e| fail(e.to_string()))
 }
 
-fn encode(
-    pixmap: &tiny_skia::Pixmap,
-    per_metre: f64,
-    recipe: Option<&str>,
-) -> std::result::Result<Vec<u8>, png::EncodingError> {
+/// Writes a picture with straight alpha as PNG.
+///
+/// # Errors
+/// [`Error::Input`] when the encoder refuses it.
+pub fn write_image(image: &Image, per_metre: f64, recipe: Option<&str>) -> Result<Vec<u8>> {
+    encode(image, per_metre, recipe)
+        .map_err(|e| Error::input("writing the picture", e.to_string(), "write it as SVG instead"))
+}
+
+/// The pixels with their alpha divided out.
+pub(crate) fn straight(pixmap: &tiny_skia::Pixmap) -> Image {
+    let pixels = pixmap
+        .pixels()
+        .iter()
+        .map(|p| {
+            let c = p.demultiply();
+            [c.red(), c.green(), c.blue(), c.alpha()]
+        })
+        .collect();
+    Image { width: pixmap.width() as usize, height: pixmap.height() as usize, pixels }
+}
+
+fn encode(image: &Image, per_metre: f64, recipe: Option<&str>) -> std::result::Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+    let mut encoder = png::Encoder::new(&mut bytes, image.width as u32, image.height as u32);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     let density = per_metre.round().clamp(1.0, f64::from(u32::MAX)) as u32;
@@ -84,16 +102,8 @@ fn encode(
     if let Some(recipe) = recipe {
         encoder.add_itxt_chunk(RECIPE_KEYWORD.into(), recipe.into())?;
     }
-    let straight: Vec<u8> = pixmap
-        .pixels()
-        .iter()
-        .flat_map(|p| {
-            let c = p.demultiply();
-            [c.red(), c.green(), c.blue(), c.alpha()]
-        })
-        .collect();
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&straight)?;
+    writer.write_image_data(image.pixels.as_flattened())?;
     writer.finish()?;
     Ok(bytes)
 }

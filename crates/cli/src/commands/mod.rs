@@ -4,4 +4,5 @@ pub(crate) mod completions;
 pub(crate) mod fill;
 pub(crate) mod inspect;
 pub(crate) mod man;
+pub(crate) mod ribbon;
 pub(crate) mod run;

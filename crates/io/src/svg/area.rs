@@ -17,6 +17,7 @@ use super::{
     source::{Source, with_source},
     style::Property as P,
 };
+use crate::nearest::nearest;
 
 /// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with the given id.
 ///
@@ -79,23 +80,22 @@ pub(super) fn job(inker: &Inker<'_, '_>, root: &Rc<Node>) -> Result<Job> {
     })
 }
 
-fn by_id(source: &Source<'_>, root: &Rc<Node>, id: &str) -> Result<(Affine, Rc<Node>)> {
+/// The node with an id or a label, and the transform from its parent to the root.
+pub(super) fn by_id(source: &Source<'_>, root: &Rc<Node>, id: &str) -> Result<(Affine, Rc<Node>)> {
     fn walk(node: &Rc<Node>, parent: Affine, id: &str, known: &mut Vec<String>) -> Option<(Affine, Rc<Node>)> {
         if node.meta.id.as_deref() == Some(id) || node.meta.label.as_deref() == Some(id) {
             return Some((parent, Rc::clone(node)));
         }
-        if known.len() < 8 {
-            known.extend(node.meta.id.clone());
-        }
+        known.extend(node.meta.id.iter().chain(&node.meta.label).cloned());
         let world = parent * node.transform;
         node.children().iter().find_map(|child| walk(child, world, id, known))
     }
     let mut known = Vec::new();
     walk(root, Affine::IDENTITY, id, &mut known).ok_or_else(|| {
-        let advice = if known.is_empty() {
-            "give the shape an id".to_owned()
-        } else {
-            format!("use one of its ids, such as {}", known.join(", "))
+        let advice = match (nearest(id, known.iter().map(String::as_str)), known.is_empty()) {
+            (Some(near), _) => format!("did you mean \"{near}\"?"),
+            (None, true) => "give the shape an id".to_owned(),
+            (None, false) => format!("use one of its ids, such as {}", known[..known.len().min(8)].join(", ")),
         };
         Error::input(source.name, format!("nothing visible has the id \"{id}\""), advice)
     })

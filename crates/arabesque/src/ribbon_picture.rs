@@ -1,0 +1,94 @@
+//! Ribbons as files.
+
+use arabesque_core::{Error, Limits, Result};
+use arabesque_io::{png, svg::Page};
+use arabesque_ribbons::{Canvas, Mask, Ribbon, render};
+
+use crate::{
+    Encoded, Format, OutputOptions,
+    ribbon::{Laid, RibbonArtwork, Track},
+    size::pixels_per_user,
+};
+
+/// CSS pixels an inch.
+const PIXELS_PER_INCH: f64 = 96.0;
+const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
+
+/// Pixels a user unit of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixels(pub(crate) f64);
+
+/// The resolution that `output` asks for: one pixel a user unit by default.
+pub(crate) fn resolution(output: &OutputOptions, page: Option<&Page>) -> Result<Pixels> {
+    let (name, value, scale) = match (output.dpi, output.pixels_per_unit) {
+        (None, None) => return Ok(Pixels(1.0)),
+        (Some(_), Some(_)) => {
+            return Err(Error::parameter("dpi", "given with pixels-per-unit", "only one of the two"));
+        }
+        (Some(dpi), None) => ("dpi", dpi, dpi / PIXELS_PER_INCH * page.map_or(1.0, pixels_per_user)),
+        (None, Some(n)) => ("pixels-per-unit", n, n),
+    };
+    if value.is_finite() && value > 0.0 {
+        Ok(Pixels(scale))
+    } else {
+        Err(Error::parameter(name, value, "a positive number"))
+    }
+}
+
+impl Pixels {
+    /// Width and height of the picture of a page.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] beyond [`Limits::pixels`].
+    pub(crate) fn pixels(self, page: &Page, limits: &Limits) -> Result<[usize; 2]> {
+        // A clamp keeps NaN, which the limit below then refuses.
+        let sides = page.view.size().0.map(|side| (side * self.0).round().clamp(1.0, f64::MAX));
+        if sides[0] * sides[1] <= limits.pixels as f64 && sides[0].max(sides[1]) <= f64::from(i16::MAX) {
+            return Ok(sides.map(|side| side as usize));
+        }
+        Err(Error::Limit {
+            what: "size of the canvas".into(),
+            found: format!("{} x {} pixels", sides[0], sides[1]),
+            limit: format!("{} pixels, {} a side", limits.pixels, i16::MAX),
+            advice: "ask for fewer --pixels-per-unit, or a smaller canvas with --on-canvas".into(),
+        })
+    }
+}
+
+impl RibbonArtwork<'_> {
+    /// The file in the format that `output` asks for; PNG where it does not say, GLB for curves in space.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a canvas with too many pixels, [`Error::Unsupported`] for a format that cannot hold ribbons.
+    pub fn encode(&self, output: &OutputOptions) -> Result<Encoded> {
+        let format = output.format.unwrap_or_else(|| self.prepared.recipe.usual_format());
+        let recipe = self.recipe(&OutputOptions { format: Some(format), ..output.clone() })?;
+        let carried = (!output.bare).then_some(recipe.as_str());
+        let plain = |bytes: Vec<u8>| Ok(Encoded { bytes, warnings: Vec::new() });
+        match (format, &self.laid, &self.prepared.track) {
+            (Format::Toml, ..) => plain(recipe.into_bytes()),
+            (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page }) => {
+                plain(self.picture((ribbons, request.avoid.as_ref()), page, output, carried)?)
+            }
+            _ => Err(Error::Unsupported {
+                what: format!("a ribbon as {}", format.name()),
+                advice: "write png or svg (plane), json, obj or glb".into(),
+            }),
+        }
+    }
+
+    fn picture(
+        &self,
+        (ribbons, mask): (&[Ribbon<2>], Option<&Mask>),
+        page: &Page,
+        output: &OutputOptions,
+        recipe: Option<&str>,
+    ) -> Result<Vec<u8>> {
+        let scale = resolution(output, Some(page))?;
+        let [width, height] = scale.pixels(page, &Limits::default())?;
+        let canvas = Canvas { origin: page.view.min, width, height, pixels_per_unit: scale.0 };
+        let image = render(ribbons, self.prepared.engine.exemplars(), mask, &canvas);
+        let per_metre = scale.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE;
+        png::write_image(&image, per_metre, recipe)
+    }
+}

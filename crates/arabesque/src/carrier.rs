@@ -1,7 +1,7 @@
 //! Files that carry a recipe.
 
 use arabesque_core::{Error, Result};
-use arabesque_io::{csv, file, json, obj, png, svg};
+use arabesque_io::{csv, file, gltf, json, obj, obj_strip, png, svg};
 
 use crate::{Format, Recipe};
 
@@ -18,6 +18,9 @@ pub fn recipe_in(name: &str, bytes: &[u8]) -> Result<Recipe> {
     if png::is_png(bytes) {
         return Recipe::from_toml(name, &png::recipe_of(bytes).ok_or_else(|| missing("a picture"))?);
     }
+    if gltf::is_glb(bytes) {
+        return Recipe::from_toml(name, &gltf::recipe_of(bytes).ok_or_else(|| missing("a mesh"))?);
+    }
     let text = file::decode_text(name, bytes)?;
     let start = text.trim_start();
     let (found, what) = if start.starts_with('<') {
@@ -26,7 +29,7 @@ pub fn recipe_in(name: &str, bytes: &[u8]) -> Result<Recipe> {
         (json::recipe_of(&text), "a JSON file")
     } else if Format::of_path(name).ok().flatten() == Some(Format::Csv) || start.starts_with("x,y,") {
         (csv::recipe_of(&text), "a file of points")
-    } else if Format::of_path(name).ok().flatten() == Some(Format::Obj) || start.starts_with("# curves as polylines") {
+    } else if Format::of_path(name).ok().flatten() == Some(Format::Obj) || ["# curves as polylines", obj_strip::TITLE].iter().any(|title| start.starts_with(title)) {
         (obj::recipe_of(&text), "a file of curves")
     } else {
         return Recipe::from_toml(name, &text);

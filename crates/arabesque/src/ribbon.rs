@@ -2,13 +2,13 @@
 
 use std::path::Path as FilePath;
 
-use arabesque_core::{Bounds, Error, Image, Limits, Observer, Path, Result, StopReason, Warning};
+use arabesque_core::{Bounds, Error, Image, Limits, Observer, Outline, Path, Result, StopReason, Vector, Warning};
 use arabesque_io::{
     file,
     image::{self, Alpha},
     mask::Region,
     obj, png,
-    svg::{self, Page, ReadOptions, Unit},
+    svg::{self, Area, Page, ReadOptions, Unit},
 };
 use arabesque_ribbons::{self as ribbons, Exemplar, Mask, Params, Prepared as Engine, Ribbon};
 
@@ -37,8 +37,8 @@ pub struct RibbonPrepared {
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     pub(crate) name: String,
-    /// The text of a drawing and its page; `None` for a picture.
-    pub(crate) drawing: Option<(String, Page)>,
+    /// Its areas in pixels of the picture, where it is a drawing.
+    pub(crate) areas: Option<Vec<Area>>,
 }
 
 /// What the pattern follows.
@@ -164,12 +164,12 @@ impl RibbonPreparation<'_> {
     fn exemplars(&mut self, params: &mut Params) -> Result<(Vec<Exemplar>, Vec<Source>)> {
         let mut inputs = vec![self.preparation.recipe.exemplar.clone()];
         inputs.append(&mut self.ribbon.then);
-        let mut exemplars = Vec::new();
-        let mut sources = Vec::new();
+        let (mut exemplars, mut sources) = (Vec::new(), Vec::new());
+        let mut finer = None;
         for (k, input) in inputs.into_iter().enumerate() {
             let bytes = self.read(&input)?;
             let carrying = input.carrying(&bytes);
-            let (image, source) = self.exemplar(&input, &bytes, params)?;
+            let (image, source) = self.exemplar(&input, &bytes, &mut finer)?;
             exemplars.push(Exemplar::new(image));
             sources.push(source);
             if k == 0 {
@@ -178,6 +178,8 @@ impl RibbonPreparation<'_> {
                 self.ribbon.then.push(carrying);
             }
         }
+        self.check_alike(&sources)?;
+        params.scale /= finer.unwrap_or(1.0);
         let range = |[from, to]: [usize; 2]| from..to;
         if let Some(first) = exemplars.first_mut() {
             first.start = self.ribbon.start.map(range);
@@ -188,15 +190,55 @@ impl RibbonPreparation<'_> {
         Ok((exemplars, sources))
     }
 
-    fn exemplar(&self, input: &Input, bytes: &[u8], _: &mut Params) -> Result<(Image, Source)> {
+    /// Refuses pictures beside drawings, whose pixels are not user units.
+    fn check_alike(&self, sources: &[Source]) -> Result<()> {
+        if sources.iter().all(|s| s.areas.is_some()) || sources.iter().all(|s| s.areas.is_none()) {
+            return Ok(());
+        }
+        Err(Error::Unsupported {
+            what: "a drawing and a picture as exemplars of one ribbon".into(),
+            advice: "give pictures alone, or drawings alone".into(),
+        })
+    }
+
+    /// An exemplar as a picture. A drawing has more or fewer pixels than user units, by a factor that `params` then counts in.
+    fn exemplar(&mut self, input: &Input, bytes: &[u8], finer: &mut Option<f64>) -> Result<(Image, Source)> {
         let name = input.name();
+        let path = name.to_owned();
+        if !png::is_png(bytes) && file::decode_text(name, bytes).is_ok_and(|text| text.trim_start().starts_with('<')) {
+            let (image, areas, factor) = self.drawing(name, &file::decode_text(name, bytes)?, *finer)?;
+            *finer = Some(factor);
+            return Ok((image, Source { name: path, areas: Some(areas) }));
+        }
         let (image, alpha) = image::read_image(name, bytes, &self.limits())?;
         if alpha == Alpha::Missing && !self.ribbon.relax {
             let problem = "a picture without an alpha channel, where a transparent background was expected to outline the pattern";
             let advice = "save it with transparency, or use --relax, which takes the picture as a texture and cuts it";
             return Err(Error::input(name, problem, advice));
         }
-        Ok((image, Source { name: name.to_owned(), drawing: None }))
+        Ok((image, Source { name: path, areas: None }))
+    }
+
+    /// A drawing as a picture, as areas in pixels of the picture, and the pixels a user unit.
+    fn drawing(&mut self, name: &str, text: &str, finer: Option<f64>) -> Result<(Image, Vec<Area>, f64)> {
+        let options = ReadOptions { limits: self.limits(), ..ReadOptions::new(name) };
+        let taken = svg::read_areas(text, &options)?;
+        self.preparation.warnings.extend(taken.warnings);
+        let view = taken.page.view;
+        let height = view.size()[1];
+        let usual = (USUAL_ROWS[0]..=USUAL_ROWS[1]).contains(&height);
+        let factor = finer.unwrap_or(if usual { 1.0 } else { ROWS / height });
+        if !(factor.is_finite() && factor > 0.0) {
+            return Err(Error::input(name, "a page without height", "give the page a width and a height"));
+        }
+        let image = image::draw_svg(name, text, (view.size().0, factor), &self.limits())?;
+        let size = view.size();
+        let pixels = [image.width as f64 / size[0], image.height as f64 / size[1]];
+        let to_pixels = |p: Vector<2>| Vector::xy((p - view.min)[0] * pixels[0], (p - view.min)[1] * pixels[1]);
+        let rings =
+            |area: &Area| area.outline.rings.iter().map(|r| r.iter().map(|p| to_pixels(*p)).collect()).collect();
+        let areas = taken.areas.iter().map(|area| Area { outline: Outline { rings: rings(area) }, ..area.clone() });
+        Ok((image, areas.collect(), factor))
     }
 
     fn warn_of_width(&mut self, params: &Params, exemplars: &[Exemplar]) {

@@ -1,14 +1,10 @@
-//! Ribbons as files.
+//! Ribbons as pictures.
 
 use arabesque_core::{Error, Limits, Result};
 use arabesque_io::{png, svg::Page};
 use arabesque_ribbons::{Canvas, Mask, Ribbon, render};
 
-use crate::{
-    Encoded, Format, OutputOptions,
-    ribbon::{Laid, RibbonArtwork, Track},
-    size::pixels_per_user,
-};
+use crate::{OutputOptions, ribbon::RibbonArtwork, size::pixels_per_user};
 
 /// CSS pixels an inch.
 const PIXELS_PER_INCH: f64 = 96.0;
@@ -56,28 +52,8 @@ impl Pixels {
 }
 
 impl RibbonArtwork<'_> {
-    /// The file in the format that `output` asks for; PNG where it does not say, GLB for curves in space.
-    ///
-    /// # Errors
-    /// [`Error::Limit`] for a canvas with too many pixels, [`Error::Unsupported`] for a format that cannot hold ribbons.
-    pub fn encode(&self, output: &OutputOptions) -> Result<Encoded> {
-        let format = output.format.unwrap_or_else(|| self.prepared.recipe.usual_format());
-        let recipe = self.recipe(&OutputOptions { format: Some(format), ..output.clone() })?;
-        let carried = (!output.bare).then_some(recipe.as_str());
-        let plain = |bytes: Vec<u8>| Ok(Encoded { bytes, warnings: Vec::new() });
-        match (format, &self.laid, &self.prepared.track) {
-            (Format::Toml, ..) => plain(recipe.into_bytes()),
-            (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page }) => {
-                plain(self.picture((ribbons, request.avoid.as_ref()), page, output, carried)?)
-            }
-            _ => Err(Error::Unsupported {
-                what: format!("a ribbon as {}", format.name()),
-                advice: "write png or svg (plane), json, obj or glb".into(),
-            }),
-        }
-    }
-
-    fn picture(
+    /// The ribbons on their canvas, as PNG.
+    pub(crate) fn picture(
         &self,
         (ribbons, mask): (&[Ribbon<2>], Option<&Mask>),
         page: &Page,

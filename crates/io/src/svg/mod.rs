@@ -5,6 +5,7 @@
 //! classes (`signature`, `classes`). What is kept of an element is markup of its own (`markup`, `definitions`).
 
 mod area;
+mod areas;
 mod classes;
 mod colour;
 mod css;
@@ -49,10 +50,12 @@ mod write_cut;
 mod write_flat;
 mod write_kept;
 mod write_pieces;
+mod write_ribbon;
 mod write_survey;
 mod write_text;
 
 pub use area::{read_flow, read_shape};
+pub use areas::{Area, Areas, read_areas};
 pub use cut_path::{Side, cut};
 pub use drawing::{Drawing, Fragment, Job, Page, Placed, Stacking, Stroke, Unit};
 pub use lines::{Lines, read_lines};
@@ -62,4 +65,5 @@ pub use read::read_exemplar;
 pub use rest::{Rest, read_rest};
 pub use simplify::simplified;
 pub use write::{Bend, NAMESPACE, Sheet, Style, Written, recipe_of, write_svg};
+pub use write_ribbon::{Cell, Embedded, Look, RibbonSheet, write_ribbons};
 pub use write_survey::write_survey;

@@ -61,7 +61,8 @@ fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
     for (n, node) in net.nodes.iter().enumerate() {
         let mut expected: Vec<u32> = node.arms.iter().map(|arm| arm.to).collect();
         let mut links = state.links[n].clone();
-        (expected.sort_unstable(), links.sort_unstable());
+        expected.sort_unstable();
+        links.sort_unstable();
         assert_eq!(links, expected, "edges of sample {n} at {:?}", node.position);
     }
     let votes = collect_votes(&state);

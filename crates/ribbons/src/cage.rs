@@ -29,12 +29,12 @@ impl<const D: usize> Rung<D> {
     }
 }
 
-/// A piece as it lies in the exemplar, in exemplar pixels from its top left corner: its left edge vertical, its right edge tilted by
-/// the turn of the curve.
+/// A piece as it lies in the exemplar, in exemplar pixels from its top left corner. Its left and its right edge are tilted by half of
+/// the turn of the curve each, so that the pattern enters and leaves it in the middle of the ribbon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Form {
-    /// Length of the left edge.
-    pub(crate) left: f64,
+    /// Bottom left corner.
+    pub(crate) foot: Vector<2>,
     /// Top right corner.
     pub(crate) top: Vector<2>,
     /// Bottom right corner.
@@ -42,48 +42,71 @@ pub(crate) struct Form {
 }
 
 impl Form {
+    /// From the right corners of a piece whose left edge is upright and `left` long.
     pub(crate) fn new(left: f64, top: Vector<2>, bottom: Vector<2>) -> Self {
+        let edge = (bottom - top) * (1.0 / (bottom - top).norm().max(1e-12)) + Vector::xy(0.0, 1.0);
+        let upright = if edge.norm() > 1e-6 { edge * (1.0 / edge.norm()) } else { Vector::xy(0.0, 1.0) };
         let rounded = |c: f64| (c / GRAIN).round() * GRAIN;
-        Self { left: rounded(left), top: top.map(rounded), bottom: bottom.map(rounded) }
+        let turned = |p: Vector<2>| Vector::xy(upright.cross(p) * -1.0, upright.dot(p)).map(rounded);
+        Self { foot: turned(Vector::xy(0.0, left)), top: turned(top), bottom: turned(bottom) }
+    }
+
+    /// Length of the left edge.
+    pub(crate) fn left(&self) -> f64 {
+        self.foot.norm()
     }
 
     /// Samples of the left edge, C in the paper.
     pub(crate) fn rows(&self) -> usize {
-        (self.left - GRAIN).ceil().max(1.0) as usize
+        (self.left() - 2.0 * GRAIN).ceil().max(1.0) as usize
+    }
+
+    /// Middle of the right edge.
+    pub(crate) fn exit(&self) -> Vector<2> {
+        (self.top + self.bottom) * 0.5
+    }
+
+    /// Whether the upper and the lower end of the right edge lie before the left edge.
+    fn ahead(&self) -> [bool; 2] {
+        [self.top, self.bottom].map(|p| self.foot.cross(p) <= 0.0)
     }
 
     /// Shares of the left and the right edge, from top to bottom, that bound the piece: less than all of them where the edges cross.
     /// `None` where nothing is left.
     pub(crate) fn unfolded(&self) -> Option<[(f64, f64); 2]> {
-        let (top, bottom) = (self.top[0], self.bottom[0]);
-        if top >= 0.0 && bottom >= 0.0 {
-            return Some([(0.0, 1.0); 2]);
-        }
-        if top < 0.0 && bottom < 0.0 {
-            return None;
+        let (top, bottom) = (self.foot.cross(self.top), self.foot.cross(self.bottom));
+        match self.ahead() {
+            [true, true] => return Some([(0.0, 1.0); 2]),
+            [false, false] => return None,
+            _ => {}
         }
         let right = top / (top - bottom);
-        let left = (self.top[1] + right * (self.bottom[1] - self.top[1])) / self.left;
-        Some(if bottom < 0.0 { [(0.0, left), (0.0, right)] } else { [(left, 1.0), (right, 1.0)] })
+        let left = (self.top + (self.bottom - self.top) * right).dot(self.foot) / self.foot.norm2();
+        Some(if bottom > 0.0 { [(0.0, left), (0.0, right)] } else { [(left, 1.0), (right, 1.0)] })
     }
 
     /// How far inside the piece `p` lies, in pixels; negative outside.
     pub(crate) fn depth(&self, p: Vector<2>) -> f64 {
-        let side = |from: Vector<2>, to: Vector<2>| (to - from).cross(p - from) / (to - from).norm().max(1e-12);
-        let mut depth = p[0].min(side(self.top, self.bottom));
-        if self.top[0] >= 0.0 {
-            depth = depth.min(side(Vector::ZERO, self.top));
+        let [top, bottom] = self.ahead();
+        let mut depth = side(self.foot, Vector::ZERO, p).min(side(self.top, self.bottom, p));
+        if top {
+            depth = depth.min(side(Vector::ZERO, self.top, p));
         }
-        if self.bottom[0] >= 0.0 {
-            depth = depth.min(-side(Vector::xy(0.0, self.left), self.bottom));
+        if bottom {
+            depth = depth.min(side(self.bottom, self.foot, p));
         }
         depth
     }
 
     /// Box around the piece.
     pub(crate) fn bounds(&self) -> Bounds<2> {
-        Bounds::around([Vector::ZERO, Vector::xy(0.0, self.left), self.top, self.bottom])
+        Bounds::around([Vector::ZERO, self.foot, self.top, self.bottom])
     }
+}
+
+/// Distance of `p` from the line between two points: positive where a turn from the line towards `p` goes from x to y.
+pub(crate) fn side(from: Vector<2>, to: Vector<2>, p: Vector<2>) -> f64 {
+    (to - from).cross(p - from) / (to - from).norm().max(1e-12)
 }
 
 /// A ribbon cut into pieces.
@@ -133,14 +156,22 @@ impl Cage<2> {
 
     /// `p` in pixels from the top left corner of piece `k`.
     pub(crate) fn local(&self, k: usize, p: Vector<2>) -> Vector<2> {
-        flat(&self.rungs[k], p, self.scale)
+        let (along, down) = self.axes(k);
+        let q = (p - self.rungs[k].top) * (1.0 / self.scale);
+        Vector::xy(q.dot(along), q.dot(down))
     }
 
     /// The point that lies at `q` pixels from the top left corner of piece `k`.
     pub(crate) fn canvas(&self, k: usize, q: Vector<2>) -> Vector<2> {
-        let rung = &self.rungs[k];
-        let down = rung.down();
-        rung.top + (Vector::xy(down[1], -down[0]) * q[0] + down * q[1]) * self.scale
+        let (along, down) = self.axes(k);
+        self.rungs[k].top + (along * q[0] + down * q[1]) * self.scale
+    }
+
+    /// Unit vectors on the canvas along the axes of the exemplar in piece `k`.
+    fn axes(&self, k: usize) -> (Vector<2>, Vector<2>) {
+        let (foot, edge) = (self.forms[k].foot * (1.0 / self.forms[k].left()), self.rungs[k].down());
+        let (cos, sin) = (edge.dot(foot), foot.cross(edge));
+        (Vector::xy(cos, sin), Vector::xy(-sin, cos))
     }
 
     /// Distance of `p` from the curve where piece `k` lies.
@@ -214,7 +245,7 @@ mod tests {
         let cage = cage(&Path::polyline(&[Vector::xy(3.0, 50.0), Vector::xy(103.0, 50.0)]), 9.0);
         assert_eq!(cage.len(), 11);
         assert!(cage.forms.iter().all(|f| *f == cage.forms[0]));
-        assert_eq!((cage.forms[0].left, cage.forms[0].top[1], cage.forms[0].bottom[1]), (20.0, 0.0, 20.0));
+        assert_eq!((cage.forms[0].foot, cage.forms[0].top[1]), (Vector::xy(0.0, 20.0), 0.0));
         assert!((cage.rungs[0].top - Vector::xy(3.0, 40.0)).norm() < 1e-9);
         let p = Vector::xy(17.0, 43.0);
         assert!((cage.canvas(1, cage.local(1, p)) - p).norm() < 1e-9);
@@ -224,7 +255,7 @@ mod tests {
     fn a_tight_bend_folds_on_its_inner_side() {
         let corners = [Vector::xy(0.0, 0.0), Vector::xy(50.0, 0.0), Vector::xy(50.0, 50.0)];
         let cage = cage(&Path::polyline(&corners), 5.0);
-        let folded: Vec<_> = cage.forms.iter().filter(|f| f.bottom[0] < 0.0).collect();
+        let folded: Vec<_> = cage.forms.iter().filter(|f| f.foot.cross(f.bottom) > 0.0).collect();
         assert!(!folded.is_empty());
         for form in folded {
             let [(l0, l1), (r0, r1)] = form.unfolded().unwrap();

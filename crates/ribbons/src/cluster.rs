@@ -1,12 +1,12 @@
 //! Columns in boxes of similar ones, so that a whole box can be ruled out at once.
 
-use crate::columns::{SUMMARY, Summary};
+use crate::columns::{BLOCKS, CHANNELS, SUMMARY, Summary};
 
 /// A box of columns in the space of summaries.
 #[derive(Clone, Debug)]
 pub(crate) struct Node {
-    low: Summary,
-    high: Summary,
+    low: [f32; SUMMARY],
+    high: [f32; SUMMARY],
     /// Smallest cost of the paths that end in it.
     pub(crate) cost: f64,
     /// Its columns: a range of [`Tree::order`].
@@ -19,12 +19,12 @@ impl Node {
     /// A lower bound on the cost between any column of the one and any of the other.
     pub(crate) fn gap(&self, other: &Self) -> f32 {
         let mut sum = 0.0;
-        for block in 0..SUMMARY / 4 {
-            let gap: [f32; 4] = std::array::from_fn(|k| {
-                let k = 4 * block + k;
+        for block in 0..BLOCKS {
+            let gap: [f32; CHANNELS] = std::array::from_fn(|k| {
+                let k = CHANNELS * block + k;
                 (self.low[k] - other.high[k]).max(other.low[k] - self.high[k]).max(0.0)
             });
-            sum += (gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2]).sqrt() + gap[3];
+            sum += (gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2]).sqrt() + gap[3] + gap[4] + gap[5];
         }
         sum
     }
@@ -40,7 +40,7 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// Halves the columns along their widest number until a box holds at most `most`.
+    /// Halves the columns along their widest number, or by the costs of the paths to them, until a box holds at most `most`.
     pub(crate) fn new(summaries: &[Summary], costs: Option<&[f64]>, most: usize) -> Self {
         let order = (0..summaries.len() as u32).collect();
         let mut tree = Self { order, nodes: Vec::new() };
@@ -58,21 +58,27 @@ impl Tree {
     fn split(&mut self, summaries: &[Summary], costs: Option<&[f64]>, range: std::ops::Range<usize>, most: usize) -> usize {
         let members = &mut self.order[range.clone()];
         let (mut low, mut high) = ([f32::INFINITY; SUMMARY], [f32::NEG_INFINITY; SUMMARY]);
-        let mut cost = f64::INFINITY;
+        let (mut cost, mut most_cost) = (f64::INFINITY, f64::NEG_INFINITY);
         for &m in members.iter() {
-            let summary = &summaries[m as usize];
+            let summary = &summaries[m as usize].sums;
             for k in 0..SUMMARY {
                 low[k] = low[k].min(summary[k]);
                 high[k] = high[k].max(summary[k]);
             }
-            cost = costs.map_or(0.0, |c| cost.min(c[m as usize]));
+            let own = costs.map_or(0.0, |c| c[m as usize]);
+            (cost, most_cost) = (cost.min(own), most_cost.max(own));
         }
         let widest = (0..SUMMARY).fold(0, |w, k| if high[k] - low[k] > high[w] - low[w] { k } else { w });
         let place = self.nodes.len();
         self.nodes.push(Node { low, high, cost, members: range.clone(), halves: None });
         if range.len() > most {
             let half = (range.len() / 2).next_multiple_of(most);
-            let key = |m: &u32| summaries[*m as usize][widest];
+            // What a path costs so far counts like one more number.
+            let by_cost = most_cost - cost > f64::from(high[widest] - low[widest]);
+            let key = |m: &u32| match costs {
+                Some(costs) if by_cost => costs[*m as usize] as f32,
+                _ => summaries[*m as usize].sums[widest],
+            };
             members.select_nth_unstable_by(half - 1, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
             let first = self.split(summaries, costs, range.start..range.start + half, most);
             let second = self.split(summaries, costs, range.start + half..range.end, most);

@@ -9,141 +9,235 @@ use crate::{cage::Form, strip::Strip, valid::Position};
 pub(crate) const GAMMA: f32 = 1024.0;
 /// The largest distance of two premultiplied colours.
 const LARGEST: f32 = 441.68;
-/// Left columns that are compared at once.
-pub(crate) const LANES: usize = 16;
+/// Left columns whose bounds are computed at once.
+pub(crate) const LANES: usize = 8;
 /// Parts of a column whose sums bound its cost from below.
 pub(crate) const BLOCKS: usize = 8;
-/// Numbers in a summary: premultiplied colour and weighted alpha of every block.
-pub(crate) const SUMMARY: usize = 4 * BLOCKS;
+/// Numbers of a pixel: premultiplied red, green and blue, alpha, and the slopes of alpha and of brightness, all in 8-bit steps.
+pub(crate) const CHANNELS: usize = 6;
+/// Numbers in a summary: those of every block.
+pub(crate) const SUMMARY: usize = CHANNELS * BLOCKS;
+/// Rows of pixels that are compared at once.
+const WIDE: usize = 4;
 
 /// One number for each of [`LANES`] columns.
 pub(crate) type Lanes = [f32; LANES];
-/// Sums of the blocks of a column, alpha weighted so that distances of sums bound costs.
-pub(crate) type Summary = [f32; SUMMARY];
-
-/// ξ(p, q): colours premultiplied, all four in [0, 255]; continuous in alpha and equal to the paper's at 0 and 255.
-pub(crate) fn pixel_cost(p: [f32; 4], q: [f32; 4]) -> f32 {
-    let (r, g, b) = (p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-    let colour = (r * r + g * g + b * b).sqrt();
-    let alpha = (p[3] - q[3]).abs() * (1.0 / 255.0);
-    colour + alpha * (GAMMA - colour)
+/// What is known of a column block by block.
+#[derive(Clone, Debug)]
+pub(crate) struct Summary {
+    /// Sums over the blocks, alpha weighted so that distances of sums bound costs.
+    pub(crate) sums: [f32; SUMMARY],
+    /// A bit for each block that is not empty.
+    filled: u8,
 }
 
-/// The pixels along one edge for every position of a piece.
+impl Summary {
+    fn block(&self, block: usize) -> &[f32; CHANNELS] {
+        &self.sums.as_chunks::<CHANNELS>().0[block]
+    }
+}
+
+/// ξ(p, q) of [`WIDE`] pairs of pixels, added to `sum`: colours premultiplied, alpha in [0, 255], channel by channel.
+/// Continuous in alpha and, but for the slopes, equal to the paper's where alpha is 0 or 255.
+fn add_costs(sum: &mut [f32; WIDE], p: &Chunk, q: &Chunk) {
+    for k in 0..WIDE {
+        let (r, g, b) = (p[0][k] - q[0][k], p[1][k] - q[1][k], p[2][k] - q[2][k]);
+        let colour = (r * r + g * g + b * b).sqrt();
+        let alpha = (p[3][k] - q[3][k]).abs() * (1.0 / 255.0);
+        let slope = (p[4][k] - q[4][k]).abs() + (p[5][k] - q[5][k]).abs();
+        sum[k] += colour + alpha * (GAMMA - colour) + slope;
+    }
+}
+
+/// [`WIDE`] pixels, channel by channel.
+type Chunk = [[f32; WIDE]; CHANNELS];
+
+/// The pixels along one edge for every position of a piece. Columns are filled up with transparent pixels to whole blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
     rows: usize,
-    pixels: Vec<[f32; 4]>,
+    /// Chunks of a block.
+    block: usize,
+    chunks: Vec<Chunk>,
 }
 
 impl Columns {
     /// Left edges: L + u.
-    pub(crate) fn left(strip: &Strip, form: &Form, positions: &[Position]) -> Self {
-        let rows = form.rows();
-        let at = |k: usize| Vector::xy(0.5, (k as f64 + 0.5) * form.left / rows as f64);
-        Self::extract(strip, positions, &(0..rows).map(at).collect::<Vec<_>>())
+    pub(crate) fn left(strip: &Strip, form: &Form, context: f64, positions: &[Position]) -> Self {
+        Self::extract(strip, positions, &taps((Vector::ZERO, form.foot), form.rows(), context))
     }
 
     /// Right edges: R + v, sampled at as many `rows` as the left edge that follows.
-    pub(crate) fn right(strip: &Strip, form: &Form, rows: usize, positions: &[Position]) -> Self {
-        let at = |k: usize| form.top + (form.bottom - form.top) * ((k as f64 + 0.5) / rows as f64) + Vector::xy(0.5, 0.0);
-        Self::extract(strip, positions, &(0..rows).map(at).collect::<Vec<_>>())
+    pub(crate) fn right(strip: &Strip, form: &Form, rows: usize, context: f64, positions: &[Position]) -> Self {
+        Self::extract(strip, positions, &taps((form.top, form.bottom), rows, context))
     }
 
-    fn extract(strip: &Strip, positions: &[Position], offsets: &[Vector<2>]) -> Self {
-        let column = |p: &Position| {
-            let span = &strip.spans[strip.owner(usize::from(p.x))];
-            let corner = Vector::xy(f64::from(p.x), f64::from(p.y));
-            offsets.iter().map(|&o| strip.sample(corner + o, span)).collect::<Vec<_>>()
-        };
-        let pixels = positions.par_iter().with_min_len(64).flat_map_iter(column).collect();
-        Self { rows: offsets.len(), pixels }
+    fn extract(strip: &Strip, positions: &[Position], taps: &[Tap]) -> Self {
+        let rows = taps.len();
+        let block = rows.div_ceil(BLOCKS).div_ceil(WIDE);
+        let mut chunks = vec![[[0.0; WIDE]; CHANNELS]; block * BLOCKS * positions.len()];
+        chunks.par_chunks_mut(block * BLOCKS).zip(positions).with_min_len(64).for_each(|(column, p)| {
+            for (k, tap) in taps.iter().enumerate() {
+                for (channel, value) in tap.sample(strip, *p).into_iter().enumerate() {
+                    column[k / WIDE][channel][k % WIDE] = value;
+                }
+            }
+        });
+        Self { rows, block, chunks }
     }
 
-    /// The pixels of column `k`.
-    pub(crate) fn get(&self, k: usize) -> &[[f32; 4]] {
-        &self.pixels[k * self.rows..][..self.rows]
+    /// Column `k`, block by block.
+    fn blocks(&self, k: usize) -> std::slice::ChunksExact<'_, Chunk> {
+        self.chunks[k * self.block * BLOCKS..][..self.block * BLOCKS].chunks_exact(self.block)
     }
 
-    /// Number of columns.
-    pub(crate) fn len(&self) -> usize {
-        self.pixels.len().checked_div(self.rows).unwrap_or(0)
+    /// The pixels of column `k`, from top to bottom.
+    pub(crate) fn pixels(&self, k: usize) -> Vec<[f32; 4]> {
+        let column = &self.chunks[k * self.block * BLOCKS..];
+        (0..self.rows).map(|row| std::array::from_fn(|channel| column[row / WIDE][channel][row % WIDE])).collect()
     }
 
     /// Sums over the blocks of every column.
     pub(crate) fn summaries(&self) -> Vec<Summary> {
-        (0..self.len()).into_par_iter().with_min_len(256).map(|k| summary(self.get(k))).collect()
+        let n = self.chunks.len().checked_div(self.block * BLOCKS).unwrap_or(0);
+        (0..n).into_par_iter().with_min_len(256).map(|k| self.summary(k)).collect()
+    }
+
+    fn summary(&self, k: usize) -> Summary {
+        let (mut sums, mut filled) = ([0.0; SUMMARY], 0);
+        for (number, (sums, block)) in sums.chunks_exact_mut(CHANNELS).zip(self.blocks(k)).enumerate() {
+            filled |= u8::from(block.as_flattened().as_flattened().iter().any(|&c| c != 0.0)) << number;
+            for (channel, sum) in sums.iter_mut().enumerate() {
+                *sum = block.iter().flat_map(|chunk| chunk[channel]).sum();
+            }
+            sums[3] *= (GAMMA - LARGEST) / 255.0;
+        }
+        Summary { sums, filled }
     }
 }
 
-fn summary(column: &[[f32; 4]]) -> Summary {
-    let mut sums = [0.0; SUMMARY];
-    let n = column.len();
-    for (k, pixel) in column.iter().enumerate() {
-        let block = &mut sums[k * BLOCKS / n * 4..][..4];
-        block.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += value);
+/// Samples down an edge, and the slopes square to it: what lies ahead of it.
+fn taps((top, bottom): (Vector<2>, Vector<2>), rows: usize, context: f64) -> Vec<Tap> {
+    let edge = bottom - top;
+    let ahead = Vector::xy(edge[1], -edge[0]) * (context / edge.norm());
+    let at = |k: usize| top + edge * ((k as f64 + 0.5) / rows as f64) + Vector::xy(0.5, 0.0);
+    (0..rows).map(|k| Tap::new(at(k), ahead)).collect()
+}
+
+/// Where between four pixels a sample lies, the same for all positions.
+struct Tap {
+    x: i64,
+    y: i64,
+    /// Weights of the pixels: upper left and right, lower left and right.
+    weights: [f32; 4],
+    /// Direction and weight of the slopes.
+    ahead: [f32; 2],
+}
+
+impl Tap {
+    fn new(offset: Vector<2>, ahead: Vector<2>) -> Self {
+        let (x, y) = (offset[0] - 0.5, offset[1] - 0.5);
+        let (fx, fy) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
+        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
+        Self { x: x.floor() as i64, y: y.floor() as i64, weights, ahead: ahead.0.map(|c| c as f32) }
     }
-    sums.chunks_exact_mut(4).for_each(|block| block[3] *= (GAMMA - LARGEST) / 255.0);
-    sums
+
+    fn sample(&self, strip: &Strip, p: Position) -> [f32; CHANNELS] {
+        let (x, y) = (i64::from(p.x) + self.x, i64::from(p.y) + self.y);
+        let mut sum = [0.0; CHANNELS];
+        for (k, weight) in self.weights.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
+            let ([r, g, b, a], slope) = strip.pixel_at(x + (k as i64 & 1), y + (k as i64 >> 1));
+            let ahead = |k: usize| self.ahead[0] * slope[k] + self.ahead[1] * slope[k + 2];
+            sum.iter_mut().zip([r, g, b, a, ahead(0), ahead(1)]).for_each(|(s, c)| *s += weight * c);
+        }
+        sum
+    }
 }
 
-/// D(v + R, u + L) of one pair, summed from top to bottom.
-pub(crate) fn column_cost(right: &[[f32; 4]], left: &[[f32; 4]]) -> f32 {
-    right.iter().zip(left).fold(0.0, |sum, (p, q)| sum + pixel_cost(*p, *q))
+/// D(v + R, u + L) of column `v` of `right` beside column `u` of `left`: sums of blocks, from top to bottom.
+pub(crate) fn column_cost(right: &Columns, v: usize, left: &Columns, u: usize) -> f32 {
+    right.blocks(v).zip(left.blocks(u)).fold(0.0, |sum, (p, q)| sum + block_cost(p, q))
 }
 
-/// Up to [`LANES`] left columns, pixel by pixel side by side.
+fn block_cost(p: &[Chunk], q: &[Chunk]) -> f32 {
+    let mut sum = [0.0; WIDE];
+    p.iter().zip(q).for_each(|(p, q)| add_costs(&mut sum, p, q));
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
+}
+
+/// The same as [`column_cost`], or `None` once it is certain to be above `limit`. `bounds` are those of the single blocks, negative for
+/// blocks that are empty in both columns.
+pub(crate) fn column_cost_within(
+    (right, v): (&Columns, usize),
+    (left, u): (&Columns, usize),
+    bounds: &[f32; BLOCKS],
+    limit: f32,
+) -> Option<f32> {
+    let mut rest = TRUST * bounds.iter().map(|b| b.max(0.0)).sum::<f32>();
+    if rest > limit {
+        return None;
+    }
+    let mut sum = 0.0;
+    let blocks = right.blocks(v).zip(left.blocks(u)).zip(bounds).filter(|(_, bound)| **bound >= 0.0);
+    for ((p, q), bound) in blocks {
+        rest -= bound * TRUST;
+        sum += block_cost(p, q);
+        if sum + rest > limit {
+            return None;
+        }
+    }
+    Some(sum)
+}
+
+/// Share of a lower bound that is believed, for the rounding of sums.
+pub(crate) const TRUST: f32 = 0.9995;
+
+/// Distance of two sums of one block: no more than the cost of its pixels.
+fn distance(a: [f32; CHANNELS]) -> f32 {
+    (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt() + a[3].abs() + a[4].abs() + a[5].abs()
+}
+
+/// Lower bounds for the blocks of one pair; -1 for blocks that are empty in both columns, which cost nothing.
+pub(crate) fn block_bounds(right: &Summary, left: &Summary) -> [f32; BLOCKS] {
+    let filled = right.filled | left.filled;
+    std::array::from_fn(|block| {
+        let (p, q) = (right.block(block), left.block(block));
+        if filled >> block & 1 == 0 { -1.0 } else { distance(std::array::from_fn(|k| p[k] - q[k])) }
+    })
+}
+
+/// The summaries of up to [`LANES`] left columns side by side.
 #[derive(Clone, Debug)]
 pub(crate) struct Bundle {
-    pixels: Vec<[Lanes; 4]>,
-    summary: Vec<Lanes>,
+    /// The numbers of each block.
+    blocks: [[Lanes; CHANNELS]; BLOCKS],
+    /// A bit for each block that is not empty in all columns.
+    filled: u8,
 }
 
 impl Bundle {
     /// The columns `members`; the last is repeated to fill the lanes.
-    pub(crate) fn new(columns: &Columns, summaries: &[Summary], members: &[u32]) -> Self {
-        let of = |lane: usize| members[lane.min(members.len() - 1)] as usize;
-        let pixel = |row: usize| {
-            std::array::from_fn(|channel| std::array::from_fn(|lane| columns.get(of(lane))[row][channel]))
-        };
-        let value = |k: usize| std::array::from_fn(|lane| summaries[of(lane)][k]);
-        Self { pixels: (0..columns.rows).map(pixel).collect(), summary: (0..SUMMARY).map(value).collect() }
+    pub(crate) fn new(summaries: &[Summary], members: &[u32]) -> Self {
+        let of = |lane: usize| &summaries[members[lane.min(members.len() - 1)] as usize];
+        let number = |block: usize, k: usize| std::array::from_fn(|lane| of(lane).block(block)[k]);
+        let blocks: [[Lanes; CHANNELS]; BLOCKS] = std::array::from_fn(|block| std::array::from_fn(|k| number(block, k)));
+        let filled = (0..LANES).fold(0, |filled, lane| filled | of(lane).filled);
+        Self { blocks, filled }
     }
 
-    /// A lower bound of [`Bundle::costs`], from the sums over blocks and the triangle inequality.
+    /// A lower bound on D of `right` beside every lane, from the sums over blocks and the triangle inequality.
     pub(crate) fn bounds(&self, right: &Summary) -> Lanes {
         let mut sum = [0.0; LANES];
-        for (block, r) in self.summary.chunks_exact(4).zip(right.chunks_exact(4)) {
+        let filled = self.filled | right.filled;
+        for (block, [r, g, b, a, e, f]) in self.blocks.iter().enumerate().filter(|(block, _)| filled >> block & 1 == 1) {
+            let p = right.block(block);
             for lane in 0..LANES {
-                let [x, y, z, w] = std::array::from_fn(|k| block[k][lane] - r[k]);
-                sum[lane] += (x * x + y * y + z * z).sqrt() + w.abs();
+                let (x, y, z) = (r[lane] - p[0], g[lane] - p[1], b[lane] - p[2]);
+                let rest = (a[lane] - p[3]).abs() + (e[lane] - p[4]).abs() + (f[lane] - p[5]).abs();
+                sum[lane] += (x * x + y * y + z * z).sqrt() + rest;
             }
         }
         sum
-    }
-
-    /// D of `right` beside every lane; gives up with larger numbers than `limits` once every lane is over its limit.
-    pub(crate) fn costs(&self, right: &[[f32; 4]], limits: &Lanes) -> Lanes {
-        let mut sum = [0.0; LANES];
-        for (left, right) in self.pixels.chunks(16).zip(right.chunks(16)) {
-            for (q, p) in left.iter().zip(right) {
-                add(&mut sum, q, *p);
-            }
-            if sum.iter().zip(limits).all(|(s, limit)| s > limit) {
-                return sum;
-            }
-        }
-        sum
-    }
-}
-
-/// Adds the cost of one row of pixels to the sums, in the same order of operations as [`pixel_cost`].
-fn add(sum: &mut Lanes, q: &[Lanes; 4], p: [f32; 4]) {
-    for lane in 0..LANES {
-        let (r, g, b) = (p[0] - q[0][lane], p[1] - q[1][lane], p[2] - q[2][lane]);
-        let colour = (r * r + g * g + b * b).sqrt();
-        let alpha = (p[3] - q[3][lane]).abs() * (1.0 / 255.0);
-        sum[lane] += colour + alpha * (GAMMA - colour);
     }
 }
 

@@ -15,6 +15,11 @@ use crate::{
 /// Half of the length of a transition, in heights of the exemplar.
 const TRANSITION: f64 = 1.5;
 
+/// How far the pattern leaves the middle where nothing is in its way, in heights of the exemplar.
+const WANDER: f64 = 0.03125;
+/// How far before and behind a place to avoid the pattern may leave the middle as it likes, in heights of the exemplar.
+const DETOUR: f64 = 2.0;
+
 /// Everything that the demands on the pieces of one curve follow from.
 pub(crate) struct Plan<'a, const D: usize> {
     pub(crate) strip: &'a Strip,
@@ -27,10 +32,14 @@ impl<const D: usize> Plan<'_, D> {
     /// What is asked of each piece, beside the pixels that must stay `free`.
     pub(crate) fn demands(&self, free: Vec<Vec<Offset>>) -> Result<Vec<Demands>> {
         let changes = self.changes()?;
+        let wander = self.wander(&free);
         let mut demands: Vec<Demands> = free
             .into_iter()
             .enumerate()
-            .map(|(k, forbidden)| Demands { columns: self.body(k, &changes), forbidden, ..Demands::default() })
+            .map(|(k, forbidden)| {
+                let rows = wander[k].map(|w| self.rows(k, w));
+                Demands { columns: self.body(k, &changes), rows, forbidden, ..Demands::default() }
+            })
             .collect();
         if !self.cage.closed {
             self.start(&mut demands);
@@ -43,6 +52,30 @@ impl<const D: usize> Plan<'_, D> {
     /// Length of a piece, in pixels of the search.
     fn step(&self) -> f64 {
         self.cage.step / self.cage.scale
+    }
+
+    /// How far each piece may leave the middle, in pixels of the search; without limit near places to avoid.
+    fn wander(&self, free: &[Vec<Offset>]) -> Vec<Option<f64>> {
+        let height = self.strip.height as f64;
+        let limit = (self.params.wander.unwrap_or(WANDER) * height).max(0.5);
+        let (n, reach) = (free.len(), (DETOUR * height / self.step()).ceil() as usize);
+        let mut limits = vec![Some(limit); n];
+        let troubled = (0..n).filter(|&k| self.params.wander.is_none() && !free[k].is_empty());
+        for k in troubled {
+            for near in (k + n - reach.min(n))..=(k + n + reach.min(n)) {
+                let beside = self.cage.closed || (n..2 * n).contains(&near);
+                if beside {
+                    limits[near % n] = None;
+                }
+            }
+        }
+        limits
+    }
+
+    /// The rows of the top left corner of piece `k` within `wander` of the middle.
+    fn rows(&self, k: usize, wander: f64) -> Range<i64> {
+        let middle = 0.5 * (self.strip.height as f64 - self.cage.forms[k].foot[1]);
+        (middle - wander).ceil() as i64..(middle + wander).floor() as i64 + 1
     }
 
     /// Shares of the length at which one exemplar passes into the next.
@@ -118,7 +151,7 @@ impl<const D: usize> Plan<'_, D> {
             return Err(Error::parameter("first", format!("{x},{y}"), expected));
         }
         demand.columns = vec![x..x + 1];
-        demand.row = Some(y as i16);
+        demand.rows = Some(y..y + 1);
         Ok(())
     }
 }

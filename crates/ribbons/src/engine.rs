@@ -198,8 +198,7 @@ impl Prepared {
         rows: &[Kept],
         watch: &mut crate::solve::Watch<'_>,
     ) -> Result<Solution> {
-        let longest = self.strip.spans.iter().map(ExactSizeIterator::len).max().unwrap_or(1);
-        let reuse = Reuse::new(&self.params, seed, cage.len(), &cage.forms[0], (self.strip.width, longest));
+        let reuse = Reuse::new(&self.params, seed, cage.len(), &cage.forms[0], &self.strip);
         let places: Vec<String> = (0..cage.len()).map(|k| place(cage, k)).collect();
         let course = Course {
             strip: &self.strip,
@@ -226,7 +225,7 @@ impl Prepared {
         let (form, coarse) = (&cage.forms[k], self.params.coarse as f64);
         let x = f64::from(position.x) - self.strip.spans[source].start as f64 + 0.5;
         let corner = Vector::xy(x, f64::from(position.y) - self.strip.above[source] as f64);
-        let texture = [Vector::ZERO, form.top, form.bottom, Vector::xy(0.0, form.left)].map(|p| (corner + p) * coarse);
+        let texture = [Vector::ZERO, form.top, form.bottom, form.foot].map(|p| (corner + p) * coarse);
         let (a, b) = (&cage.rungs[k], &cage.rungs[k + 1]);
         Patch { source, corners: [a.top, b.top, b.bottom, a.bottom], texture }
     }
@@ -244,9 +243,9 @@ impl Prepared {
 
     /// How the right edge of piece `k` is bent to meet the left edge of `next`.
     fn shift<const D: usize>(&self, cage: &Cage<D>, k: usize, next: usize, solution: &Solution) -> Vec<f32> {
-        let right = Columns::right(&self.strip, &cage.forms[k], cage.forms[next].rows(), &solution.positions[k..=k]);
-        let left = Columns::left(&self.strip, &cage.forms[next], &solution.positions[next..=next]);
-        let pixels = (cage.forms[next].left / cage.forms[next].rows() as f64 * self.params.coarse as f64) as f32;
+        let right = Columns::right(&self.strip, &cage.forms[k], cage.forms[next].rows(), 0.0, &solution.positions[k..=k]);
+        let left = Columns::left(&self.strip, &cage.forms[next], 0.0, &solution.positions[next..=next]);
+        let pixels = (cage.forms[next].left() / cage.forms[next].rows() as f64 * self.params.coarse as f64) as f32;
         stitch::align(&right, &left).into_iter().map(|samples| samples * pixels).collect()
     }
 

@@ -76,6 +76,9 @@ pub struct Params {
     pub width: Width,
     /// User units an exemplar pixel, above 0. Default: 1.
     pub scale: f64,
+    /// Weight of the slopes of alpha and brightness along the strip, beside the pixels themselves, when two edges are compared, 0 to 100.
+    /// Default: 1; 0 compares pixels alone, as the paper does.
+    pub context: f64,
     /// Strength of the penalty on showing a part of the exemplar again within [`Params::window`], 0 or more. Default: 1; 0 switches it off.
     pub repetition: f64,
     /// Where re-use is penalised, as a multiple of the exemplar's length, 0 to 4. Default: 1.
@@ -83,6 +86,12 @@ pub struct Params {
     /// Strength of the random preference of one part of the exemplar over another, from piece to piece, 0 or more. Default: 1;
     /// 0 makes all seeds equal.
     pub variety: f64,
+    /// Strength of the pull to the middle of the ribbon, 0 or more. Default: 1; 0 lets the pattern wander across the ribbon freely, as in
+    /// the paper.
+    pub centring: f64,
+    /// How far the pattern may leave the middle of the ribbon, as a share of the exemplar's height, 0 or more. Default: 1/32, and without
+    /// limit near regions, folds and overlaps to avoid. The fewer the positions, the faster the search; 1 allows all, as in the paper.
+    pub wander: Option<f64>,
     /// Whether neighbouring pieces are bent to meet [Zhou 2013 §3.2]. Default: true.
     pub stitch: bool,
     /// How closed curves are closed. Default: [`Closing::Quick`].
@@ -101,9 +110,12 @@ impl Default for Params {
             step: None,
             width: Width::Exemplar,
             scale: 1.0,
+            context: 1.0,
             repetition: 1.0,
             window: 1.0,
             variety: 1.0,
+            centring: 1.0,
+            wander: None,
             stitch: true,
             closing: Closing::Quick,
             relax: false,
@@ -130,9 +142,12 @@ impl Params {
         positive("scale", self.scale)?;
         self.step.map_or(Ok(()), |step| positive("step", step))?;
         self.width.check()?;
+        strength("context", self.context, 100.0)?;
         strength("repetition", self.repetition, 1000.0)?;
         strength("window", self.window, 4.0)?;
         strength("variety", self.variety, 1000.0)?;
+        strength("centring", self.centring, 1000.0)?;
+        strength("wander", self.wander.unwrap_or(0.0), 1000.0)?;
         if !(1..=16).contains(&self.coarse) {
             return Err(Error::parameter("coarse", self.coarse, "a whole number from 1 to 16"));
         }

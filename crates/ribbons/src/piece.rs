@@ -29,14 +29,15 @@ impl<const D: usize> Piece<D> {
             return q;
         }
         let [tl, tr, br, bl] = self.patch.texture;
-        let (share, edge) = (((q - tl)[1] / (bl - tl)[1]).clamp(0.0, 1.0), br - tr);
+        let (left, edge) = (bl - tl, br - tr);
+        let share = ((q - tl).dot(left) / left.norm2()).clamp(0.0, 1.0);
         let along = (tr - tl) * (1.0 - share) + (br - bl) * share;
-        let across = along.cross(edge);
-        if across.abs() < 1e-9 || along[0] < 1e-9 {
+        let (before, after) = (along.cross(left), along.cross(edge));
+        if before < 1e-9 || after < 1e-9 {
             return q;
         }
-        let rest = (tr - q).cross(edge) / across;
-        let done = (q - tl)[0] / along[0];
+        let rest = ((tr - q).cross(edge) / after).max(0.0);
+        let done = ((q - tl).cross(left) / before).max(0.0);
         let weight = (done / (done + rest).max(1e-9)).clamp(0.0, 1.0);
         let at = (q + along * rest - tr).dot(edge) / edge.norm2();
         q + edge * (weight * self.shift_at(at) / edge.norm())
@@ -63,11 +64,12 @@ impl Piece<2> {
         (canvas[3] - canvas[0]).norm() / (texture[3] - texture[0]).norm()
     }
 
-    /// Axes of the piece on the canvas: along and down, one exemplar pixel long.
+    /// Axes of the exemplar on the canvas: along and down, one exemplar pixel long.
     fn axes(&self) -> (Vector<2>, Vector<2>) {
-        let [tl, _, _, bl] = self.patch.corners;
-        let down = (bl - tl) * (1.0 / (self.patch.texture[3] - self.patch.texture[0]).norm());
-        (Vector::xy(down[1], -down[0]), down)
+        let (canvas, texture) = (&self.patch.corners, &self.patch.texture);
+        let (edge, foot) = (canvas[3] - canvas[0], texture[3] - texture[0]);
+        let along = Vector::xy(edge.dot(foot), foot.cross(edge)) * (1.0 / foot.norm2());
+        (along, Vector::xy(-along[1], along[0]))
     }
 
     /// The place in the exemplar that lies at `p` of the canvas, as if nothing were bent.

@@ -4,6 +4,7 @@ use arabesque_core::{Bounds, Image, Vector};
 use rayon::prelude::*;
 
 use crate::{
+    cage::side,
     mask::Mask,
     piece::{Piece, Ribbon},
     strip::{Exemplar, Strip},
@@ -87,13 +88,13 @@ impl<'a> Painter<'a> {
     /// 1 inside; across an edge to a neighbour it falls within the feather, at an end of the curve within a pixel.
     fn weight(&self, q: Vector<2>, pixels_per_unit: f64) -> f64 {
         let [tl, tr, br, bl] = self.piece.patch.texture;
-        let side = |from: Vector<2>, to: Vector<2>| (to - from).cross(q - from) / (to - from).norm().max(1e-12);
-        let (top, bottom) = (side(tl, tr), -side(bl, br));
-        if (tr[0] >= tl[0] && top < 0.0) || (br[0] >= tl[0] && bottom < 0.0) {
+        let (top, bottom) = (side(tl, tr, q), side(br, bl, q));
+        let ahead = |p: Vector<2>| (bl - tl).cross(p - tl) <= 0.0;
+        if (ahead(tr) && top < 0.0) || (ahead(br) && bottom < 0.0) {
             return 0.0;
         }
         let sharp = 0.5 / (pixels_per_unit * self.piece.scale());
-        let [left, right] = [q[0] - tl[0], side(tr, br)];
+        let [left, right] = [side(bl, tl, q), side(tr, br, q)];
         let [soft_left, soft_right] = self.ends.map(|end| if end { sharp } else { FEATHER });
         ((left / soft_left + 1.0) * 0.5).clamp(0.0, 1.0) * ((right / soft_right + 1.0) * 0.5).clamp(0.0, 1.0)
     }

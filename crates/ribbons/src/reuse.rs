@@ -6,7 +6,7 @@
 
 use arabesque_core::{Stage, Stream};
 
-use crate::{cage::Form, params::Params};
+use crate::{cage::Form, params::Params, strip::Strip, valid::Position};
 
 /// Most pieces that a path remembers.
 const MEMORY: usize = 48;
@@ -15,6 +15,9 @@ const MEMORY: usize = 48;
 const REPEATED: f64 = 24.0;
 /// Largest random cost of one row of pixels, in 8-bit colour steps.
 const TASTE: f64 = 8.0;
+
+/// Cost of one row of pixels for a piece that lies a whole height of the exemplar off the middle, in 8-bit colour steps.
+const OFF_CENTRE: f64 = 40.0;
 
 /// Left edges of the last pieces, latest first; `u16::MAX` before the first piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,18 +52,21 @@ pub(crate) struct Reuse {
     taste: Vec<f32>,
     parts: usize,
     part: f64,
+    /// Cost of a pixel off the middle, and the middle of the strip.
+    drift: f64,
+    middle: f64,
 }
 
 impl Reuse {
-    /// For a curve of `pieces` pieces like `form`, and a strip of `width` pixels whose longest exemplar has `length` of them.
-    pub(crate) fn new(params: &Params, seed: u64, pieces: usize, form: &Form, size: (usize, usize)) -> Self {
-        let (width, length) = size;
-        let step = (0.5 * (form.top[0] + form.bottom[0])).abs().max(1.0);
+    /// For a curve of `pieces` pieces like `form`.
+    pub(crate) fn new(params: &Params, seed: u64, pieces: usize, form: &Form, strip: &Strip) -> Self {
+        let length = strip.spans.iter().map(ExactSizeIterator::len).max().unwrap_or(1);
+        let step = (form.exit() - form.foot * 0.5).norm().max(1.0);
         let rows = form.rows() as f64;
         let window = ((params.window * length as f64 / step).ceil() as usize).min(MEMORY);
         // Parts as long as four pieces: a taste for one is felt until the next is due.
         let part = 4.0 * step;
-        let parts = (width as f64 / part).ceil() as usize + 1;
+        let parts = (strip.width as f64 / part).ceil() as usize + 1;
         let most = (params.variety * TASTE * rows) as f32;
         let mut taste = Vec::new();
         if most > 0.0 {
@@ -69,7 +75,9 @@ impl Reuse {
                 taste.extend((0..parts).map(|_| most * stream.unit() as f32));
             }
         }
-        Self { step, window, repeated: params.repetition * REPEATED * rows, taste, parts, part }
+        let drift = params.centring * OFF_CENTRE * rows / strip.height as f64;
+        let middle = 0.5 * strip.height as f64;
+        Self { step, window, repeated: params.repetition * REPEATED * rows, taste, parts, part, drift, middle }
     }
 
     /// What column `x` costs after `trail`.
@@ -82,17 +90,16 @@ impl Reuse {
         self.repeated * shown.map(overlap).sum::<f64>()
     }
 
-    /// What column `x` costs in piece `piece`.
-    pub(crate) fn taste(&self, piece: usize, x: u16) -> f64 {
+    /// What position `p` costs a piece whose left edge reaches down `depth` pixels.
+    pub(crate) fn taste(&self, piece: usize, p: Position, depth: f64) -> f64 {
+        let drift = self.drift * (f64::from(p.y) + 0.5 * depth - self.middle).abs();
         if self.taste.is_empty() {
-            return 0.0;
+            return drift;
         }
-        let part = (f64::from(x) / self.part) as usize;
-        self.taste.get(piece / 4 * self.parts + part).map_or(0.0, |&cost| f64::from(cost))
+        let part = (f64::from(p.x) / self.part) as usize;
+        drift + self.taste.get(piece / 4 * self.parts + part).map_or(0.0, |&cost| f64::from(cost))
     }
-}
 
-impl Reuse {
     /// The same without the penalty on re-use.
     pub(crate) fn without_repetition(&self) -> Self {
         Self { repeated: 0.0, ..self.clone() }

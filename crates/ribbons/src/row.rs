@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::{
     cluster::{Node, Tree},
-    columns::{Bundle, Columns, LANES, Lanes, Summary, column_cost},
+    columns::{Bundle, Columns, LANES, Lanes, Summary, TRUST, block_bounds, column_cost, column_cost_within},
     reuse::{Reuse, Trail},
     valid::Position,
 };
@@ -18,10 +18,10 @@ use crate::{
 /// No earlier position.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Share of a lower bound that is believed, for the rounding of sums.
-const TRUST: f64 = 0.9995;
+/// Positions that are seeded one after the other.
+const SEEDED: usize = 256;
 /// Right columns in the smallest boxes.
-const LEAF: usize = 8;
+const LEAF: usize = 4;
 
 /// The cheapest paths to the positions of one piece.
 #[derive(Clone, Debug)]
@@ -37,9 +37,9 @@ pub(crate) struct Row {
 
 impl Row {
     /// The first row, which nothing goes before.
-    pub(crate) fn first(positions: Arc<Vec<Position>>, reuse: &Reuse) -> Self {
+    pub(crate) fn first(positions: Arc<Vec<Position>>, reuse: &Reuse, depth: f64) -> Self {
         let n = positions.len();
-        let cost = positions.iter().map(|p| reuse.taste(0, p.x)).collect();
+        let cost = positions.iter().map(|p| reuse.taste(0, *p, depth)).collect();
         Self { cost, back: vec![NONE; n], start: (0..n as u32).collect(), positions }
     }
 
@@ -60,6 +60,8 @@ pub(crate) struct Step<'a> {
     pub(crate) positions: Arc<Vec<Position>>,
     /// Left edges of this piece.
     pub(crate) left: &'a Columns,
+    /// How far down its left edge reaches.
+    pub(crate) depth: f64,
     /// From a position of this piece to the one before that it goes on from most naturally.
     pub(crate) natural: (i64, i64),
     pub(crate) reuse: &'a Reuse,
@@ -91,15 +93,12 @@ impl Step<'_> {
         let (right, left) = rayon::join(|| self.right.summaries(), || self.left.summaries());
         let (boxes, groups) =
             rayon::join(|| Tree::new(&right, Some(&self.before.cost), LEAF), || Tree::new(&left, None, LANES));
-        let index = Index::new(&self.before.positions);
+        let seeds = self.seeds(&right, &left);
         let leaves: Vec<&Node> = groups.leaves().collect();
         let found: Vec<[Best; LANES]> = leaves
             .par_iter()
             .map(|leaf| {
-                let members = &groups.order[leaf.members.clone()];
-                let bundle = Bundle::new(self.left, &left, members);
-                let mut query = Query { step: self, tree: &boxes, right: &right, bundle, members, leaf, best: [Best::NONE; LANES] };
-                query.seed(&index);
+                let mut query = Query::new(self, [(&boxes, &right), (&groups, &left)], leaf, &seeds);
                 query.visit(0);
                 query.best
             })
@@ -113,6 +112,42 @@ impl Step<'_> {
         self.row(&best)
     }
 
+    /// Good ways to begin with: what goes on in the exemplar, and what is best for the positions above and to the left, one farther.
+    fn seeds(&self, right: &[Summary], left: &[Summary]) -> Vec<Best> {
+        let index = Index::new(&self.before.positions);
+        let here = Index::new(&self.positions);
+        let mut best = vec![Best::NONE; self.positions.len()];
+        best.par_chunks_mut(SEEDED).enumerate().for_each(|(chunk, best)| {
+            let first = chunk * SEEDED;
+            for k in 0..best.len() {
+                let p = self.positions[first + k].place();
+                let beside = [(0, 1), (1, 0)].into_iter().filter_map(|(dx, dy)| {
+                    let neighbour = here.find((p.0 - dx, p.1 - dy))? as usize;
+                    let from = best.get(neighbour.checked_sub(first)?)?.from;
+                    let q = self.before.positions.get(from as usize)?.place();
+                    index.find((q.0 + dx, q.1 + dy))
+                });
+                let natural = index.find((p.0 + self.natural.0, p.1 + self.natural.1));
+                let candidates: Vec<u32> = natural.into_iter().chain(beside).collect();
+                for v in candidates {
+                    self.offer(&mut best[k], v as usize, first + k, (right, left));
+                }
+            }
+        });
+        best
+    }
+
+    /// Takes `v` for the way to `u` if it is better.
+    fn offer(&self, best: &mut Best, v: usize, u: usize, (right, left): (&[Summary], &[Summary])) {
+        let base = self.base(v, self.positions[u].x);
+        // Rounded up, so that no equal cost is given up.
+        let limit = ((best.cost - base) as f32).next_up();
+        let bounds = block_bounds(&right[v], &left[u]);
+        if let Some(cost) = column_cost_within((self.right, v), (self.left, u), &bounds, limit) {
+            best.offer(base + f64::from(cost), v as u32);
+        }
+    }
+
     /// The next row, every pair of columns in full.
     pub(crate) fn exhaustive(&self) -> Row {
         let best: Vec<Best> = (0..self.positions.len())
@@ -120,7 +155,7 @@ impl Step<'_> {
             .map(|u| {
                 let mut best = Best::NONE;
                 for v in 0..self.before.positions.len() {
-                    let cost = column_cost(self.right.get(v), self.left.get(u));
+                    let cost = column_cost(self.right, v, self.left, u);
                     best.offer(self.base(v, self.positions[u].x) + f64::from(cost), v as u32);
                 }
                 best
@@ -135,7 +170,7 @@ impl Step<'_> {
     }
 
     fn row(&self, best: &[Best]) -> Row {
-        let taste = |u: usize| self.reuse.taste(self.piece, self.positions[u].x);
+        let taste = |u: usize| self.reuse.taste(self.piece, self.positions[u], self.depth);
         Row {
             cost: best.iter().enumerate().map(|(u, b)| b.cost + taste(u)).collect(),
             back: best.iter().map(|b| b.from).collect(),
@@ -161,7 +196,7 @@ impl Index {
         let (x, y) = (range(|p| i64::from(p.x)), range(|p| i64::from(p.y)));
         let mut index = Self { first: (x.0, y.0), size: (x.1, y.1), places: vec![NONE; (x.1 * y.1) as usize] };
         for (k, p) in positions.iter().enumerate() {
-            if let Some(place) = index.place((p.x.into(), p.y.into())) {
+            if let Some(place) = index.place(p.place()) {
                 index.places[place] = k as u32;
             }
         }
@@ -184,82 +219,76 @@ struct Query<'a> {
     step: &'a Step<'a>,
     tree: &'a Tree,
     right: &'a [Summary],
+    left: &'a [Summary],
     bundle: Bundle,
     members: &'a [u32],
     leaf: &'a Node,
     best: [Best; LANES],
+    /// Costs of the best above the cheapest path of the row before, rounded up.
+    limits: Lanes,
+    /// The largest of them.
+    limit: f32,
+    /// Cost of the cheapest path of the row before.
+    least: f64,
 }
 
-impl Query<'_> {
-    /// Begins with the positions that go on in the exemplar.
-    fn seed(&mut self, index: &Index) {
-        let (dx, dy) = self.step.natural;
-        let mut seeds: Vec<u32> = self
-            .members
-            .iter()
-            .map(|&u| self.step.positions[u as usize])
-            .filter_map(|p| index.find((i64::from(p.x) + dx, i64::from(p.y) + dy)))
-            .collect();
-        seeds.sort_unstable();
-        seeds.dedup();
-        seeds.into_iter().for_each(|v| self.compare(v));
+impl<'a> Query<'a> {
+    fn new(step: &'a Step<'a>, sides: [(&'a Tree, &'a [Summary]); 2], leaf: &'a Node, seeds: &[Best]) -> Self {
+        let [(tree, right), (groups, left)] = sides;
+        let members = &groups.order[leaf.members.clone()];
+        let best = std::array::from_fn(|lane| seeds[members[lane.min(members.len() - 1)] as usize]);
+        let (bundle, least) = (Bundle::new(left, members), tree.nodes[0].cost);
+        let mut query = Self { step, tree, right, left, bundle, members, leaf, best, limits: [0.0; LANES], limit: 0.0, least };
+        query.raise_limits();
+        query
     }
 
-    /// The cost above which nothing is of interest to any lane.
-    fn limit(&self) -> f64 {
-        self.best[..self.members.len()].iter().fold(0.0, |most, b| b.cost.max(most))
+    fn raise_limits(&mut self) {
+        self.limits = std::array::from_fn(|lane| ((self.best[lane].cost - self.least) as f32).next_up());
+        self.limit = self.limits.iter().fold(0.0, |most, &limit| limit.max(most));
     }
 
-    fn bound(&self, node: usize) -> f64 {
+    /// `cost` above the cheapest path, rounded down.
+    fn above(&self, cost: f64) -> f32 {
+        ((cost - self.least) as f32).next_down()
+    }
+
+    fn bound(&self, node: usize) -> f32 {
         let node = &self.tree.nodes[node];
-        node.cost + TRUST * f64::from(node.gap(self.leaf))
+        self.above(node.cost) + TRUST * node.gap(self.leaf)
     }
 
     fn visit(&mut self, node: usize) {
-        match self.tree.nodes[node].halves {
-            Some(halves) => {
-                let mut halves = halves.map(|half| (self.bound(half), half));
-                halves.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                for (bound, half) in halves {
-                    if bound <= self.limit() {
-                        self.visit(half);
-                    }
+        if let Some([a, b]) = self.tree.nodes[node].halves {
+            let (near, far) = (self.bound(a), self.bound(b));
+            let order = if near <= far { [(near, a), (far, b)] } else { [(far, b), (near, a)] };
+            for (bound, half) in order {
+                if bound <= self.limit {
+                    self.visit(half);
                 }
             }
-            None => {
-                for k in self.tree.nodes[node].members.clone() {
-                    let v = self.tree.order[k];
-                    if self.promises(v) {
-                        self.compare(v);
-                    }
-                }
+        } else {
+            for k in self.tree.nodes[node].members.clone() {
+                self.compare(self.tree.order[k]);
             }
         }
     }
 
-    /// Whether `v` may be better than what some lane has.
-    fn promises(&self, v: u32) -> bool {
-        let base = self.step.before.cost[v as usize];
-        if base > self.limit() {
-            return false;
+    /// Offers `v` to the lanes that it may be better for than what they have.
+    fn compare(&mut self, v: u32) {
+        let base = self.above(self.step.before.cost[v as usize]);
+        if base > self.limit {
+            return;
         }
         let bounds = self.bundle.bounds(&self.right[v as usize]);
-        let lanes = self.best.iter().zip(&bounds).take(self.members.len());
-        lanes.into_iter().any(|(best, bound)| base + TRUST * f64::from(*bound) <= best.cost)
-    }
-
-    fn compare(&mut self, v: u32) {
-        let base: [f64; LANES] = std::array::from_fn(|lane| {
-            let member = self.members[lane.min(self.members.len() - 1)];
-            self.step.base(v as usize, self.step.positions[member as usize].x)
-        });
-        // Rounded up, so that no equal cost is given up.
-        let limits: Lanes = std::array::from_fn(|lane| ((self.best[lane].cost - base[lane]) as f32).next_up());
-        let costs = self.bundle.costs(self.step.right.get(v as usize), &limits);
-        for lane in 0..self.members.len() {
-            if costs[lane] <= limits[lane] {
-                self.best[lane].offer(base[lane] + f64::from(costs[lane]), v);
-            }
+        let promising: [bool; LANES] = std::array::from_fn(|lane| base + TRUST * bounds[lane] <= self.limits[lane]);
+        if !promising.iter().any(|&p| p) {
+            return;
         }
+        for lane in (0..self.members.len()).filter(|&lane| promising[lane]) {
+            let u = self.members[lane] as usize;
+            self.step.offer(&mut self.best[lane], v as usize, u, (self.right, self.left));
+        }
+        self.raise_limits();
     }
 }

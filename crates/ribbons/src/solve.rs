@@ -170,7 +170,7 @@ impl Course<'_> {
     fn from_start(&self, table: &Table<'_>, start: usize) -> Result<(f64, Vec<Position>)> {
         let first = &table.kept[0];
         let only = Arc::new(vec![first.row.positions[start]]);
-        let row = Row::first(only, &self.reuse);
+        let row = Row::first(only, &self.reuse, first.form.foot[1]);
         let trails = row.positions.iter().map(|p| Trail::default().followed_by(p.x)).collect();
         let kept = Kept { row: Arc::new(row), demands: first.demands.clone(), ..*first };
         let mut again = Table { course: self, kept: vec![kept], trails, resumed: 0 };
@@ -208,7 +208,7 @@ impl Table<'_> {
         let (grade, valid) = course.valid(piece)?;
         let positions = Arc::new(valid);
         let row = match self.kept.last() {
-            None => Row::first(positions, &course.reuse),
+            None => Row::first(positions, &course.reuse, form.foot[1]),
             Some(last) => self.next(last, piece, positions),
         };
         self.follow(&row);
@@ -218,17 +218,18 @@ impl Table<'_> {
 
     fn next(&self, last: &Kept, piece: usize, positions: Arc<Vec<Position>>) -> Row {
         let (strip, form) = (self.course.strip, &self.course.forms[piece]);
+        let context = self.course.params.context;
         let (right, left) = rayon::join(
-            || Columns::right(strip, &last.form, form.rows(), &last.row.positions),
-            || Columns::left(strip, form, &positions),
+            || Columns::right(strip, &last.form, form.rows(), context, &last.row.positions),
+            || Columns::left(strip, form, context, &positions),
         );
-        let middle = (last.form.top + last.form.bottom) * 0.5;
-        let natural = (-middle[0].round() as i64, (0.5 * form.left - middle[1]).round() as i64);
+        let natural = form.foot * 0.5 - last.form.exit();
+        let natural = (natural[0].round() as i64, natural[1].round() as i64);
         // The terminal piece is the first one, whose taste is counted there.
         let none = Reuse::default();
         let reuse = if self.kept.len() < self.course.forms.len() { &self.course.reuse } else { &none };
         let before = &*last.row;
-        let step = Step { before, trails: &self.trails, right: &right, positions, left: &left, natural, reuse, piece };
+        let step = Step { before, trails: &self.trails, right: &right, positions, left: &left, depth: form.foot[1], natural, reuse, piece };
         match self.course.params.search {
             Search::Bounded => step.bounded(),
             Search::Exhaustive => step.exhaustive(),

@@ -76,7 +76,7 @@ fn smoothed(shifts: &[f32]) -> Vec<f32> {
 
 /// The alignment of the single columns `right` and `left`.
 pub(crate) fn align(right: &Columns, left: &Columns) -> Vec<f32> {
-    alignment(right.get(0), left.get(0))
+    alignment(&right.pixels(0), &left.pixels(0))
 }
 
 #[cfg(test)]

@@ -11,6 +11,9 @@ const CUT_INK: f32 = 26.0;
 /// Alpha in [0, 255] from which a pixel counts as ink that must not fall on a forbidden place.
 const ANY_INK: f32 = 1.0;
 
+/// Half of the length over which slopes are taken, in heights of the strip.
+const SLOPE: f64 = 0.06;
+
 /// Most pixels of all exemplars together that are searched: rows take time with the square of it.
 pub const PIXELS: usize = 250_000;
 
@@ -39,6 +42,8 @@ pub(crate) struct Strip {
     pub(crate) height: usize,
     /// Premultiplied red, green, blue, then alpha, in [0, 255].
     pixels: Vec<[f32; 4]>,
+    /// Slopes of alpha and brightness: along x, then along y.
+    slopes: Vec<[f32; 4]>,
     /// Columns of each exemplar.
     pub(crate) spans: Vec<Range<usize>>,
     /// Empty rows above each exemplar.
@@ -84,12 +89,22 @@ impl Strip {
         let bits = |least: f32| Bits::from_fn(width, height, |x, y| pixels[y * width + x][3] >= least);
         // Grown by what a sample reaches beside its place, and half a pixel of the canvas.
         let (ink, trace) = (bits(CUT_INK), bits(ANY_INK).grown(2));
-        Self { width, height, above, spans, starts, ends, ink, trace, pixels }
+        let slopes = slopes(&pixels, &spans, height);
+        Self { width, height, above, spans, starts, ends, ink, trace, pixels, slopes }
     }
 
     /// Pixel in column `x` of row `y`; transparent above and below.
     pub(crate) fn pixel(&self, x: usize, y: i64) -> [f32; 4] {
         if y < 0 || y >= self.height as i64 { [0.0; 4] } else { self.pixels[y as usize * self.width + x] }
+    }
+
+    /// Pixel in column `x` of row `y`, and the slopes there; transparent outside.
+    pub(crate) fn pixel_at(&self, x: i64, y: i64) -> ([f32; 4], [f32; 4]) {
+        if x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
+            return ([0.0; 4], [0.0; 4]);
+        }
+        let k = y as usize * self.width + x as usize;
+        (self.pixels[k], self.slopes[k])
     }
 
     /// Bilinear sample at `p`, pixel centres at half-integers, within the columns of `span`.
@@ -111,6 +126,28 @@ impl Strip {
     pub(crate) fn owner(&self, x: usize) -> usize {
         self.spans.partition_point(|span| span.end <= x).min(self.spans.len() - 1)
     }
+}
+
+/// Differences over [`SLOPE`] heights of the strip, within each exemplar.
+fn slopes(pixels: &[[f32; 4]], spans: &[Range<usize>], height: usize) -> Vec<[f32; 4]> {
+    let reach = ((SLOPE * height as f64).round() as usize).max(1);
+    let width = spans.last().map_or(0, |s| s.end);
+    let values = |x: usize, y: usize| {
+        let [r, g, b, a] = pixels[y * width + x];
+        [a, 0.299 * r + 0.587 * g + 0.114 * b]
+    };
+    let mut slopes = vec![[0.0; 4]; pixels.len()];
+    for span in spans {
+        for x in span.clone() {
+            let (before, after) = (x.saturating_sub(reach).max(span.start), (x + reach).min(span.end - 1));
+            for y in 0..height {
+                let [l, r] = [values(before, y), values(after, y)];
+                let [o, u] = [values(x, y.saturating_sub(reach)), values(x, (y + reach).min(height - 1))];
+                slopes[y * width + x] = [r[0] - l[0], r[1] - l[1], u[0] - o[0], u[1] - o[1]];
+            }
+        }
+    }
+    slopes
 }
 
 /// Mean of a square of premultiplied pixels, cut at the border of the picture.

@@ -10,11 +10,18 @@ use crate::{
     strip::Strip,
 };
 
-/// Top left corner of a piece in the strip: the left edge runs through the centres of column `x`, downwards from the upper side of row `y`.
+/// Top left corner of a piece in the strip: in the middle of column `x`, at the upper side of row `y`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Position {
     pub(crate) x: u16,
     pub(crate) y: i16,
+}
+
+impl Position {
+    /// Column and row.
+    pub(crate) fn place(self) -> (i64, i64) {
+        (self.x.into(), self.y.into())
+    }
 }
 
 /// Offset of a pixel from a [`Position`].
@@ -25,8 +32,8 @@ pub(crate) type Offset = (i32, i32);
 pub(crate) struct Demands {
     /// Columns that its left edge may lie in.
     pub(crate) columns: Vec<Range<usize>>,
-    /// Rows that its top left corner may lie in, when it is fixed.
-    pub(crate) row: Option<i16>,
+    /// Rows that its top left corner may lie in, when they are limited.
+    pub(crate) rows: Option<Range<i64>>,
     /// Pixels on which no ink may fall, in rising order.
     pub(crate) forbidden: Vec<Offset>,
     /// Whether the left edge may be empty: the begin of a curve that is drawn with its end.
@@ -63,10 +70,8 @@ struct Lines {
 pub(crate) fn positions(strip: &Strip, form: &Form, demands: &Demands, grade: Grade) -> Vec<Position> {
     let Some(lines) = lines(form) else { return Vec::new() };
     let rows = form.rows() as i64;
-    let heights = match demands.row {
-        Some(y) => i64::from(y)..i64::from(y) + 1,
-        None => -rows..strip.height as i64,
-    };
+    let all = -rows..strip.height as i64;
+    let heights = demands.rows.as_ref().map_or(all.clone(), |r| r.start.max(all.start)..r.end.min(all.end));
     let room = room(strip, form, &demands.columns);
     let mut found = Vec::new();
     let mut line = vec![0; strip.ink.words()];
@@ -109,8 +114,8 @@ fn remove(line: &mut [u64], other: &[u64]) {
 
 /// The columns of the left edge for which the whole piece lies in one exemplar.
 fn room(strip: &Strip, form: &Form, columns: &[Range<usize>]) -> Vec<u64> {
-    let least = form.top[0].min(form.bottom[0]).min(0.0).floor() as i64;
-    let most = form.top[0].max(form.bottom[0]).max(0.0).ceil() as i64;
+    let bounds = form.bounds();
+    let (least, most) = (bounds.min[0].floor() as i64, bounds.max[0].ceil() as i64);
     let mut line = vec![0; strip.ink.words()];
     for x in columns.iter().cloned().flatten().filter(|&x| x < strip.width) {
         let span = &strip.spans[strip.owner(x)];
@@ -124,12 +129,12 @@ fn room(strip: &Strip, form: &Form, columns: &[Range<usize>]) -> Vec<u64> {
 /// The pixels along the edges of a piece. What lies beyond a fold must be as empty as the border.
 fn lines(form: &Form) -> Option<Lines> {
     let [(l0, l1), (r0, r1)] = form.unfolded()?;
-    let down = Vector::xy(0.0, form.left);
+    let down = form.foot;
     let mut touch = Vec::new();
-    if form.top[0] >= 0.0 {
+    if form.foot.cross(form.top) <= 0.0 {
         touch.extend(pixels(Vector::ZERO, form.top, 0.25));
     }
-    if form.bottom[0] >= 0.0 {
+    if form.foot.cross(form.bottom) <= 0.0 {
         touch.extend(pixels(down, form.bottom, -0.25));
     }
     let right = |share: f64| form.top + (form.bottom - form.top) * share;
@@ -173,7 +178,7 @@ mod tests {
     }
 
     fn rectangle(width: f64, height: f64) -> Form {
-        Form { left: height, top: Vector::xy(width, 0.0), bottom: Vector::xy(width, height) }
+        Form::new(height, Vector::xy(width, 0.0), Vector::xy(width, height))
     }
 
     fn everywhere() -> Demands {

@@ -5,7 +5,9 @@
 use std::{collections::BTreeSet, sync::LazyLock};
 
 use arabesque_core::Limits;
-use arabesque_io::svg::{Drawing, Fragment, Method, ReadOptions, read_exemplar, read_flow, read_placed, read_shape};
+use arabesque_io::svg::{
+    Drawing, Fragment, Method, ReadOptions, read_areas, read_exemplar, read_flow, read_lines, read_placed, read_shape,
+};
 use libfuzzer_sys::fuzz_target;
 
 /// An exemplar that kept files are matched to.
@@ -23,12 +25,23 @@ fuzz_target!(|data: &[u8]| {
     if let Ok(drawing) = read_exemplar(text, &options) {
         check(&drawing);
     }
-    match (data.len() / 2 % 4, &*EXEMPLAR) {
+    match (data.len() / 2 % 6, &*EXEMPLAR) {
         (0, _) => drop(read_shape(text, None, &options)),
         (1, _) => drop(read_flow(text, &options)),
         (2, Some(drawing)) => {
             if let Ok(placed) = read_placed(text, drawing, &options) {
                 check_markup(&placed.definitions, placed.fragments.iter().chain(&placed.obstacle_fragments), None);
+            }
+        }
+        (3, _) => {
+            if let Ok(lines) = read_lines(text, None, &options) {
+                assert!(!lines.paths.is_empty());
+                assert!(lines.paths.iter().flat_map(|(_, path)| path.cubics.iter().flatten()).all(|p| p.is_finite()));
+            }
+        }
+        (4, _) => {
+            if let Ok(taken) = read_areas(text, &options) {
+                assert!(taken.areas.iter().all(|a| a.outline.points().all(|p| p.is_finite()) && a.opacity <= 1.0));
             }
         }
         _ => {}

@@ -89,7 +89,7 @@ impl Recipe {
             return Err(Error::input("recipe", "no table [ribbon], where a ribbon is asked for", advice));
         };
         let preparation = Preparation::new(self, base);
-        RibbonPreparation { preparation, ribbon }.finish()
+        RibbonPreparation { preparation, ribbon, first: None }.finish()
     }
 
     /// What of this recipe has no meaning for a ribbon.
@@ -116,6 +116,8 @@ impl Recipe {
 struct RibbonPreparation<'a> {
     preparation: Preparation<'a>,
     ribbon: RibbonRecipe,
+    /// Position of the first piece, in pixels of the search.
+    first: Option<(usize, i64)>,
 }
 
 impl RibbonPreparation<'_> {
@@ -135,14 +137,14 @@ impl RibbonPreparation<'_> {
         match &mut track {
             Track::Plane { request, page } => {
                 request.changes.clone_from(&self.ribbon.changes);
-                request.first = self.first()?;
+                request.first = self.first;
                 request.avoid = self.avoided(page)?;
                 self.warn_of_page(request, page);
             }
             Track::Space { request } => {
                 self.check_space()?;
                 request.changes.clone_from(&self.ribbon.changes);
-                request.first = self.first()?;
+                request.first = self.first;
             }
         }
         let names: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();
@@ -179,14 +181,17 @@ impl RibbonPreparation<'_> {
             }
         }
         self.check_alike(&sources)?;
-        params.scale /= finer.unwrap_or(1.0);
-        let range = |[from, to]: [usize; 2]| from..to;
+        let factor = finer.unwrap_or(1.0);
+        params.scale /= factor;
+        let column = |x: usize| (x as f64 * factor).round() as usize;
+        let range = |[from, to]: [usize; 2]| column(from)..column(to);
         if let Some(first) = exemplars.first_mut() {
             first.start = self.ribbon.start.map(range);
         }
         if let Some(last) = exemplars.last_mut() {
             last.end = self.ribbon.end.map(range);
         }
+        self.first = self.first(factor)?;
         Ok((exemplars, sources))
     }
 
@@ -256,8 +261,10 @@ impl RibbonPreparation<'_> {
         }
     }
 
-    fn first(&self) -> Result<Option<(usize, i64)>> {
+    /// Where the first piece begins, in pixels of the search; `factor` of them are a pixel or unit of the exemplar.
+    fn first(&self, factor: f64) -> Result<Option<(usize, i64)>> {
         let Some([column, row]) = self.ribbon.first else { return Ok(None) };
+        let [column, row] = [column, row].map(|v| (v as f64 * factor).round() as i64);
         let column = usize::try_from(column)
             .map_err(|_| Error::parameter("first", format!("{column},{row}"), "a column from 0 on, and a row"))?;
         Ok(Some((column, row)))

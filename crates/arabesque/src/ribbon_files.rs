@@ -142,11 +142,15 @@ impl RibbonArtwork<'_> {
         }
     }
 
-    fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>) -> Result<String> {
+    /// The exemplars as areas, where they are drawings.
+    pub(crate) fn drawings(&self) -> Option<Vec<Drawing>> {
+        self.prepared.sources.iter().map(|s| Some(Drawing { areas: s.areas.clone()? })).collect()
+    }
+
+    pub(crate) fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>) -> Result<String> {
         let size = page.view.size();
         let decimals = Decimals::for_extent(size[0].max(size[1]));
-        let drawings: Option<Vec<Drawing>> =
-            self.prepared.sources.iter().map(|s| Some(Drawing { areas: s.areas.clone()? })).collect();
+        let drawings = self.drawings();
         let mut pictures = Vec::new();
         if drawings.is_none() {
             for exemplar in self.exemplars() {

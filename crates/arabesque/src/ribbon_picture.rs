@@ -1,7 +1,7 @@
 //! Ribbons as pictures.
 
-use arabesque_core::{Error, Limits, Result};
-use arabesque_io::{png, svg::Page};
+use arabesque_core::{Error, Image, Limits, Result, Vector};
+use arabesque_io::{image::draw_svg, png, svg::Page};
 use arabesque_ribbons::{Canvas, Mask, Ribbon, render};
 
 use crate::{OutputOptions, ribbon::RibbonArtwork, size::pixels_per_user};
@@ -52,7 +52,7 @@ impl Pixels {
 }
 
 impl RibbonArtwork<'_> {
-    /// The ribbons on their canvas, as PNG.
+    /// The ribbons on their canvas, as PNG; those of drawings are drawn as vectors.
     pub(crate) fn picture(
         &self,
         (ribbons, mask): (&[Ribbon<2>], Option<&Mask>),
@@ -63,8 +63,26 @@ impl RibbonArtwork<'_> {
         let scale = resolution(output, Some(page))?;
         let [width, height] = scale.pixels(page, &Limits::default())?;
         let canvas = Canvas { origin: page.view.min, width, height, pixels_per_unit: scale.0 };
-        let image = render(ribbons, self.prepared.engine.exemplars(), mask, &canvas);
+        let image = match self.drawings() {
+            Some(_) => {
+                let text = self.svg(ribbons, page, None)?;
+                let mut image = draw_svg("the ribbon", &text, (page.view.size().0, scale.0), &Limits::default())?;
+                mask.into_iter().for_each(|mask| clear(&mut image, mask, &canvas));
+                image
+            }
+            None => render(ribbons, self.prepared.engine.exemplars(), mask, &canvas),
+        };
         let per_metre = scale.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE;
         png::write_image(&image, per_metre, recipe)
+    }
+}
+
+/// Leaves out ink on what is to be avoided, as pieces of pictures do.
+fn clear(image: &mut Image, mask: &Mask, canvas: &Canvas) {
+    for (k, pixel) in image.pixels.iter_mut().enumerate() {
+        let at = Vector::xy((k % image.width) as f64 + 0.5, (k / image.width) as f64 + 0.5);
+        if mask.blocks(canvas.origin + at * (1.0 / canvas.pixels_per_unit)) {
+            *pixel = [0; 4];
+        }
     }
 }

@@ -112,6 +112,24 @@ pub const RIBBON_OPTIONS: &[RibbonOption] = &[
         set: |p, t| number(t).map(|v| p.variety = v),
     },
     RibbonOption {
+        name: "centring",
+        values: "0 to 1000, default 1",
+        help: "strength of the pull to the middle of the ribbon; 0 lets the pattern wander across it freely",
+        set: |p, t| number(t).map(|v| p.centring = v),
+    },
+    RibbonOption {
+        name: "wander",
+        values: "0 to 1000, default 1/32, and no limit near what is avoided",
+        help: "how far the pattern may leave the middle of the ribbon, in heights of the exemplar; less is faster",
+        set: |p, t| number(t).map(|v| p.wander = Some(v)),
+    },
+    RibbonOption {
+        name: "context",
+        values: "0 to 100, default 1",
+        help: "weight of slopes along the strip, beside the pixels themselves, when two edges are compared",
+        set: |p, t| number(t).map(|v| p.context = v),
+    },
+    RibbonOption {
         name: "coarse",
         values: "1 to 16, default 1",
         help: "pixels of the exemplar that are averaged to one, along each side, for the search",

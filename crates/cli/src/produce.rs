@@ -12,7 +12,7 @@ use crate::{
     control::{self, Deadline, is_interrupted},
     duration,
     failure::{Failure, INTERRUPTED},
-    progress::Watch,
+    progress::{Steps, Watch},
     say::{self, Level},
     summary::{self, Message, Output, Ribbons, Summary},
 };
@@ -164,6 +164,14 @@ impl Ready {
         })
     }
 
+    /// What the progress bar counts.
+    fn steps(&self) -> Steps {
+        match self {
+            Self::Plane(_) | Self::Space(_) => Steps::Iterations,
+            Self::Ribbon(_) => Steps::Pieces,
+        }
+    }
+
     /// What was understood of the exemplar, in words.
     fn exemplar(&self) -> String {
         let ((elements, classes), (curves, styles)) = match self {
@@ -262,7 +270,7 @@ fn make(
     output: &OutputOptions,
     (level, time_limit): (Level, Option<Duration>),
 ) -> Result<Output, Failure> {
-    let mut watch = Watch::new(level, Deadline::after(time_limit));
+    let mut watch = Watch::new(level, Deadline::after(time_limit), ready.steps());
     let ran = ready.run(plan.seed, output, &mut watch);
     watch.finish();
     let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };

@@ -16,16 +16,26 @@ use crate::{
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
+/// What a run counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Steps {
+    /// Levels and iterations over elements.
+    Iterations,
+    /// Pieces of ribbons.
+    Pieces,
+}
+
 /// Watches a run.
 pub(crate) struct Watch {
     bar: ProgressBar,
+    steps: Steps,
     started: Instant,
     deadline: Deadline,
 }
 
 impl Watch {
     /// Shows a bar when standard error is a terminal and the user wants to hear something.
-    pub(crate) fn new(level: Level, deadline: Deadline) -> Self {
+    pub(crate) fn new(level: Level, deadline: Deadline, steps: Steps) -> Self {
         let bar = if level > Level::Quiet && say::is_terminal() {
             ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr_with_hz(10))
         } else {
@@ -34,7 +44,7 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template(&format!("{} {{percent:>3}}% {{msg}}", say::bar_style())) {
             bar.set_style(style);
         }
-        Self { bar, started: Instant::now(), deadline }
+        Self { bar, steps, started: Instant::now(), deadline }
     }
 
     /// Takes the bar off the screen.
@@ -51,14 +61,14 @@ impl<const D: usize> Observer<D> for Watch {
     fn step(&mut self, progress: &Progress, _: &dyn Fn() -> Preview<D>) -> ControlFlow<()> {
         if !self.bar.is_hidden() {
             self.bar.set_position((progress.fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
-            self.bar.set_message(describe(progress, self.started.elapsed()));
+            self.bar.set_message(describe(progress, self.steps, self.started.elapsed()));
         }
         if is_interrupted() || self.deadline.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
 /// Level, iteration, energy and time left, in words.
-fn describe(p: &Progress, elapsed: Duration) -> String {
+fn describe(p: &Progress, steps: Steps, elapsed: Duration) -> String {
     let energy = p.energy.map_or_else(String::new, |e| format!(", energy {e:.4}"));
     let left = if p.fraction > 0.02 {
         let seconds = elapsed.as_secs_f64() * (1.0 - p.fraction) / p.fraction;
@@ -66,6 +76,9 @@ fn describe(p: &Progress, elapsed: Duration) -> String {
     } else {
         String::new()
     };
+    if steps == Steps::Pieces {
+        return format!("piece {}/{}{left}", p.iteration, p.iterations);
+    }
     format!(
         "level {}/{}, iteration {}/{}, {} elements{energy}{left}",
         p.level + 1,
@@ -97,7 +110,8 @@ mod tests {
             energy: Some(0.125),
             elements: 300,
         };
-        let text = describe(&p, Duration::from_secs(75));
+        let text = describe(&p, Steps::Iterations, Duration::from_secs(75));
         assert_eq!(text, "level 2/3, iteration 4/7, 300 elements, energy 0.1250, 1 min 15 s left");
+        assert_eq!(describe(&p, Steps::Pieces, Duration::from_secs(9)), "piece 4/7, 9 s left");
     }
 }

@@ -3,7 +3,9 @@
 
 use std::{fs, path::PathBuf};
 
-use arabesque_io::svg::{Drawing, Method, ReadOptions, read_exemplar, read_flow, read_placed, read_shape};
+use arabesque_io::svg::{
+    Drawing, Method, ReadOptions, read_areas, read_exemplar, read_flow, read_lines, read_placed, read_shape,
+};
 
 fn cases() -> Vec<(String, String)> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
@@ -40,6 +42,8 @@ fn files_that_once_broke_the_reader_no_longer_do() {
             }
             let _ = read_shape(text, None, &options);
             let _ = read_flow(text, &options);
+            let _ = read_lines(text, None, &options);
+            let _ = read_areas(text, &options);
             let _ = read_placed(text, &exemplar, &options);
         }
     }

@@ -85,6 +85,9 @@ struct Pattern {
     /// Strength of the random preference of one part over another; 0 makes all seeds equal [default: 1]
     #[arg(long, value_name = "N")]
     variety: Option<f64>,
+    /// Strength of the pull to the middle of the ribbon; 0 lets the pattern wander across it freely [default: 1]
+    #[arg(long, value_name = "N")]
+    centring: Option<f64>,
     /// Where no part of the exemplar is valid, cut the pattern there instead of giving up; a picture may then be opaque
     #[arg(long)]
     relax: bool,
@@ -163,6 +166,7 @@ impl Ribbon {
             ("repetition", self.pattern.repetition),
             ("window", self.pattern.window),
             ("variety", self.pattern.variety),
+            ("centring", self.pattern.centring),
         ];
         recipe.set = self.pattern.set.into_iter().collect();
         recipe.set.extend(strengths.into_iter().filter_map(|(name, v)| Some((name.to_owned(), v?.to_string()))));

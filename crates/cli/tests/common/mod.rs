@@ -163,3 +163,51 @@ pub(crate) fn attributes<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
 pub(crate) fn drawn(text: &str) -> &str {
     text.rsplit_once("</metadata>").map_or(text, |(_, rest)| rest)
 }
+
+/// A PNG picture of RGBA pixels.
+pub(crate) fn picture(width: u32, height: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    let data: Vec<u8> =
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| pixel(x, y)).collect();
+    encoder.write_header().unwrap().write_image_data(&data).unwrap();
+    bytes
+}
+
+/// A strip of 60 x 24 pixels on a transparent background: a band that swings, with spots.
+pub(crate) fn strip() -> Vec<u8> {
+    picture(60, 24, |x, y| {
+        let middle = 12.0 + 3.0 * (f64::from(x) * std::f64::consts::TAU / 30.0).sin();
+        let off = (f64::from(y) + 0.5 - middle).abs();
+        match off {
+            _ if off < 1.5 && x % 12 < 4 => [230, 180, 40, 255],
+            _ if off < 3.0 => [40, 110, 90, 255],
+            _ if off < 4.0 => [40, 110, 90, (255.0 * (4.0 - off)) as u8],
+            _ => [0; 4],
+        }
+    })
+}
+
+/// The same kind of strip as a drawing of 60 x 24 units.
+pub(crate) fn drawn_strip() -> String {
+    svg(
+        "60",
+        "24",
+        "0 0 60 24",
+        "<path d=\"M-5 12C5 6 10 6 15 12S30 18 35 12S50 6 65 12\" fill=\"none\" stroke=\"#2a6e5a\" stroke-width=\"5\"/>\n\
+         <circle cx=\"15\" cy=\"12\" r=\"2\" fill=\"#e6b428\"/><circle cx=\"45\" cy=\"10\" r=\"2\" fill=\"#e6b428\"/>\n",
+    )
+}
+
+/// Curves on a page of 160 x 100: a wave, a ring, and a corner in a layer.
+pub(crate) fn curves() -> String {
+    svg(
+        "160",
+        "100",
+        "0 0 160 100",
+        "<path id=\"wave\" d=\"M12 60C50 5 100 95 148 40\" fill=\"none\" stroke=\"black\"/>\n\
+         <circle id=\"round\" cx=\"80\" cy=\"50\" r=\"32\" fill=\"none\" stroke=\"black\"/>\n\
+         <g inkscape:groupmode=\"layer\" inkscape:label=\"Corners\"><polyline id=\"bend\" points=\"20,80 80,80 80,20\"/></g>\n",
+    )
+}

@@ -199,7 +199,7 @@ pub(crate) fn measured<const D: usize>(
         let advice = "give every point of the curve as a number";
         return Err(Error::input(place, "a coordinate that is not a finite number", advice));
     }
-    let step = params.step.unwrap_or(0.25 * height);
+    let step = params.step.unwrap_or(0.1 * height);
     let line = Measured::new(path.clone(), 0.01 * step);
     let length = line.length();
     if length < 1e-3 * step {

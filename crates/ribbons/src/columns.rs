@@ -9,6 +9,8 @@ use crate::{cage::Form, strip::Strip, valid::Position};
 pub(crate) const GAMMA: f32 = 1024.0;
 /// The largest distance of two premultiplied colours.
 const LARGEST: f32 = 441.68;
+/// Weight of slopes beside pixels where the context counts fully.
+const SLOPES: f64 = 3.0;
 /// Left columns whose bounds are computed at once.
 pub(crate) const LANES: usize = 8;
 /// Parts of a column whose sums bound its cost from below.
@@ -119,7 +121,7 @@ impl Columns {
 /// Samples down an edge, and the slopes square to it: what lies ahead of it.
 fn taps((top, bottom): (Vector<2>, Vector<2>), rows: usize, context: f64) -> Vec<Tap> {
     let edge = bottom - top;
-    let ahead = Vector::xy(edge[1], -edge[0]) * (context / edge.norm());
+    let ahead = Vector::xy(edge[1], -edge[0]) * (SLOPES * context / edge.norm());
     let at = |k: usize| top + edge * ((k as f64 + 0.5) / rows as f64) + Vector::xy(0.5, 0.0);
     (0..rows).map(|k| Tap::new(at(k), ahead)).collect()
 }

@@ -3,22 +3,25 @@
 use std::ops::Range;
 
 use arabesque_core::{Error, Result};
+use rayon::prelude::*;
 
 use crate::{
     cage::Cage,
     engine::Request,
     params::Params,
     strip::Strip,
-    valid::{Demands, Offset},
+    valid::{Demands, Grade, Offset, positions},
 };
 
 /// Half of the length of a transition, in heights of the exemplar.
 const TRANSITION: f64 = 1.5;
 
 /// How far the pattern leaves the middle where nothing is in its way, in heights of the exemplar.
-const WANDER: f64 = 0.03125;
-/// How far before and behind a place to avoid the pattern may leave the middle as it likes, in heights of the exemplar.
-const DETOUR: f64 = 2.0;
+const WANDER: f64 = 0.01;
+/// Room beside the least detour, in heights of the exemplar.
+const RESERVE: f64 = 0.1;
+/// How fast a detour may begin and end: across against along.
+const SLOPE: f64 = 0.25;
 
 /// Everything that the demands on the pieces of one curve follow from.
 pub(crate) struct Plan<'a, const D: usize> {
@@ -32,18 +35,17 @@ impl<const D: usize> Plan<'_, D> {
     /// What is asked of each piece, beside the pixels that must stay `free`.
     pub(crate) fn demands(&self, free: Vec<Vec<Offset>>) -> Result<Vec<Demands>> {
         let changes = self.changes()?;
-        let wander = self.wander(&free);
         let mut demands: Vec<Demands> = free
             .into_iter()
             .enumerate()
-            .map(|(k, forbidden)| {
-                let rows = wander[k].map(|w| self.rows(k, w));
-                Demands { columns: self.body(k, &changes), rows, forbidden, ..Demands::default() }
-            })
+            .map(|(k, forbidden)| Demands { columns: self.body(k, &changes), forbidden, ..Demands::default() })
             .collect();
         if !self.cage.closed {
             self.start(&mut demands);
             self.end(&mut demands);
+        }
+        for (k, wander) in self.wander(&demands).into_iter().enumerate() {
+            demands[k].rows = Some(self.rows(k, wander));
         }
         self.first(&mut demands)?;
         Ok(demands)
@@ -54,22 +56,36 @@ impl<const D: usize> Plan<'_, D> {
         self.cage.step / self.cage.scale
     }
 
-    /// How far each piece may leave the middle, in pixels of the search; without limit near places to avoid.
-    fn wander(&self, free: &[Vec<Offset>]) -> Vec<Option<f64>> {
+    /// How far each piece may leave the middle, in pixels of the search: no farther than it must to have a valid position, and on the
+    /// way there and back.
+    fn wander(&self, demands: &[Demands]) -> Vec<f64> {
         let height = self.strip.height as f64;
-        let limit = (self.params.wander.unwrap_or(WANDER) * height).max(0.5);
-        let (n, reach) = (free.len(), (DETOUR * height / self.step()).ceil() as usize);
-        let mut limits = vec![Some(limit); n];
-        let troubled = (0..n).filter(|&k| self.params.wander.is_none() && !free[k].is_empty());
-        for k in troubled {
-            for near in (k + n - reach.min(n))..=(k + n + reach.min(n)) {
-                let beside = self.cage.closed || (n..2 * n).contains(&near);
-                if beside {
-                    limits[near % n] = None;
-                }
-            }
+        let limit = (self.params.wander.unwrap_or(WANDER) * height).max(1.0);
+        let n = demands.len();
+        if self.params.wander.is_some() {
+            return vec![limit; n];
         }
-        limits
+        let needed: Vec<f64> = (0..n).into_par_iter().map(|k| self.needed(k, &demands[k], limit)).collect();
+        let reserve = |j: usize| if needed[j] > limit { needed[j] + RESERVE * height } else { limit };
+        let away = |j: usize, k: usize| {
+            let there = j.abs_diff(k);
+            let pieces = if self.cage.closed { there.min(n - there) } else { there };
+            reserve(j) - SLOPE * pieces as f64 * self.step()
+        };
+        let detours: Vec<usize> = (0..n).filter(|&j| needed[j] > limit).collect();
+        (0..n).map(|k| detours.iter().map(|&j| away(j, k)).fold(limit, f64::max)).collect()
+    }
+
+    /// The least distance from the middle, among those tried, within which piece `k` has a valid position; all of the ribbon where it
+    /// has none.
+    fn needed(&self, k: usize, demands: &Demands, limit: f64) -> f64 {
+        let most = self.strip.height as f64 + self.cage.forms[k].left();
+        let tried = std::iter::successors(Some(limit), |w| Some(w * 1.5)).take_while(|w| *w < most);
+        let fits = |wander: &f64| {
+            let demands = Demands { rows: Some(self.rows(k, *wander)), ..demands.clone() };
+            !positions(self.strip, &self.cage.forms[k], &demands, Grade::Whole).is_empty()
+        };
+        tried.into_iter().find(fits).unwrap_or(most)
     }
 
     /// The rows of the top left corner of piece `k` within `wander` of the middle.

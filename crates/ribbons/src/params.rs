@@ -70,7 +70,7 @@ pub enum Search {
 /// How a pattern is laid along a curve. Lengths are in user units of the canvas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Length of a piece along the curve; rounded so that whole pieces fill the curve. Default: a quarter of the height of the exemplar.
+    /// Length of a piece along the curve; rounded so that whole pieces fill the curve. Default: a tenth of the height of the exemplar.
     pub step: Option<f64>,
     /// Width of the ribbon. Default: [`Width::Exemplar`].
     pub width: Width,
@@ -89,8 +89,8 @@ pub struct Params {
     /// Strength of the pull to the middle of the ribbon, 0 or more. Default: 1; 0 lets the pattern wander across the ribbon freely, as in
     /// the paper.
     pub centring: f64,
-    /// How far the pattern may leave the middle of the ribbon, as a share of the exemplar's height, 0 or more. Default: 1/32, and without
-    /// limit near regions, folds and overlaps to avoid. The fewer the positions, the faster the search; 1 allows all, as in the paper.
+    /// How far the pattern may leave the middle of the ribbon, as a share of the exemplar's height, 0 or more. Default: 1/100, and farther
+    /// where regions, folds and overlaps have to be avoided. The fewer the positions, the faster the search; 1 allows all, as in the paper.
     pub wander: Option<f64>,
     /// Whether neighbouring pieces are bent to meet [Zhou 2013 §3.2]. Default: true.
     pub stitch: bool,

@@ -9,7 +9,7 @@ use arabesque_core::{Stage, Stream};
 use crate::{cage::Form, params::Params, strip::Strip, valid::Position};
 
 /// Most pieces that a path remembers.
-const MEMORY: usize = 48;
+const MEMORY: usize = 64;
 
 /// Cost of one row of pixels that is shown again at full strength, in 8-bit colour steps.
 const REPEATED: f64 = 24.0;

@@ -5,7 +5,7 @@ use crate::columns::{Columns, column_norm};
 /// P: cost of an opaque sample that is skipped, in 8-bit colour steps [Zhou 2013 eq. 3].
 const SKIPPED: f64 = 32.0;
 /// Farthest that a sample is moved, as a share of the edge.
-const FARTHEST: f64 = 0.2;
+const FARTHEST: f64 = 0.06;
 
 /// For each sample of the edge, how many samples farther down its colour is taken from: T\[i\] - i.
 pub(crate) fn alignment(right: &[[f32; 4]], left: &[[f32; 4]]) -> Vec<f32> {

@@ -4,9 +4,9 @@ use arabesque_core::Vector;
 use arabesque_ribbons::Piece;
 
 /// How far a cell may be from the true bending, in exemplar pixels.
-const TOLERANCE: f64 = 0.15;
+const TOLERANCE: f64 = 0.4;
 /// Most that the shift may change from the top to the bottom of a cell, in exemplar pixels.
-const SLOPE: f64 = 1.0;
+const SLOPE: f64 = 2.0;
 
 /// The two ends of a line across a piece, on its left and on its right edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ fn stations(samples: usize, shift: impl Fn(f64) -> f64) -> Vec<f64> {
     if samples == 0 {
         return vec![0.0, 1.0];
     }
-    let n = (2 * samples).max(2);
+    let n = samples.max(2);
     let known: Vec<f64> = (0..=n).map(|k| shift(k as f64 / n as f64)).collect();
     let mut kept = vec![0, n];
     split(&known, 0, n, &mut kept);

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::number::Decimals;
 
-/// How far cells reach under their neighbours so that no gap shows between them, in pixels of the picture.
+/// How far cells reach under their neighbours so that no gap shows between them, in pixels of the picture as shown.
 const OVERLAP: f64 = 0.4;
 /// A corner is never moved by more than this many times the overlap.
 const MITRE: f64 = 3.0;
@@ -20,7 +20,7 @@ const MITRE: f64 = 3.0;
 pub struct Cell {
     /// Which picture.
     pub source: usize,
-    /// The polygon, in pixels of the picture.
+    /// The polygon, in user units.
     pub ring: Vec<Vector<2>>,
     /// From pixels of the picture to user units, as SVG's `matrix()` has it.
     pub matrix: [f64; 6],
@@ -85,7 +85,8 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
         Look::Markup(_) => &[],
     });
     for (k, cell) in cells.enumerate() {
-        let data = ring_text(&grown(&cell.ring, OVERLAP), Decimals::for_extent(1e3));
+        let [a, b, c, d, ..] = cell.matrix;
+        let data = ring_text(&grown(&cell.ring, OVERLAP * (a * d - b * c).abs().sqrt()), decimals);
         let _ = writeln!(out, "    <clipPath id=\"cell-{k}\"><path d=\"{data}\"/></clipPath>");
     }
     out.push_str("  </defs>\n  <g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\">\n");
@@ -98,7 +99,7 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
                 for cell in cells {
                     let _ = writeln!(
                         out,
-                        "      <use xlink:href=\"#exemplar-{}\" clip-path=\"url(#cell-{number})\" transform=\"{}\"/>",
+                        "      <g clip-path=\"url(#cell-{number})\"><use xlink:href=\"#exemplar-{}\" transform=\"{}\"/></g>",
                         cell.source,
                         matrix_text(&cell.matrix, decimals)
                     );

@@ -14,10 +14,10 @@ const MEMORY: usize = 64;
 /// Cost of one row of pixels that is shown again at full strength, in 8-bit colour steps.
 const REPEATED: f64 = 24.0;
 /// Largest random cost of one row of pixels, in 8-bit colour steps.
-const TASTE: f64 = 8.0;
+const TASTE: f64 = 24.0;
 
 /// Cost of one row of pixels for a piece that lies a whole height of the exemplar off the middle, in 8-bit colour steps.
-const OFF_CENTRE: f64 = 40.0;
+const OFF_CENTRE: f64 = 640.0;
 
 /// Left edges of the last pieces, latest first; `u16::MAX` before the first piece.
 #[derive(Clone, Debug, PartialEq, Eq)]

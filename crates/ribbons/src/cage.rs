@@ -47,7 +47,7 @@ impl Form {
         let edge = (bottom - top) * (1.0 / (bottom - top).norm().max(1e-12)) + Vector::xy(0.0, 1.0);
         let upright = if edge.norm() > 1e-6 { edge * (1.0 / edge.norm()) } else { Vector::xy(0.0, 1.0) };
         let rounded = |c: f64| (c / GRAIN).round() * GRAIN;
-        let turned = |p: Vector<2>| Vector::xy(upright.cross(p) * -1.0, upright.dot(p)).map(rounded);
+        let turned = |p: Vector<2>| Vector::xy(-upright.cross(p), upright.dot(p)).map(rounded);
         Self { foot: turned(Vector::xy(0.0, left)), top: turned(top), bottom: turned(bottom) }
     }
 
@@ -81,7 +81,7 @@ impl Form {
             _ => {}
         }
         let right = top / (top - bottom);
-        let left = (self.top + (self.bottom - self.top) * right).dot(self.foot) / self.foot.norm2();
+        let left = ((self.top + (self.bottom - self.top) * right).dot(self.foot) / self.foot.norm2()).clamp(0.0, 1.0);
         Some(if bottom > 0.0 { [(0.0, left), (0.0, right)] } else { [(left, 1.0), (right, 1.0)] })
     }
 
@@ -134,24 +134,19 @@ impl<const D: usize> Cage<D> {
 impl Cage<2> {
     /// Cuts the ribbon around `path` for an exemplar that is `height` pixels high. `scale` is in user units a pixel.
     pub(crate) fn along(path: &Path<2>, params: &Params, height: f64, scale: f64, place: &str) -> Result<Self> {
-        let (line, n) = measured(path, params, height * params.scale, place)?;
-        let step = line.length() / n as f64;
+        let line = Line::new(path, params, height * params.scale, place)?;
         let mut down = Vector::xy(0.0, 1.0);
-        let rungs: Vec<_> = (0..=n)
+        let rungs: Vec<_> = (0..=line.pieces)
             .map(|k| {
-                let arc = if k == n && line.is_closed() { 0.0 } else { k as f64 * step };
-                let along = line.point(arc + 0.5 * step) - line.point(arc - 0.5 * step);
-                if along.norm() > 1e-9 * step {
+                let along = line.direction(k);
+                if along.norm() > 1e-9 * line.step {
                     down = Vector::xy(-along[1], along[0]) * (1.0 / along.norm());
                 }
-                let share = if line.is_closed() && k == n { 0.0 } else { k as f64 / n as f64 };
-                let half = down * (0.5 * params.width.at(share, height * params.scale));
-                let centre = line.point(arc);
-                Rung { top: centre - half, bottom: centre + half }
+                line.rung(k, down)
             })
             .collect();
         let forms = rungs.windows(2).map(|w| form(&w[0], &w[1], scale)).collect();
-        Ok(Self { rungs, forms, closed: line.is_closed(), step, scale })
+        Ok(Self { rungs, forms, closed: line.closed(), step: line.step, scale })
     }
 
     /// `p` in pixels from the top left corner of piece `k`.
@@ -188,34 +183,72 @@ impl Cage<2> {
     }
 }
 
-/// The curve by arc length, and its number of pieces.
-pub(crate) fn measured<const D: usize>(
-    path: &Path<D>,
-    params: &Params,
+/// A curve by arc length, divided into pieces of equal length, but for the last, which takes what is left: a change of the curve leaves
+/// the pieces before it as they are.
+pub(crate) struct Line<'a, const D: usize> {
+    line: Measured<D>,
+    params: &'a Params,
+    /// Height of the exemplar, in user units.
     height: f64,
-    place: &str,
-) -> Result<(Measured<D>, usize)> {
-    if path.cubics.iter().flatten().any(|p| !p.is_finite()) {
-        let advice = "give every point of the curve as a number";
-        return Err(Error::input(place, "a coordinate that is not a finite number", advice));
+    pub(crate) pieces: usize,
+    pub(crate) step: f64,
+}
+
+impl<'a, const D: usize> Line<'a, D> {
+    pub(crate) fn new(path: &Path<D>, params: &'a Params, height: f64, place: &str) -> Result<Self> {
+        if path.cubics.iter().flatten().any(|p| !p.is_finite()) {
+            let advice = "give every point of the curve as a number";
+            return Err(Error::input(place, "a coordinate that is not a finite number", advice));
+        }
+        let step = params.step.unwrap_or(0.1 * height);
+        let line = Measured::new(path.clone(), 0.01 * step);
+        let length = line.length();
+        if length < 1e-3 * step {
+            let problem = format!("a curve of length {length:.3}, where a pattern is to be laid along it");
+            return Err(Error::input(place, problem, "draw a longer curve"));
+        }
+        let n = (length / step).round().max(if line.is_closed() { 3.0 } else { 1.0 });
+        if n > PIECES as f64 {
+            return Err(Error::Limit {
+                what: format!("{place}: pieces along the curve"),
+                found: n.to_string(),
+                limit: PIECES.to_string(),
+                advice: "use longer pieces (--step) or a larger --scale".into(),
+            });
+        }
+        Ok(Self { step: step.min(length / (n - 0.5)), pieces: n as usize, line, params, height })
     }
-    let step = params.step.unwrap_or(0.1 * height);
-    let line = Measured::new(path.clone(), 0.01 * step);
-    let length = line.length();
-    if length < 1e-3 * step {
-        let problem = format!("a curve of length {length:.3}, where a pattern is to be laid along it");
-        return Err(Error::input(place, problem, "draw a longer curve"));
+
+    pub(crate) fn closed(&self) -> bool {
+        self.line.is_closed()
     }
-    let n = (length / step).round().max(if line.is_closed() { 3.0 } else { 1.0 });
-    if n > PIECES as f64 {
-        return Err(Error::Limit {
-            what: format!("{place}: pieces along the curve"),
-            found: n.to_string(),
-            limit: PIECES.to_string(),
-            advice: "use longer pieces (--step) or a larger --scale".into(),
-        });
+
+    /// Arc length at rung `k`.
+    fn arc(&self, k: usize) -> f64 {
+        match k == self.pieces {
+            true if self.closed() => 0.0,
+            true => self.line.length(),
+            false => k as f64 * self.step,
+        }
     }
-    Ok((line, n as usize))
+
+    /// Direction of the curve at rung `k`: the chord around it, as long as the ribbon is wide, so that a corner is turned within the width.
+    pub(crate) fn direction(&self, k: usize) -> Vector<D> {
+        let (arc, length) = (self.arc(k), self.line.length());
+        let wanted = 0.5 * self.width(k).min(length);
+        let half = if self.closed() { wanted } else { wanted.min(arc.min(length - arc).max(0.5 * self.step)) };
+        self.line.point(arc + half) - self.line.point(arc - half)
+    }
+
+    fn width(&self, k: usize) -> f64 {
+        self.params.width.at(self.arc(k) / self.line.length(), self.height)
+    }
+
+    /// Rung `k`, square to the curve along the unit vector `down`.
+    pub(crate) fn rung(&self, k: usize, down: Vector<D>) -> Rung<D> {
+        let (centre, half) = (self.line.point(self.arc(k)), down * (0.5 * self.width(k)));
+        Rung { top: centre - half, bottom: centre + half }
+    }
 }
 
 /// M(p - T) / scale.
@@ -242,8 +275,8 @@ mod tests {
 
     #[test]
     fn a_straight_ribbon_has_equal_rectangles() {
-        let cage = cage(&Path::polyline(&[Vector::xy(3.0, 50.0), Vector::xy(103.0, 50.0)]), 9.0);
-        assert_eq!(cage.len(), 11);
+        let cage = cage(&Path::polyline(&[Vector::xy(3.0, 50.0), Vector::xy(103.0, 50.0)]), 10.0);
+        assert_eq!(cage.len(), 10);
         assert!(cage.forms.iter().all(|f| *f == cage.forms[0]));
         assert_eq!((cage.forms[0].foot, cage.forms[0].top[1]), (Vector::xy(0.0, 20.0), 0.0));
         assert!((cage.rungs[0].top - Vector::xy(3.0, 40.0)).norm() < 1e-9);
@@ -253,13 +286,13 @@ mod tests {
 
     #[test]
     fn a_tight_bend_folds_on_its_inner_side() {
-        let corners = [Vector::xy(0.0, 0.0), Vector::xy(50.0, 0.0), Vector::xy(50.0, 50.0)];
+        let corners = [Vector::xy(0.0, 0.0), Vector::xy(50.0, 0.0), Vector::xy(10.0, 20.0)];
         let cage = cage(&Path::polyline(&corners), 5.0);
         let folded: Vec<_> = cage.forms.iter().filter(|f| f.foot.cross(f.bottom) > 0.0).collect();
         assert!(!folded.is_empty());
         for form in folded {
             let [(l0, l1), (r0, r1)] = form.unfolded().unwrap();
-            assert!(l0 == 0.0 && r0 == 0.0 && l1 < 1.0 && r1 < 1.0);
+            assert!(l0 == 0.0 && r0 == 0.0 && l1 <= 1.0 && r1 < 1.0);
         }
     }
 

@@ -55,7 +55,13 @@ impl Tree {
         self.nodes.iter().filter(|n| n.halves.is_none())
     }
 
-    fn split(&mut self, summaries: &[Summary], costs: Option<&[f64]>, range: std::ops::Range<usize>, most: usize) -> usize {
+    fn split(
+        &mut self,
+        summaries: &[Summary],
+        costs: Option<&[f64]>,
+        range: std::ops::Range<usize>,
+        most: usize,
+    ) -> usize {
         let members = &mut self.order[range.clone()];
         let (mut low, mut high) = ([f32::INFINITY; SUMMARY], [f32::NEG_INFINITY; SUMMARY]);
         let (mut cost, mut most_cost) = (f64::INFINITY, f64::NEG_INFINITY);

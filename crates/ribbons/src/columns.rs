@@ -222,7 +222,8 @@ impl Bundle {
     pub(crate) fn new(summaries: &[Summary], members: &[u32]) -> Self {
         let of = |lane: usize| &summaries[members[lane.min(members.len() - 1)] as usize];
         let number = |block: usize, k: usize| std::array::from_fn(|lane| of(lane).block(block)[k]);
-        let blocks: [[Lanes; CHANNELS]; BLOCKS] = std::array::from_fn(|block| std::array::from_fn(|k| number(block, k)));
+        let blocks: [[Lanes; CHANNELS]; BLOCKS] =
+            std::array::from_fn(|block| std::array::from_fn(|k| number(block, k)));
         let filled = (0..LANES).fold(0, |filled, lane| filled | of(lane).filled);
         Self { blocks, filled }
     }
@@ -231,7 +232,8 @@ impl Bundle {
     pub(crate) fn bounds(&self, right: &Summary) -> Lanes {
         let mut sum = [0.0; LANES];
         let filled = self.filled | right.filled;
-        for (block, [r, g, b, a, e, f]) in self.blocks.iter().enumerate().filter(|(block, _)| filled >> block & 1 == 1) {
+        for (block, [r, g, b, a, e, f]) in self.blocks.iter().enumerate().filter(|(block, _)| filled >> block & 1 == 1)
+        {
             let p = right.block(block);
             for lane in 0..LANES {
                 let (x, y, z) = (r[lane] - p[0], g[lane] - p[1], b[lane] - p[2]);

@@ -116,7 +116,7 @@ impl<const D: usize> Plan<'_, D> {
             let from = if e == 0 { f64::NEG_INFINITY } else { changes[e - 1] - half };
             let to = changes.get(e).map_or(f64::INFINITY, |c| c + half);
             // A closed curve passes from the last exemplar into the first around its start.
-            let wrapped = self.cage.closed && changes.len() > 0 && (share < half || share > 1.0 - half);
+            let wrapped = self.cage.closed && !changes.is_empty() && (share < half || share > 1.0 - half);
             (from..=to).contains(&share) || (wrapped && (e == 0 || e == changes.len()))
         };
         (0..self.strip.spans.len()).filter(|&e| used(e)).map(|e| self.inner(e)).collect()
@@ -125,7 +125,9 @@ impl<const D: usize> Plan<'_, D> {
     fn inner(&self, exemplar: usize) -> Range<usize> {
         let span = &self.strip.spans[exemplar];
         let from = self.strip.starts[exemplar].as_ref().map_or(span.start, |s| s.end);
-        let to = self.strip.ends[exemplar].as_ref().map_or(span.end, |e| e.start.saturating_sub(self.step().ceil() as usize));
+        let to = self.strip.ends[exemplar]
+            .as_ref()
+            .map_or(span.end, |e| e.start.saturating_sub(self.step().ceil() as usize));
         from..to.max(from)
     }
 
@@ -138,7 +140,7 @@ impl<const D: usize> Plan<'_, D> {
                 break;
             }
             let x = range.start + done.round() as usize;
-            demand.columns = vec![x..x + 1];
+            demand.columns = one(x..x + 1);
             demand.loose_left = k == 0;
         }
     }
@@ -152,7 +154,7 @@ impl<const D: usize> Plan<'_, D> {
                 break;
             }
             let x = (range.end - 1).saturating_sub(rest.ceil() as usize);
-            demand.columns = vec![x..x + 1];
+            demand.columns = one(x..x + 1);
             demand.loose_right = k == 0;
         }
     }
@@ -166,8 +168,13 @@ impl<const D: usize> Plan<'_, D> {
             let expected = format!("a column below {} and a row between {} and {}", width * coarse, -height, height);
             return Err(Error::parameter("first", format!("{x},{y}"), expected));
         }
-        demand.columns = vec![x..x + 1];
+        demand.columns = one(x..x + 1);
         demand.rows = Some(y..y + 1);
         Ok(())
     }
+}
+
+/// A list of one range of columns.
+fn one(columns: Range<usize>) -> Vec<Range<usize>> {
+    std::iter::once(columns).collect()
 }

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{
-    Observer, Patch, Path, Preview, Progress, Result, StopReason, Vector, Warning,
-};
+use arabesque_core::{Observer, Patch, Path, Preview, Progress, Result, StopReason, Vector, Warning};
 
 use crate::{
     cage::Cage,
@@ -117,7 +115,9 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::run`].
     pub fn resume(&self, request: &Request<2>, before: &Memory, observer: &mut dyn Observer<2>) -> Result<Outcome<2>> {
-        let along = |(name, path): &(String, Path<2>)| Cage::along(path, &self.params, self.full.height as f64, self.scale(), name);
+        let along = |(name, path): &(String, Path<2>)| {
+            Cage::along(path, &self.params, self.full.height as f64, self.scale(), name)
+        };
         let cages = request.curves.iter().map(along).collect::<Result<Vec<_>>>()?;
         let free = forbidden(&cages, request.avoid.as_ref());
         let mut outcome = self.lay(&cages, free, request, before, observer)?;
@@ -132,7 +132,9 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::run`].
     pub fn run_in_space(&self, request: &Request<3>, observer: &mut dyn Observer<3>) -> Result<Outcome<3>> {
-        let along = |(name, path): &(String, Path<3>)| Cage::in_space(path, &self.params, self.full.height as f64, self.scale(), name);
+        let along = |(name, path): &(String, Path<3>)| {
+            Cage::in_space(path, &self.params, self.full.height as f64, self.scale(), name)
+        };
         let cages = request.curves.iter().map(along).collect::<Result<Vec<_>>>()?;
         let free = cages.iter().map(|cage| vec![Vec::new(); cage.len()]).collect();
         self.lay(&cages, free, request, &Memory::default(), observer)
@@ -154,7 +156,12 @@ impl Prepared {
         let basis = Basis { params: self.params.clone(), seed: request.seed, exemplars: Arc::clone(&self.exemplars) };
         let known = before.basis.as_ref() == Some(&basis);
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
-        let mut outcome = Outcome { ribbons: Vec::new(), warnings: Vec::new(), stopped: StopReason::Finished, memory: Memory::default() };
+        let mut outcome = Outcome {
+            ribbons: Vec::new(),
+            warnings: Vec::new(),
+            stopped: StopReason::Finished,
+            memory: Memory::default(),
+        };
         let total = cages.iter().map(Cage::len).sum();
         let mut done = 0;
         for (k, (cage, free)) in cages.iter().zip(free).enumerate() {
@@ -243,7 +250,8 @@ impl Prepared {
 
     /// How the right edge of piece `k` is bent to meet the left edge of `next`.
     fn shift<const D: usize>(&self, cage: &Cage<D>, k: usize, next: usize, solution: &Solution) -> Vec<f32> {
-        let right = Columns::right(&self.strip, &cage.forms[k], cage.forms[next].rows(), 0.0, &solution.positions[k..=k]);
+        let right =
+            Columns::right(&self.strip, &cage.forms[k], cage.forms[next].rows(), 0.0, &solution.positions[k..=k]);
         let left = Columns::left(&self.strip, &cage.forms[next], 0.0, &solution.positions[next..=next]);
         let pixels = (cage.forms[next].left() / cage.forms[next].rows() as f64 * self.params.coarse as f64) as f32;
         stitch::align(&right, &left).into_iter().map(|samples| samples * pixels).collect()

@@ -62,11 +62,11 @@ impl Mask {
 pub(crate) fn forbidden(cages: &[Cage<2>], mask: Option<&Mask>) -> Vec<Vec<Vec<Offset>>> {
     let all: Vec<Piece> = cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
     let bounds: Vec<Bounds<2>> = all.iter().map(|&(c, k)| cages[c].bounds(k)).collect();
+    let near = Near::new(&bounds);
     let found: Vec<Vec<Offset>> = (0..all.len())
         .into_par_iter()
         .map(|id| {
-            let rivals: Vec<Piece> =
-                (0..all.len()).filter(|&j| j != id && bounds[j].intersects(&bounds[id])).map(|j| all[j]).collect();
+            let rivals: Vec<Piece> = near.of(id, &bounds).into_iter().map(|j| all[j]).collect();
             let mut offsets = overlaps(cages, all[id], &rivals);
             offsets.extend(mask.into_iter().flat_map(|mask| blocked(&cages[all[id].0], all[id].1, mask)));
             offsets.sort_unstable();
@@ -76,6 +76,32 @@ pub(crate) fn forbidden(cages: &[Cage<2>], mask: Option<&Mask>) -> Vec<Vec<Vec<O
         .collect();
     let mut rest = found.into_iter();
     cages.iter().map(|cage| rest.by_ref().take(cage.len()).collect()).collect()
+}
+
+/// Which boxes meet, by their left sides.
+struct Near {
+    /// Boxes from left to right.
+    order: Vec<usize>,
+    /// Largest width of a box.
+    widest: f64,
+}
+
+impl Near {
+    fn new(bounds: &[Bounds<2>]) -> Self {
+        let mut order: Vec<usize> = (0..bounds.len()).collect();
+        order.sort_by(|&a, &b| bounds[a].min[0].total_cmp(&bounds[b].min[0]).then(a.cmp(&b)));
+        Self { order, widest: bounds.iter().map(|b| b.size()[0]).fold(0.0, f64::max) }
+    }
+
+    /// The boxes that meet box `id`, in rising order.
+    fn of(&self, id: usize, bounds: &[Bounds<2>]) -> Vec<usize> {
+        let own = &bounds[id];
+        let from = self.order.partition_point(|&k| bounds[k].min[0] < own.min[0] - self.widest);
+        let near = self.order[from..].iter().copied().take_while(|&k| bounds[k].min[0] <= own.max[0]);
+        let mut near: Vec<usize> = near.filter(|&k| k != id && bounds[k].intersects(own)).collect();
+        near.sort_unstable();
+        near
+    }
 }
 
 /// Cage and piece.

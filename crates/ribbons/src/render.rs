@@ -56,7 +56,11 @@ pub fn render(ribbons: &[Ribbon<2>], exemplars: &[Exemplar], mask: Option<&Mask>
         let here: Vec<&Painter<'_>> = painters.iter().filter(|p| p.covers(1, y)).collect();
         (0..canvas.width).map(|x| pixel(&here, ribbons, mask, canvas, (x, y))).collect::<Vec<_>>()
     };
-    Image { width: canvas.width, height: canvas.height, pixels: (0..canvas.height).into_par_iter().flat_map_iter(row).collect() }
+    Image {
+        width: canvas.width,
+        height: canvas.height,
+        pixels: (0..canvas.height).into_par_iter().flat_map_iter(row).collect(),
+    }
 }
 
 impl<'a> Painter<'a> {
@@ -101,9 +105,16 @@ impl<'a> Painter<'a> {
 }
 
 /// Straight RGBA of one output pixel: the mean of enough samples for its size.
-fn pixel(painters: &[&Painter<'_>], ribbons: &[Ribbon<2>], mask: Option<&Mask>, canvas: &Canvas, (x, y): (usize, usize)) -> [u8; 4] {
+fn pixel(
+    painters: &[&Painter<'_>],
+    ribbons: &[Ribbon<2>],
+    mask: Option<&Mask>,
+    canvas: &Canvas,
+    (x, y): (usize, usize),
+) -> [u8; 4] {
     let here: Vec<&Painter<'_>> = painters.iter().copied().filter(|p| p.covers(0, x)).collect();
-    let at = |dx: f64, dy: f64| canvas.origin + Vector::xy(x as f64 + dx, y as f64 + dy) * (1.0 / canvas.pixels_per_unit);
+    let at =
+        |dx: f64, dy: f64| canvas.origin + Vector::xy(x as f64 + dx, y as f64 + dy) * (1.0 / canvas.pixels_per_unit);
     if here.is_empty() || mask.is_some_and(|mask| mask.blocks(at(0.5, 0.5))) {
         return [0; 4];
     }
@@ -125,9 +136,8 @@ fn sample(painters: &[&Painter<'_>], ribbons: &[Ribbon<2>], p: Vector<2>, pixels
     for painter in painters {
         let Some(colour) = painter.colour(p, pixels_per_unit) else { continue };
         let ribbon = &ribbons[painter.place.0];
-        let beside = |a: usize, b: usize| {
-            a.abs_diff(b) <= 1 || (ribbon.closed && a.abs_diff(b) + 1 == ribbon.pieces.len())
-        };
+        let beside =
+            |a: usize, b: usize| a.abs_diff(b) <= 1 || (ribbon.closed && a.abs_diff(b) + 1 == ribbon.pieces.len());
         match groups.iter_mut().find(|(place, _)| place.0 == painter.place.0 && beside(place.1, painter.place.1)) {
             Some((_, sum)) => sum.iter_mut().zip(colour).for_each(|(s, c)| *s += c),
             None => groups.push((painter.place, colour)),

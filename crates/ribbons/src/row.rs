@@ -238,7 +238,8 @@ impl<'a> Query<'a> {
         let members = &groups.order[leaf.members.clone()];
         let best = std::array::from_fn(|lane| seeds[members[lane.min(members.len() - 1)] as usize]);
         let (bundle, least) = (Bundle::new(left, members), tree.nodes[0].cost);
-        let mut query = Self { step, tree, right, left, bundle, members, leaf, best, limits: [0.0; LANES], limit: 0.0, least };
+        let mut query =
+            Self { step, tree, right, left, bundle, members, leaf, best, limits: [0.0; LANES], limit: 0.0, least };
         query.raise_limits();
         query
     }

@@ -98,9 +98,16 @@ impl Course<'_> {
             "the piece is longer than the part of the exemplar that it may show"
         };
         let n = self.forms.len();
-        let problem = format!("{}: piece {} of {n}, at {}, has no valid position: {reason}", self.name, piece + 1, self.places[piece]);
+        let problem = format!(
+            "{}: piece {} of {n}, at {}, has no valid position: {reason}",
+            self.name,
+            piece + 1,
+            self.places[piece]
+        );
         let advice = match () {
-            () if fits(Grade::Forbidden) => "avoid less, bend the curve less, or let the pattern be cut there with --relax",
+            () if fits(Grade::Forbidden) => {
+                "avoid less, bend the curve less, or let the pattern be cut there with --relax"
+            }
             () if fits(Grade::Cut) => "change --width or --scale, or let the pattern be cut there with --relax",
             () => "use shorter pieces (--step), bend the curve less, or let the pattern be cut there with --relax",
         };
@@ -130,7 +137,8 @@ impl Course<'_> {
     fn close(&self, table: Table<'_>) -> Result<Solution> {
         let Some(last) = table.kept.last().map(|k| Arc::clone(&k.row)) else { return Ok(table.finish(false)) };
         let cycle = (0..last.cost.len()).filter(|&u| last.start[u] == u as u32);
-        let mut best = cycle.min_by(|&a, &b| last.cost[a].total_cmp(&last.cost[b])).map(|u| (last.cost[u], table.path(u)));
+        let mut best =
+            cycle.min_by(|&a, &b| last.cost[a].total_cmp(&last.cost[b])).map(|u| (last.cost[u], table.path(u)));
         let bounds = self.bounds_of_cycles(&last)?;
         let mut starts: Vec<usize> = (0..last.cost.len()).collect();
         starts.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
@@ -139,7 +147,7 @@ impl Course<'_> {
             if hopeless || (self.params.closing == Closing::Quick && best.is_some()) {
                 break;
             }
-            let (cost, path) = self.from_start(&table, start)?;
+            let (cost, path) = self.cycle_through(&table, start)?;
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, path));
             }
@@ -158,7 +166,13 @@ impl Course<'_> {
         }
         // Re-use depends on the path behind, so that P bounds nothing; without it, P does.
         let params = Params { repetition: 0.0, ..self.params.clone() };
-        let free = Course { params: &params, reuse: self.reuse.without_repetition(), places: self.places, demands: self.demands, ..*self };
+        let free = Course {
+            params: &params,
+            reuse: self.reuse.without_repetition(),
+            places: self.places,
+            demands: self.demands,
+            ..*self
+        };
         let mut table = Table { course: &free, kept: Vec::new(), trails: Vec::new(), resumed: 0 };
         for _ in 0..self.rows() {
             table.advance(None)?;
@@ -167,7 +181,7 @@ impl Course<'_> {
     }
 
     /// The best cycle through position `start` of the first piece.
-    fn from_start(&self, table: &Table<'_>, start: usize) -> Result<(f64, Vec<Position>)> {
+    fn cycle_through(&self, table: &Table<'_>, start: usize) -> Result<(f64, Vec<Position>)> {
         let first = &table.kept[0];
         let only = Arc::new(vec![first.row.positions[start]]);
         let row = Row::first(only, &self.reuse, first.form.foot[1]);
@@ -229,7 +243,17 @@ impl Table<'_> {
         let none = Reuse::default();
         let reuse = if self.kept.len() < self.course.forms.len() { &self.course.reuse } else { &none };
         let before = &*last.row;
-        let step = Step { before, trails: &self.trails, right: &right, positions, left: &left, depth: form.foot[1], natural, reuse, piece };
+        let step = Step {
+            before,
+            trails: &self.trails,
+            right: &right,
+            positions,
+            left: &left,
+            depth: form.foot[1],
+            natural,
+            reuse,
+            piece,
+        };
         match self.course.params.search {
             Search::Bounded => step.bounded(),
             Search::Exhaustive => step.exhaustive(),

@@ -3,32 +3,19 @@
 use arabesque_core::{Path, Result, Vector};
 
 use crate::{
-    cage::{Cage, Form, Rung, measured},
+    cage::{Cage, Form, Line, Rung},
     params::Params,
 };
 
 impl Cage<3> {
     /// Cuts the ribbon around `path`. It lies flat on the ground as far as the curve allows and turns as little as it can on the way.
     pub(crate) fn in_space(path: &Path<3>, params: &Params, height: f64, scale: f64, place: &str) -> Result<Self> {
-        let (line, n) = measured(path, params, height * params.scale, place)?;
-        let step = line.length() / n as f64;
-        let tangents: Vec<Vector<3>> = (0..=n)
-            .map(|k| {
-                let arc = if k == n && line.is_closed() { 0.0 } else { k as f64 * step };
-                line.point(arc + 0.5 * step) - line.point(arc - 0.5 * step)
-            })
-            .collect();
-        let downs = downs(&tangents, line.is_closed());
-        let rungs: Vec<_> = (0..=n)
-            .map(|k| {
-                let share = if line.is_closed() && k == n { 0.0 } else { k as f64 / n as f64 };
-                let half = downs[k] * (0.5 * params.width.at(share, height * params.scale));
-                let centre = line.point(share * line.length());
-                Rung { top: centre - half, bottom: centre + half }
-            })
-            .collect();
+        let line = Line::new(path, params, height * params.scale, place)?;
+        let tangents: Vec<Vector<3>> = (0..=line.pieces).map(|k| line.direction(k)).collect();
+        let downs = downs(&tangents, line.closed());
+        let rungs: Vec<_> = downs.into_iter().enumerate().map(|(k, down)| line.rung(k, down)).collect();
         let forms = rungs.windows(2).map(|w| unrolled(&w[0], &w[1], scale)).collect();
-        Ok(Self { rungs, forms, closed: line.is_closed(), step, scale })
+        Ok(Self { rungs, forms, closed: line.closed(), step: line.step, scale })
     }
 }
 

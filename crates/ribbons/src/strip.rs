@@ -168,7 +168,11 @@ fn average(image: &Image, x: usize, y: usize, side: usize) -> [f32; 4] {
 /// Refuses exemplars that no pattern can be read from.
 pub(crate) fn check(exemplars: &[Exemplar], coarse: usize, relax: bool) -> Result<()> {
     if exemplars.is_empty() {
-        return Err(Error::input("exemplar", "none was given, where at least one picture was expected", "name a picture"));
+        return Err(Error::input(
+            "exemplar",
+            "none was given, where at least one picture was expected",
+            "name a picture",
+        ));
     }
     for (k, exemplar) in exemplars.iter().enumerate() {
         let place = if exemplars.len() == 1 { "exemplar".to_owned() } else { format!("exemplar {}", k + 1) };
@@ -201,7 +205,8 @@ fn check_one(exemplar: &Exemplar, place: &str, relax: bool) -> Result<()> {
     }
     if opaque == image.pixels.len() && !relax {
         let problem = "no pixel is transparent, where the background was expected to outline the pattern";
-        let advice = "make the background transparent, or use --relax, which takes the picture as a texture and cuts it";
+        let advice =
+            "make the background transparent, or use --relax, which takes the picture as a texture and cuts it";
         return Err(Error::input(place, problem, advice));
     }
     for (name, range) in [("start", &exemplar.start), ("end", &exemplar.end)] {
@@ -209,7 +214,11 @@ fn check_one(exemplar: &Exemplar, place: &str, relax: bool) -> Result<()> {
             && (range.start >= range.end || range.end > image.width)
         {
             let problem = format!("the {name} covers columns {} to {} of {}", range.start, range.end, image.width);
-            return Err(Error::input(place, problem, "give a range of columns that lies in the picture, such as 0..60"));
+            return Err(Error::input(
+                place,
+                problem,
+                "give a range of columns that lies in the picture, such as 0..60",
+            ));
         }
     }
     Ok(())

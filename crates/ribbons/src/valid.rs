@@ -182,7 +182,7 @@ mod tests {
     }
 
     fn everywhere() -> Demands {
-        Demands { columns: vec![0..40], ..Demands::default() }
+        Demands { columns: std::iter::once(0..40).collect(), ..Demands::default() }
     }
 
     #[test]

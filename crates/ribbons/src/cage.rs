@@ -235,7 +235,7 @@ impl<'a, const D: usize> Line<'a, D> {
     /// Direction of the curve at rung `k`: the chord around it, as long as the ribbon is wide, so that a corner is turned within the width.
     pub(crate) fn direction(&self, k: usize) -> Vector<D> {
         let (arc, length) = (self.arc(k), self.line.length());
-        let wanted = 0.5 * self.width(k).min(length);
+        let wanted = 0.25 * self.width(k).min(length);
         let half = if self.closed() { wanted } else { wanted.min(arc.min(length - arc).max(0.5 * self.step)) };
         self.line.point(arc + half) - self.line.point(arc - half)
     }

@@ -29,7 +29,9 @@ pub fn recipe_in(name: &str, bytes: &[u8]) -> Result<Recipe> {
         (json::recipe_of(&text), "a JSON file")
     } else if Format::of_path(name).ok().flatten() == Some(Format::Csv) || start.starts_with("x,y,") {
         (csv::recipe_of(&text), "a file of points")
-    } else if Format::of_path(name).ok().flatten() == Some(Format::Obj) || ["# curves as polylines", obj_strip::TITLE].iter().any(|title| start.starts_with(title)) {
+    } else if Format::of_path(name).ok().flatten() == Some(Format::Obj)
+        || ["# curves as polylines", obj_strip::TITLE].iter().any(|title| start.starts_with(title))
+    {
         (obj::recipe_of(&text), "a file of curves")
     } else {
         return Recipe::from_toml(name, &text);

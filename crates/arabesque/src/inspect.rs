@@ -210,7 +210,9 @@ impl Report {
                 let plate = Plate { svg: &svg, units, resolution: Resolution::default(), recipe: None };
                 write_png(&plate, &Limits::default())
             }
-            Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Toml => Err(unsupported("a picture in this format")),
+            Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Toml => {
+                Err(unsupported("a picture in this format"))
+            }
         }
     }
 }

@@ -26,13 +26,13 @@ mod pool;
 mod prepare;
 mod recipe;
 mod region;
+mod rework;
 mod ribbon;
 mod ribbon_cells;
 mod ribbon_files;
 mod ribbon_picture;
 mod ribbon_recipe;
 mod ribbon_vector;
-mod rework;
 mod size;
 mod space;
 mod spacing;
@@ -46,12 +46,12 @@ pub use arabesque_ribbons as ribbons;
 pub use arabesque_core::{
     EnergyPoint, Error, Limits, Observer, Outcome, Progress, Result, StopReason, Unobserved, Warning,
 };
+pub use arabesque_io::nearest::nearest;
 pub use artwork::{Artwork, Encoded};
 pub use carrier::recipe_in;
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
 pub use inspect::{ClassReport, Report, StyleReport, inspect};
-pub use arabesque_io::nearest::nearest;
 pub use pool::in_pool;
 pub use prepare::Prepared;
 pub use recipe::{BorderRule, FieldFile, FieldSource, Method, OutputOptions, Recipe};

@@ -79,7 +79,8 @@ impl Preparation<'_> {
             (None, None, Some(_)) => return Err(Error::parameter("to", "given without from", "both from and to")),
         };
         if recipe.border == Some(BorderRule::Turn) {
-            let expected = "inside, cross or clip: at the border of a region that is made anew the strokes around it go on";
+            let expected =
+                "inside, cross or clip: at the border of a region that is made anew the strokes around it go on";
             return Err(Error::parameter("border", "turn", expected));
         }
         let others = [recipe.size.is_some(), recipe.tile.is_some(), recipe.domain.is_some(), recipe.keep.is_some()];

@@ -455,8 +455,10 @@ fn shapes_have_holes_and_may_be_chosen_by_id() {
     let area = |id| read_shape(&page(&body), id, &options).map(|(shape, _)| shape.measure());
     assert!((area(None).unwrap() - 3600.0).abs() < 1e-3);
     assert!((area(Some("b")).unwrap() - 100.0).abs() < 1e-3);
-    let missing = area(Some("c")).unwrap_err().to_string();
-    assert!(missing.contains("id \"c\"") && missing.contains("a, b"), "{missing}");
+    let missing = area(Some("heart")).unwrap_err().to_string();
+    assert!(missing.contains("id \"heart\"") && missing.contains("a, b"), "{missing}");
+    let slip = area(Some("c")).unwrap_err().to_string();
+    assert!(slip.contains("did you mean \"a\"?"), "{slip}");
     let open = page("<path id='o' d='M0 0h9v9' fill='none' stroke='red'/>");
     assert!(read_shape(&open, None, &options).unwrap_err().to_string().contains("open (o)"));
     let flat = page("<path id='o' d='M0 0h9z'/>");

@@ -10,12 +10,15 @@ const NEAR: f64 = 1e-4;
 /// Places along a stroke at which it is compared.
 const PLACES: usize = 24;
 
+/// A style, and a cell of the grid.
+type Cell = (usize, [i64; 2]);
+
 /// The strokes so far.
 #[derive(Debug)]
 pub(super) struct Seen {
     near: f64,
     /// By style and by the cell in which the centre of the box around them lies.
-    cells: BTreeMap<(usize, [i64; 2]), Vec<(Bounds<2>, Measured<2>)>>,
+    cells: BTreeMap<Cell, Vec<(Bounds<2>, Measured<2>)>>,
 }
 
 impl Seen {

@@ -26,7 +26,9 @@ impl Ground<'_> {
         match self.border {
             Border::Cross => self.domain.contains(body.centre),
             Border::Clip => true,
-            Border::Inside | Border::Turn => self.domain.signed_distance(body.centre) >= body.radius || self.holds(body, figure),
+            Border::Inside | Border::Turn => {
+                self.domain.signed_distance(body.centre) >= body.radius || self.holds(body, figure)
+            }
         }
     }
 

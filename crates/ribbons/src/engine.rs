@@ -86,8 +86,8 @@ impl Prepared {
     /// Prepares `exemplars`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a parameter out of range, [`Error::Input`] for an exemplar that has no pattern on a transparent
-    /// background, [`Error::Limit`] beyond [`strip::PIXELS`].
+    /// [`arabesque_core::Error::Parameter`] for a parameter out of range, [`arabesque_core::Error::Input`] for an exemplar that has no pattern on a transparent
+    /// background, [`arabesque_core::Error::Limit`] beyond [`strip::PIXELS`].
     pub fn new(exemplars: Vec<Exemplar>, params: Params) -> Result<Self> {
         params.check()?;
         strip::check(&exemplars, params.coarse, params.relax)?;
@@ -103,7 +103,7 @@ impl Prepared {
     /// Lays the pattern along curves in the plane.
     ///
     /// # Errors
-    /// [`Error::NoResult`] names a piece for which no part of the exemplar is valid; [`Error::Input`] and [`Error::Limit`] a curve that
+    /// [`arabesque_core::Error::NoResult`] names a piece for which no part of the exemplar is valid; [`arabesque_core::Error::Input`] and [`arabesque_core::Error::Limit`] a curve that
     /// cannot be used.
     pub fn run(&self, request: &Request<2>, observer: &mut dyn Observer<2>) -> Result<Outcome<2>> {
         self.resume(request, &Memory::default(), observer)

@@ -24,6 +24,9 @@ const CELL: f64 = 0.3;
 /// A hole is laid out anew when its radius exceeds this share of the largest one in the exemplar.
 const HOLE: f64 = 0.9;
 
+/// Items that a patch is registered on, where it is to join what is there.
+const ANCHORS: usize = 3;
+
 /// Items with their turns.
 pub(crate) type Items<const D: usize> = Vec<(Item<D>, Matrix<D>)>;
 
@@ -57,24 +60,50 @@ pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -
 impl<const D: usize> Layout<'_, D> {
     /// The first state: what is frozen, and everything else by the chosen initialisation.
     pub(crate) fn initialise(&self, frozen: Draft<D>, watch: Watch<'_, D>) -> (Draft<D>, ControlFlow<()>) {
+        match self.params.initialisation {
+            Initialisation::PatchCopy => return self.grow(frozen, &Items::new(), ANCHORS, watch),
+            Initialisation::RandomCopy => return self.grow(frozen, &Items::new(), 0, watch),
+            Initialisation::WhiteNoise => {}
+        }
         let mut canvas = self.canvas();
         frozen.items.iter().for_each(|(item, _)| canvas.push(*item));
-        let mut flow = ControlFlow::Continue(());
-        if self.params.initialisation == Initialisation::WhiteNoise {
-            noise::scatter(self.library, self.request, self.extent, &mut canvas);
-        } else {
-            let mut coverage = self.coverage();
-            // What the user drew is complete as it is: patches join it, they do not fill it up.
-            let drawn = frozen.items.iter().filter(|(item, _)| item.source >= self.base);
-            // What lies outside does not say that anything inside is complete.
-            let inside = |p: &arabesque_core::Vector<D>| self.extent.depth(*p) > self.library.spacing;
-            let drawn: Vec<_> = drawn.map(|(item, _)| item.position).filter(inside).collect();
-            if !drawn.is_empty() {
-                coverage.cover_closed(&drawn, HOLE * self.library.emptiness * self.extent.largest_spacing_scale);
-            }
-            flow = self.grower().fill(&mut canvas, &mut coverage, watch);
+        noise::scatter(self.library, self.request, self.extent, &mut canvas);
+        (Draft { items: self.with_turns(canvas, &frozen.items), links: frozen.links }, ControlFlow::Continue(()))
+    }
+
+    /// Patches that join what is frozen and the items of a `grain`.
+    pub(crate) fn regrow(
+        &self,
+        frozen: Draft<D>,
+        grain: &Items<D>,
+        watch: Watch<'_, D>,
+    ) -> (Draft<D>, ControlFlow<()>) {
+        self.grow(frozen, grain, ANCHORS, watch)
+    }
+
+    /// Patches around what is frozen and around the items of a `grain`, each registered on `anchors` items.
+    fn grow(
+        &self,
+        frozen: Draft<D>,
+        grain: &Items<D>,
+        anchors: usize,
+        watch: Watch<'_, D>,
+    ) -> (Draft<D>, ControlFlow<()>) {
+        let mut canvas = self.canvas();
+        frozen.items.iter().chain(grain).for_each(|(item, _)| canvas.push(*item));
+        let mut coverage = self.coverage();
+        // What the user drew is complete as it is: patches join it, they do not fill it up.
+        let drawn = frozen.items.iter().filter(|(item, _)| item.source >= self.base);
+        // What lies outside does not say that anything inside is complete.
+        let inside = |p: &arabesque_core::Vector<D>| self.extent.depth(*p) > self.library.spacing;
+        let drawn: Vec<_> = drawn.map(|(item, _)| item.position).filter(inside).collect();
+        if !drawn.is_empty() {
+            coverage.cover_closed(&drawn, HOLE * self.library.emptiness * self.extent.largest_spacing_scale);
         }
-        (Draft { items: self.with_turns(canvas, &frozen.items), links: frozen.links }, flow)
+        self.cover(&mut coverage, grain.iter().map(|(item, _)| item.position));
+        let flow = self.grower(anchors).fill(&mut canvas, &mut coverage, watch);
+        let known: Items<D> = frozen.items.iter().chain(grain).copied().collect();
+        (Draft { items: self.with_turns(canvas, &known), links: frozen.links }, flow)
     }
 
     /// Lays out anew what is emptier than anything in the exemplar.
@@ -85,7 +114,7 @@ impl<const D: usize> Layout<'_, D> {
         let known = canvas.items.len();
         self.cover(&mut coverage, canvas.items.iter().map(|i| i.position));
         // Holes are few and small: they are filled without asking whether to go on.
-        let _ = self.grower().fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
+        let _ = self.grower(ANCHORS).fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
         canvas.items[known..].iter().for_each(|&item| state.push(item, Matrix::identity()));
         state.reindex();
     }
@@ -128,7 +157,7 @@ impl<const D: usize> Layout<'_, D> {
         Coverage::new(&self.request.domain, self.extent.margin, cell)
     }
 
-    fn grower(&self) -> Grower<'_, D> {
+    fn grower(&self, anchors: usize) -> Grower<'_, D> {
         let patch = self.patch_radius();
         let params = GrowParams {
             patch,
@@ -136,7 +165,7 @@ impl<const D: usize> Layout<'_, D> {
             repeat: self.params.novelty,
             balance: self.params.balance,
             base: self.base,
-            anchors: if self.params.initialisation == Initialisation::RandomCopy { 0 } else { 3 },
+            anchors,
         };
         Grower::new(self.library, self.request, self.extent, params)
     }

@@ -44,6 +44,7 @@ mod extent;
 mod features;
 mod finish;
 mod frozen;
+mod grains;
 mod grow;
 mod kinds;
 mod layout;

@@ -161,6 +161,8 @@ pub struct Params {
     pub shapes: Switch,
     /// Whether ends that the exemplar would not show are joined or trimmed. Default: on.
     pub mending: Switch,
+    /// Whether a layout that the coarsest level could not bring into order is grown anew from its largest part in order. Default: on.
+    pub regrowth: Switch,
     /// Elements in a patch of the first layout, 1 to 1000. Default: 14.
     pub patch: f64,
     /// Largest radius of such a patch, relative to the shorter side of the exemplar, 0.01 to 1: keeps copies short. Default: 0.22.
@@ -196,6 +198,7 @@ impl Default for Params {
             orientations: Switch::On,
             shapes: Switch::On,
             mending: Switch::On,
+            regrowth: Switch::On,
             patch: 14.0,
             patch_share: 0.22,
             novelty: 0.6,
@@ -413,6 +416,14 @@ const KNOBS: &[Knob] = &[
         |v: &Switch| v.name().into()
     ),
     knob!(
+        regrowth,
+        "regrowth",
+        "off, on",
+        "Whether a start in disorder is grown anew from its best part. Default: on.",
+        Switch::parse,
+        |v: &Switch| v.name().into()
+    ),
+    knob!(
         patch,
         "patch",
         "1 to 1000",
@@ -467,8 +478,14 @@ impl Params {
     /// # Errors
     /// [`Error::Parameter`] for an unknown name.
     pub fn preset(name: &str) -> Result<Self> {
-        let published =
-            Self { missing: 0.0, novelty: 0.0, balance: 0.0, clearance: Clearance::Ignored, ..Self::default() };
+        let published = Self {
+            missing: 0.0,
+            novelty: 0.0,
+            balance: 0.0,
+            clearance: Clearance::Ignored,
+            regrowth: Switch::Off,
+            ..Self::default()
+        };
         match name {
             "default" => Ok(Self::default()),
             "ma2011" => Ok(Self {

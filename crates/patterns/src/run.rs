@@ -11,7 +11,7 @@ use crate::{
     engine::Prepared,
     existence::{self, Changes},
     extent::Extent,
-    finish, frozen,
+    finish, frozen, grains,
     layout::{Draft, Layout},
     matching::Prices,
     params::{Attributes, Existence, Initialisation, Search, Switch},
@@ -140,15 +140,16 @@ impl<const D: usize> Run<'_, D> {
     }
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
         let params = &self.prepared.params;
+        let first = iteration.is_multiple_of(self.iterations);
         SearchParams {
             search: params.search,
             matching: params.matching,
             prices: Prices { missing: params.missing as f32, outside: params.boundary as f32 },
             coherence: params.coherence,
-            random: if iteration == 0 { 8 } else { 2 },
-            rounds: match (params.search, iteration) {
-                (Search::PatchMatch, 0) => 5,
-                (Search::PatchMatch, _) => 2,
+            random: if first { 8 } else { 2 },
+            rounds: match (params.search, first) {
+                (Search::PatchMatch, true) => 5,
+                (Search::PatchMatch, false) => 2,
                 _ => 1,
             },
             step: (k * 10_000 + iteration) as u64,
@@ -165,14 +166,16 @@ impl<const D: usize> Run<'_, D> {
     }
 
     fn progress(&self, k: usize, iteration: usize, state: &State<'_, D>) -> Progress {
-        let (levels, iterations) = (self.stands.len(), self.iterations);
-        let within = (iteration + 1) as f64 / iterations.max(1) as f64;
+        let levels = self.stands.len();
+        // A second round on the same level is more than was expected.
+        let iterations = self.iterations.max(self.iterations * (iteration + 1).div_ceil(self.iterations.max(1)));
+        let within = ((iteration + 1) as f64 / self.iterations.max(1) as f64).min(1.0);
         Progress {
             level: k,
             levels,
             iteration: iteration + 1,
             iterations,
-            fraction: LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * (k as f64 + within) / levels as f64,
+            fraction: (LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * (k as f64 + within) / levels as f64).min(1.0),
             energy: Some(state.energy()),
             elements: state.count(),
         }
@@ -202,7 +205,10 @@ impl<const D: usize> Run<'_, D> {
         let stand = &self.stands[k];
         let mut state = self.state(stand, draft);
         curves::link_sources(&mut state);
-        let flow = if flow.is_break() { flow } else { self.refine(k, &mut state, trace, observer) };
+        let mut flow = if flow.is_break() { flow } else { self.refine((k, 0), &mut state, trace, observer) };
+        if k == 0 && flow.is_continue() && self.may_regrow() {
+            flow = self.regrow(&mut state, trace, observer);
+        }
         let params = &self.prepared.params;
         if params.existence == Existence::Voted && flow.is_continue() {
             self.layout(stand).fill_holes(&mut state);
@@ -211,14 +217,42 @@ impl<const D: usize> Run<'_, D> {
         (self.finish(k, state, flow), flow)
     }
 
+    /// Patches that agree with one another are as much order as there is to find; any other start may have ended in disorder.
+    fn may_regrow(&self) -> bool {
+        let params = &self.prepared.params;
+        params.regrowth == Switch::On && params.initialisation != Initialisation::PatchCopy && self.iterations > 0
+    }
+
+    /// Grows a coarsest level anew that ended in disorder, and refines it once more.
+    fn regrow<'s>(
+        &'s self,
+        state: &mut State<'s, D>,
+        trace: &mut Vec<EnergyPoint>,
+        observer: &mut dyn Observer<D>,
+    ) -> ControlFlow<()> {
+        let (Some(nucleus), Some(stand)) = (grains::nucleus(state), self.stands.first()) else {
+            return ControlFlow::Continue(());
+        };
+        let known = self.progress(0, self.iterations - 1, state);
+        let frozen = frozen::draft(self.request, stand.setting);
+        let (draft, flow) = self.layout(stand).regrow(frozen, &nucleus.items, &mut |items, _| {
+            observer.step(&Progress { elements: items.len(), ..known }, &|| self.layout_preview(stand, items))
+        });
+        *state = self.state(stand, &draft);
+        curves::link_sources(state);
+        flow?;
+        self.refine((0, self.iterations), state, trace, observer)
+    }
+
+    /// Iterations at level `k`; `before` is how many there were already.
     fn refine(
         &self,
-        k: usize,
+        (k, before): (usize, usize),
         state: &mut State<'_, D>,
         trace: &mut Vec<EnergyPoint>,
         observer: &mut dyn Observer<D>,
     ) -> ControlFlow<()> {
-        for iteration in 0..self.iterations {
+        for iteration in before..before + self.iterations {
             let searched = search::search(state, &self.search_params(k, iteration));
             trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
             let changed = self.assign(state, &self.stands[k], self.floor(k, iteration));

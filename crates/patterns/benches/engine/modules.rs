@@ -29,6 +29,8 @@ mod features;
 mod finish;
 #[path = "../../src/frozen.rs"]
 mod frozen;
+#[path = "../../src/grains.rs"]
+mod grains;
 #[path = "../../src/grow.rs"]
 mod grow;
 #[path = "../../src/kinds.rs"]

@@ -118,6 +118,12 @@ impl<const D: usize> Coverage<D> {
         hit.into_iter().for_each(|index| self.state[index] = Cell::Covered);
     }
 
+    /// Marks as covered what lies where `known` says so.
+    pub(crate) fn close(&mut self, known: impl Fn(Vector<D>) -> bool) {
+        let hit: Vec<usize> = self.open().filter(|&c| known(self.centre(c))).collect();
+        hit.into_iter().for_each(|c| self.state[c] = Cell::Covered);
+    }
+
     /// Marks as covered what lies within `reach(p)` of the places given.
     pub(crate) fn cover_around(&mut self, places: impl Iterator<Item = Vector<D>>, reach: impl Fn(Vector<D>) -> f64) {
         places.for_each(|p| self.cover(p, reach(p), |_| true));

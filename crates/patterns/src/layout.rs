@@ -24,6 +24,9 @@ const CELL: f64 = 0.3;
 /// A hole is laid out anew when its radius exceeds this share of the largest one in the exemplar.
 const HOLE: f64 = 0.9;
 
+/// The same where there are strokes: the meshes of a net are all about as large as the largest one, and are to stay empty.
+const HOLE_STROKES: f64 = 1.0;
+
 /// Items that a patch is registered on, where it is to join what is there.
 const ANCHORS: usize = 3;
 
@@ -98,7 +101,7 @@ impl<const D: usize> Layout<'_, D> {
         let inside = |p: &arabesque_core::Vector<D>| self.extent.depth(*p) > self.library.spacing;
         let drawn: Vec<_> = drawn.map(|(item, _)| item.position).filter(inside).collect();
         if !drawn.is_empty() {
-            coverage.cover_closed(&drawn, HOLE * self.library.emptiness * self.extent.largest_spacing_scale);
+            coverage.cover_closed(&drawn, self.hole() * self.extent.largest_spacing_scale);
         }
         self.cover(&mut coverage, grain.iter().map(|(item, _)| item.position));
         let flow = self.grower(anchors).fill(&mut canvas, &mut coverage, watch);
@@ -113,6 +116,11 @@ impl<const D: usize> Layout<'_, D> {
         state.items.iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
         let known = canvas.items.len();
         self.cover(&mut coverage, canvas.items.iter().map(|i| i.position));
+        if self.has_strokes() {
+            // At the rim of the margin there is room only because nothing is known beyond it.
+            let rim = (self.hole() * self.extent.smallest_spacing_scale - self.extent.margin).min(0.0);
+            coverage.close(|p| self.request.domain.signed_distance(p) < rim);
+        }
         // Holes are few and small: they are filled without asking whether to go on.
         let _ = self.grower(ANCHORS).fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
         canvas.items[known..].iter().for_each(|&item| state.push(item, Matrix::identity()));
@@ -121,8 +129,13 @@ impl<const D: usize> Layout<'_, D> {
 
     /// Takes for complete what lies around `places`.
     fn cover(&self, coverage: &mut Coverage<D>, places: impl Iterator<Item = arabesque_core::Vector<D>>) {
-        let (reach, fields) = (HOLE * self.library.emptiness, &self.request.fields);
+        let (reach, fields) = (self.hole(), &self.request.fields);
         coverage.cover_around(places, |p| reach * fields.frame(p).spacing_scale);
+    }
+
+    /// Radius, exemplar units, up to which a hole is meant to be there.
+    fn hole(&self) -> f64 {
+        self.library.emptiness * if self.has_strokes() { HOLE_STROKES } else { HOLE }
     }
 
     fn with_turns(&self, canvas: Canvas<D>, known: &Items<D>) -> Items<D> {

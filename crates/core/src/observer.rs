@@ -17,7 +17,7 @@ pub struct Progress {
     pub iterations: usize,
     /// Share of the whole run that is done, in [0, 1].
     pub fraction: f64,
-    /// Mean neighbourhood energy of the present state, in squared mean spacings; `None` before the first search.
+    /// Mean neighbourhood energy of the present state, in squared mean spacings; `None` before the first search of a level.
     pub energy: Option<f64>,
     /// Number of elements in the present state.
     pub elements: usize,

@@ -165,18 +165,18 @@ impl<const D: usize> Run<'_, D> {
         (NOISE_FLOOR + done).min(FLOOR)
     }
 
-    fn progress(&self, k: usize, iteration: usize, state: &State<'_, D>) -> Progress {
-        let levels = self.stands.len();
-        // A second round on the same level is more than was expected.
-        let iterations = self.iterations.max(self.iterations * (iteration + 1).div_ceil(self.iterations.max(1)));
-        let within = ((iteration + 1) as f64 / self.iterations.max(1) as f64).min(1.0);
+    /// After `done` iterations at level `k`.
+    fn progress(&self, k: usize, done: usize, state: &State<'_, D>) -> Progress {
+        let (levels, expected) = (self.stands.len(), self.iterations.max(1));
+        let within = (done as f64 / expected as f64).min(1.0);
         Progress {
             level: k,
             levels,
-            iteration: iteration + 1,
-            iterations,
+            iteration: done,
+            // A second round on the same level is more than was expected.
+            iterations: self.iterations * done.div_ceil(expected).max(1),
             fraction: (LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * (k as f64 + within) / levels as f64).min(1.0),
-            energy: Some(state.energy()),
+            energy: (done > 0).then(|| state.energy()),
             elements: state.count(),
         }
     }
@@ -198,14 +198,20 @@ impl<const D: usize> Run<'_, D> {
     fn level(
         &self,
         (k, draft): (usize, &Draft<D>),
-        flow: ControlFlow<()>,
+        mut flow: ControlFlow<()>,
         trace: &mut Vec<EnergyPoint>,
         observer: &mut dyn Observer<D>,
     ) -> (Finished<D>, ControlFlow<()>) {
         let stand = &self.stands[k];
         let mut state = self.state(stand, draft);
         curves::link_sources(&mut state);
-        let mut flow = if flow.is_break() { flow } else { self.refine((k, 0), &mut state, trace, observer) };
+        if k > 0 && flow.is_continue() {
+            // Handing over takes as long as iterations do, and strokes have come out finer.
+            flow = observer.step(&self.progress(k, 0, &state), &|| self.snapshot(stand, &state));
+        }
+        if flow.is_continue() {
+            flow = self.refine((k, 0), &mut state, trace, observer);
+        }
         if k == 0 && flow.is_continue() && self.may_regrow() {
             flow = self.regrow(&mut state, trace, observer);
         }
@@ -233,7 +239,7 @@ impl<const D: usize> Run<'_, D> {
         let (Some(nucleus), Some(stand)) = (grains::nucleus(state), self.stands.first()) else {
             return ControlFlow::Continue(());
         };
-        let known = self.progress(0, self.iterations - 1, state);
+        let known = self.progress(0, self.iterations, state);
         let frozen = frozen::draft(self.request, stand.setting);
         let (draft, flow) = self.layout(stand).regrow(frozen, &nucleus.items, &mut |items, _| {
             observer.step(&Progress { elements: items.len(), ..known }, &|| self.layout_preview(stand, items))
@@ -256,7 +262,7 @@ impl<const D: usize> Run<'_, D> {
             let searched = search::search(state, &self.search_params(k, iteration));
             trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
             let changed = self.assign(state, &self.stands[k], self.floor(k, iteration));
-            observer.step(&self.progress(k, iteration, state), &|| self.snapshot(&self.stands[k], state))?;
+            observer.step(&self.progress(k, iteration + 1, state), &|| self.snapshot(&self.stands[k], state))?;
             if !changed || searched == 0 {
                 break;
             }

@@ -1,6 +1,6 @@
 //! The exemplar at one level of the hierarchy: its samples and their neighbourhoods, flattened for the search.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use arabesque_core::{Domain, GridIndex, Vector};
 
@@ -58,8 +58,8 @@ pub(crate) struct Level<const D: usize> {
     near: Vec<Near<D>>,
     run_starts: Vec<u32>,
     runs: Vec<Run>,
-    /// Most similar samples of each sample, best first [Ma 2011 §4.2].
-    pub(crate) alike: Vec<Vec<u32>>,
+    /// Most similar samples of each sample, best first [Ma 2011 §4.2]; found when they are first asked for.
+    alike: Vec<OnceLock<Vec<u32>>>,
     /// The sample graph of the curves, where there are any.
     pub(crate) net: Option<Arc<Net<D>>>,
     /// First pseudo element: those before it are true elements, each of the others is a node of the net.
@@ -120,6 +120,7 @@ impl<const D: usize> Level<D> {
             }
         }
         level.stars = vec![Star::EMPTY; level.position.len()];
+        level.alike = vec![OnceLock::new(); level.position.len()];
         level
     }
 
@@ -168,6 +169,12 @@ impl<const D: usize> Level<D> {
     /// The node of the net that sample `i` is, `None` for a sample of an element.
     pub(crate) fn node_of(&self, i: u32) -> Option<u32> {
         self.element[i as usize].checked_sub(self.base)
+    }
+
+    /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the same, and must not
+    /// wait for other threads.
+    pub(crate) fn alike(&self, i: u32, find: impl FnOnce() -> Vec<u32>) -> &[u32] {
+        self.alike[i as usize].get_or_init(find)
     }
 
     /// Neighbours of sample `i`, sorted by key.

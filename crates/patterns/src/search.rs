@@ -12,7 +12,7 @@ use crate::{
     level::{Level, fall_off},
     library::Library,
     matching::{Matcher, Prices, Row, Surroundings},
-    params::{Matching, Params, Search},
+    params::{Matching, Search},
     state::{Match, State},
 };
 
@@ -58,37 +58,31 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
     searched
 }
 
-/// For every exemplar sample, the ones with the most similar neighbourhoods [Ma 2011 §4.2].
+/// The exemplar samples with the neighbourhoods most similar to that of `i`, best first [Ma 2011 §4.2].
 ///
 /// Keys with very many samples are compared with an even selection of them: the sets need good members, not the best.
-pub(crate) fn similarity_sets<const D: usize>(
+fn most_similar<const D: usize>(
     level: &Level<D>,
     library: &Library<D>,
-    params: &Params,
-) -> Vec<Vec<u32>> {
+    (matching, number): (Matching, usize),
+    i: u32,
+) -> Vec<u32> {
     const MOST: usize = 256;
-    (0..level.position.len() as u32)
-        .into_par_iter()
-        .map_init(
-            || Matcher::new(level, library, params.matching, Prices { missing: 0.0, outside: 0.0 }),
-            |matcher, i| {
-                let others = &level.of_key[level.key[i as usize] as usize];
-                let around = exemplar_surroundings(level, i);
-                let mut best: Vec<(f32, u32)> = Vec::with_capacity(params.coherence + 1);
-                for &j in others.iter().step_by(others.len().div_ceil(MOST)).filter(|&&j| j != i) {
-                    let full = best.len() == params.coherence;
-                    let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
-                    let cost = matcher.cost(&around, j, limit, &|_| true);
-                    if cost < limit {
-                        let at = best.partition_point(|b| b.0 <= cost);
-                        best.insert(at, (cost, j));
-                        best.truncate(params.coherence);
-                    }
-                }
-                best.into_iter().map(|(_, j)| j).collect()
-            },
-        )
-        .collect()
+    let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
+    let others = &level.of_key[level.key[i as usize] as usize];
+    let around = exemplar_surroundings(level, i);
+    let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
+    for &j in others.iter().step_by(others.len().div_ceil(MOST)).filter(|&&j| j != i) {
+        let full = best.len() == number;
+        let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
+        let cost = matcher.cost(&around, j, limit, &|_| true);
+        if cost < limit {
+            let at = best.partition_point(|b| b.0 <= cost);
+            best.insert(at, (cost, j));
+            best.truncate(number);
+        }
+    }
+    best.into_iter().map(|(_, j)| j).collect()
 }
 
 /// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that do not overlap it much.
@@ -153,13 +147,18 @@ fn search_one<const D: usize>(
     let wanted = |offset: Vector<D>| deep || state.extent.may_hold(position + frame.to_output(offset));
     let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key as usize]).sum();
     let mut best = (f32::INFINITY, u32::MAX);
-    for i in candidates(state, s, &around, params) {
+    let mut candidates = likely(state, s, &around, params);
+    let seeds = candidates.len();
+    let mut next = 0;
+    while next < candidates.len() && best.0 > COPY * scale {
+        let i = candidates[next];
         let cost = matcher.cost(&around, i, best.0, &wanted);
         if cost < best.0 || (cost == best.0 && i < best.1) {
             best = (cost, i);
         }
-        if best.0 <= COPY * scale {
-            break;
+        next += 1;
+        if next == seeds && best.0 > COPY * scale {
+            add_unlikely(&mut candidates, state, s, params);
         }
     }
     let input = best.1;
@@ -207,47 +206,55 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
     (Surroundings { source, star: state.star(s), rows }, dirty)
 }
 
-/// Exemplar samples to try for sample `s`, the likeliest first.
-fn candidates<const D: usize>(
-    state: &State<'_, D>,
-    s: u32,
-    around: &Surroundings<D>,
-    params: &SearchParams,
-) -> Vec<u32> {
+/// Exemplar samples to try first for sample `s`, the likeliest first.
+fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>, params: &SearchParams) -> Vec<u32> {
     let sample = &state.samples[s as usize];
-    let level = state.level;
-    let all = &level.of_key[sample.key as usize];
-    if params.search == Search::Exhaustive || all.len() <= 8 {
+    let all = &state.level.of_key[sample.key as usize];
+    if is_exhaustive(all, params) {
         return all.clone();
     }
     let mut list = Vec::with_capacity(64);
-    let push = |list: &mut Vec<u32>, i: u32| {
-        if !list.contains(&i) {
-            list.push(i);
-        }
-    };
     if let Some(m) = &sample.matched {
         push(&mut list, m.input);
     }
-    push(&mut list, level.first[around.source as usize] + sample.part);
+    push(&mut list, state.level.first[around.source as usize] + sample.part);
     // PatchMatch asks the eight nearest neighbours [Tu 2020 §4.3.3], k-coherence all of them.
     let asked = if params.search == Search::PatchMatch { 8 } else { around.rows.len() };
-    let from_neighbours: Vec<u32> =
-        around.rows.iter().take(asked).filter_map(|row| implied(state, row.sample, s)).collect();
-    from_neighbours.iter().for_each(|&i| push(&mut list, i));
+    let from_neighbours = around.rows.iter().take(asked).filter_map(|row| implied(state, row.sample, s));
+    from_neighbours.for_each(|i| push(&mut list, i));
+    list
+}
+
+/// Exemplar samples to try when none of the likely ones in `list` is a copy: what is similar to these, and random ones.
+fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u32, params: &SearchParams) {
+    let level = state.level;
+    let all = &level.of_key[state.samples[s as usize].key as usize];
+    if is_exhaustive(all, params) {
+        return;
+    }
     let seeds = list.len();
-    if !level.alike.is_empty() {
+    if params.search == Search::KCoherence {
         for k in 0..seeds.min(6) {
             let i = list[k];
-            level.alike[i as usize].iter().take(params.coherence).for_each(|&j| push(&mut list, j));
+            let find = || most_similar(level, state.library, (params.matching, params.coherence), i);
+            level.alike(i, find).iter().for_each(|&j| push(list, j));
         }
     }
     let mut random = Stream::new(state.request.seed ^ (params.step << 20), Stage::Search, u64::from(s));
     for n in 0..params.random {
         let seed = list[n % seeds];
-        push(&mut list, random_near(state, seed, all, n, &mut random));
+        push(list, random_near(state, seed, all, n, &mut random));
     }
-    list
+}
+
+fn is_exhaustive(all: &[u32], params: &SearchParams) -> bool {
+    params.search == Search::Exhaustive || all.len() <= 8
+}
+
+fn push(list: &mut Vec<u32>, i: u32) {
+    if !list.contains(&i) {
+        list.push(i);
+    }
 }
 
 /// The exemplar sample that `s` corresponds to when neighbour `o` lies where it was matched.

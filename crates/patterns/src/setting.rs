@@ -8,9 +8,8 @@ use crate::{
     curves::{Cast, Skeleton},
     level::Level,
     library::Library,
-    params::{Matching, Params, Search, Switch},
+    params::{Matching, Params, Switch},
     samples::ElementSamples,
-    search,
 };
 
 /// Sampling distance of the finest level relative to the mean distance of neighbouring strokes (area over length).
@@ -45,7 +44,7 @@ pub(crate) fn settings<const D: usize>(
             let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
             Setting { exemplar: shared.clone(), library: library.clone(), level }
         };
-        return (0..params.levels).map(setting).map(|s| with_sets(s, params)).collect();
+        return (0..params.levels).map(setting).collect();
     };
     let step = finest_spacing(exemplar, skeleton, params);
     let mut made: Vec<(f64, Cast<D>, Arc<Exemplar<D>>, Arc<Library<D>>)> = Vec::new();
@@ -63,7 +62,7 @@ pub(crate) fn settings<const D: usize>(
         let level = level.with_net(Arc::clone(&cast.net), cast.base as u32, params.edges == Switch::On);
         Setting { exemplar: Arc::clone(shared), library: Arc::clone(library), level }
     };
-    (0..params.levels).map(&mut setting).map(|s| with_sets(s, params)).collect()
+    (0..params.levels).map(&mut setting).collect()
 }
 
 /// 0 at the coarsest level, 1 at the finest.
@@ -81,13 +80,6 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
         Matching::Hard => radius,
     };
     (radius, slack)
-}
-
-fn with_sets<const D: usize>(mut setting: Setting<D>, params: &Params) -> Setting<D> {
-    if params.search == Search::KCoherence {
-        setting.level.alike = search::similarity_sets(&setting.level, &setting.library, params);
-    }
-    setting
 }
 
 /// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as

@@ -51,10 +51,11 @@ fn filled(body: &str, options: &str) -> (String, Vec<String>) {
     (told, attributes(part, "d").into_iter().map(str::to_owned).collect())
 }
 
-/// The numbers of a path.
+/// The numbers of a path. A minus sign starts a number without a blank before it, unless it belongs to an exponent.
 fn numbers(data: &str) -> Vec<f64> {
-    let parts = data.split(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | 'e')));
-    parts.filter(|n| !n.is_empty()).map(|n| n.parse().unwrap()).collect()
+    let apart = data.replace('-', " -").replace("e -", "e-");
+    let parts = apart.split(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-' | 'e')));
+    parts.filter(|n| !n.is_empty()).map(|n| n.parse().unwrap_or_else(|e| panic!("{n} in {data}: {e}"))).collect()
 }
 
 /// Whether a result is the net 20 apart on 140 x 100: seven lines down and five across, from side to side.

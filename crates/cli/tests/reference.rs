@@ -62,3 +62,18 @@ fn flow() {
 fn points() {
     compare("points", "points.csv --size 1x1 --dpi 48");
 }
+
+#[test]
+fn net() {
+    compare("net", &format!("{} --size 200x150 --dpi 64", example("quatrefoil.svg")));
+}
+
+#[test]
+fn lace() {
+    compare("lace", &format!("{} --domain {} --border turn --dpi 24", example("lace.svg"), example("heart.svg")));
+}
+
+#[test]
+fn basket() {
+    compare("basket", &format!("{} --tile 120x120 --dpi 64", example("basket.svg")));
+}

@@ -6,6 +6,7 @@ use super::{
     edges::{OpenArm, open_arms},
     loose::Loose,
     net::Net,
+    tangle::Tangle,
     votes::Votes,
 };
 use crate::{canvas::Item, state::State};
@@ -38,25 +39,31 @@ const ANGLE: f64 = 0.8;
 pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> usize {
     let level = state.level;
     let Some(net) = &level.net else { return 0 };
-    let loose = Loose::of(net);
-    let mut changed = restore(state, net);
+    let (loose, tangle) = (Loose::of(net), Tangle::of(net));
+    let mut changed = tangle.undo(state, votes) + restore(state, net);
     for _ in 0..3 {
         let ends = false_ends(state, net, votes, &loose);
-        let joined = join(state, net, votes, &ends);
+        let joined = join(state, net, (votes, &tangle), &ends);
         changed += joined;
         if joined == 0 {
             break;
         }
     }
-    changed += bridge(state, net, votes, &loose) + reach_border(state, net);
+    changed += bridge(state, net, votes, (&loose, &tangle)) + reach_border(state, net);
     if net.branches() {
-        changed += extend(state, net, votes, &loose);
+        changed += extend(state, net, votes, (&loose, &tangle));
     }
+    changed += tangle.undo(state, votes);
     changed + trim(state, net, votes, &loose)
 }
 
 /// Takes false ends on to the nearest stroke ahead, where strokes branch anyway.
-fn extend<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
+fn extend<const D: usize>(
+    state: &mut State<'_, D>,
+    net: &Net<D>,
+    votes: &Votes,
+    (loose, tangle): (&Loose, &Tangle),
+) -> usize {
     let mut joined = 0;
     for s in false_ends(state, net, votes, loose) {
         // An earlier one may have been joined to this.
@@ -67,18 +74,19 @@ fn extend<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes,
         let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
         let before = state.links[s as usize][0];
         let way = direction(state.offset(before, s));
-        let mut best = (f64::INFINITY, None);
+        let mut ahead: Vec<(f64, u32)> = Vec::new();
         state.index.within(position, SPAN * unit, |slot, offset| {
             let o = state.living[slot];
             let cosine = way.dot(direction(offset));
             let cost = offset.norm() * (2.0 - cosine);
             let is_own = o == s || o == before || state.links[before as usize].contains(&o);
             let degree = state.links[o as usize].len();
-            if !is_own && cosine > AHEAD && (1..=2).contains(&degree) && cost < best.0 && state.share_style(o, s) {
-                best = (cost, Some(o));
+            if !is_own && cosine > AHEAD && (1..=2).contains(&degree) && state.share_style(o, s) {
+                ahead.push((cost, o));
             }
         });
-        if let Some(o) = best.1 {
+        ahead.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        if let Some(&(_, o)) = ahead.iter().find(|(_, o)| tangle.allows(state, s, *o)) {
             state.links[s as usize].push(o);
             state.links[o as usize].push(s);
             joined += 1;
@@ -109,7 +117,12 @@ fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize
 }
 
 /// Joins false ends that face each other across a gap.
-fn bridge<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
+fn bridge<const D: usize>(
+    state: &mut State<'_, D>,
+    net: &Net<D>,
+    votes: &Votes,
+    (loose, tangle): (&Loose, &Tangle),
+) -> usize {
     let ends = false_ends(state, net, votes, loose);
     let places: Vec<_> = ends.iter().map(|&s| state.samples[s as usize].position).collect();
     let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links[s as usize][0], s))).collect();
@@ -129,7 +142,7 @@ fn bridge<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes,
     let mut taken = vec![false; ends.len()];
     let mut joined = 0;
     for (_, i, j) in wishes {
-        if !taken[i] && !taken[j] {
+        if !taken[i] && !taken[j] && tangle.allows(state, ends[i], ends[j]) {
             (taken[i], taken[j]) = (true, true);
             state.links[ends[i] as usize].push(ends[j]);
             state.links[ends[j] as usize].push(ends[i]);
@@ -224,13 +237,18 @@ fn false_ends<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes,
     state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, loose, s)).collect()
 }
 
-fn join<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, ends: &[u32]) -> usize {
+fn join<const D: usize>(
+    state: &mut State<'_, D>,
+    net: &Net<D>,
+    (votes, tangle): (&Votes, &Tangle),
+    ends: &[u32],
+) -> usize {
     let mut wishes: Vec<(f64, u32, u32)> = ends.iter().flat_map(|&s| partners(state, net, votes, s)).collect();
     wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut taken = vec![false; state.samples.len()];
     let mut joined = 0;
     for (_, a, b) in wishes {
-        if taken[a as usize] || taken[b as usize] {
+        if taken[a as usize] || taken[b as usize] || !tangle.allows(state, a, b) {
             continue;
         }
         (taken[a as usize], taken[b as usize]) = (true, true);

@@ -13,7 +13,7 @@
 //! | pseudo elements for the engine | `cast` | |
 //! | edge assignment | `votes`, `edges` | eqs 17 to 22 |
 //! | orientation assignment | `tangents` | §4.3.4, fig. 9 |
-//! | dangling ends, near misses | `mend`, `loose` | beyond the paper |
+//! | dangling ends, near misses | `mend`, `loose`, `tangle` | beyond the paper |
 //! | chaining | `chains` | §4.4.2, fig. 11 |
 //! | shape of a stroke | `shape` | beyond the paper: the exemplar's own line, bent to its ends |
 //! | next level | `resample` | §4.3.5 |
@@ -38,6 +38,7 @@ mod resample;
 mod shape;
 mod skeleton;
 mod tangents;
+mod tangle;
 #[cfg(test)]
 mod tests;
 mod trim;

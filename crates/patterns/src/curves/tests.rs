@@ -5,7 +5,7 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Path, Request, Vector};
 use proptest::prelude::*;
 
-use super::{Net, Skeleton, chains, collect_votes, draw, skeleton::Knot};
+use super::{Net, Skeleton, chains, collect_votes, draw, skeleton::Knot, tangle::Tangle};
 use crate::{
     canvas::Item,
     extent::Extent,
@@ -42,8 +42,8 @@ struct Rebuilt {
     strokes: Vec<Drawn<2>>,
 }
 
-/// Samples the paths, puts every sample where it is in the exemplar without any edge, lets the edges be found, and draws the strokes.
-fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
+/// Samples the paths, puts every sample where it is in the exemplar, lets the edges be found, and hands this state on.
+fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     let exemplar = exemplar(paths);
     let params = Params { levels: 1, ..Params::default() };
     let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.window).unwrap());
@@ -58,17 +58,39 @@ fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
     let draft = Draft { items: items.collect(), links: Vec::new() };
     let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
     super::link_sources(&mut state);
-    for (n, node) in net.nodes.iter().enumerate() {
-        let mut expected: Vec<u32> = node.arms.iter().map(|arm| arm.to).collect();
-        let mut links = state.links[n].clone();
-        expected.sort_unstable();
-        links.sort_unstable();
-        assert_eq!(links, expected, "edges of sample {n} at {:?}", node.position);
-    }
-    let votes = collect_votes(&state);
-    let chains = chains(&state, &votes, true);
-    let strokes = draw(&state, &chains);
-    Rebuilt { net, strokes }
+    work(state)
+}
+
+/// The edges of all samples, sorted.
+fn links(state: &State<'_, 2>) -> Vec<Vec<u32>> {
+    let sorted = |l: &Vec<u32>| {
+        let mut l = l.clone();
+        l.sort_unstable();
+        l
+    };
+    state.links.iter().map(sorted).collect()
+}
+
+/// The edges of all nodes of the exemplar, sorted.
+fn arms(net: &Net<2>) -> Vec<Vec<u32>> {
+    let of = |node: &super::net::Node<2>| {
+        let mut to: Vec<u32> = node.arms.iter().map(|arm| arm.to).collect();
+        to.sort_unstable();
+        to
+    };
+    net.nodes.iter().map(of).collect()
+}
+
+/// The paths again, from their samples.
+fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
+    with_state(paths, |state| {
+        let net = state.level.net.clone().unwrap();
+        assert_eq!(links(&state), arms(&net));
+        let votes = collect_votes(&state);
+        let chains = chains(&state, &votes, true);
+        let strokes = draw(&state, &chains);
+        Rebuilt { net, strokes }
+    })
 }
 
 impl Rebuilt {
@@ -216,5 +238,71 @@ proptest! {
         prop_assert_eq!(rebuilt.degrees(Knot::Junction), expected);
         let distance = hausdorff(&drawn(&rebuilt), &paths);
         prop_assert!(distance < 0.1 + 0.02 * rebuilt.net.spacing, "{} of {}", distance, rebuilt.net.spacing);
+    }
+}
+
+#[test]
+fn edges_side_by_side_become_one_line() {
+    // Besides the edges of a line, one from each sample to the second next.
+    with_state(&[polyline(&[(5.0, 50.0), (95.0, 50.0)], false)], |mut state| {
+        let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
+        let known = links(&state);
+        for s in 0..known.len() as u32 {
+            for &next in &known[s as usize] {
+                for &o in known[next as usize].iter().filter(|&&o| o > s) {
+                    state.links[s as usize].push(o);
+                    state.links[o as usize].push(s);
+                }
+            }
+        }
+        assert_ne!(links(&state), known);
+        assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
+        assert_eq!(links(&state), known);
+    });
+}
+
+#[test]
+fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
+    let lines = [polyline(&[(5.0, 45.0), (95.0, 45.0)], false), polyline(&[(5.0, 50.0), (95.0, 50.0)], false)];
+    with_state(&lines, |mut state| {
+        let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
+        let known = links(&state);
+        // From a sample of one line to a sample of the other that is not the opposite one, and the other way round.
+        let row = |y: f64| {
+            let mut row: Vec<u32> = state
+                .living
+                .iter()
+                .copied()
+                .filter(|&s| (state.samples[s as usize].position[1] - y).abs() < 0.1)
+                .collect();
+            row.sort_by(|a, b| {
+                state.samples[*a as usize].position[0].total_cmp(&state.samples[*b as usize].position[0])
+            });
+            row
+        };
+        let (low, high) = (row(45.0), row(50.0));
+        for (a, b) in [(low[3], high[4]), (low[5], high[3])] {
+            assert_eq!(Tangle::of(&net).allows(&state, a, b), (a, b) == (low[3], high[4]));
+            state.links[a as usize].push(b);
+            state.links[b as usize].push(a);
+        }
+        assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
+        let left = links(&state);
+        assert!(left[low[3] as usize].contains(&high[4]) && !left[low[5] as usize].contains(&high[3]));
+        assert_eq!(left.iter().map(Vec::len).sum::<usize>(), known.iter().map(Vec::len).sum::<usize>() + 2);
+    });
+}
+
+#[test]
+fn what_the_exemplar_does_is_no_tangle() {
+    let narrow = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 50.0), (95.0, 58.0)], false)];
+    let cross = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 5.0), (50.0, 95.0)], false)];
+    for paths in [narrow, cross] {
+        with_state(&paths, |mut state| {
+            let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
+            let known = links(&state);
+            assert_eq!(Tangle::of(&net).undo(&mut state, &votes), 0);
+            assert_eq!(links(&state), known);
+        });
     }
 }

@@ -302,6 +302,37 @@ fn outlines_of_lines_of_one_width_are_taken_for_strokes() {
     assert!(warns(&d, "taken for strokes"));
 }
 
+/// Copies of a tile of 20 by 20 side by side over the whole frame.
+fn tiled(data: &str) -> String {
+    let tile = |k: u32| {
+        let (x, y) = (20 * (k % 5), 20 * (k / 5));
+        format!("<g transform='translate({x} {y})'><path d='{data}' fill='#123' fill-rule='evenodd'/></g>")
+    };
+    page(&(0..25).map(tile).collect::<String>())
+}
+
+#[test]
+fn lines_that_tiles_cut_at_their_seams_are_whole_again() {
+    // Half of a line of width 2 along the border of each tile.
+    let d = read_with(&tiled("M0 0H20V20H0ZM1 1V19H19V1Z"), Method::Auto).unwrap();
+    assert!(d.exemplar.elements.is_empty() && d.exemplar.curves.len() >= 8, "{}", d.exemplar.curves.len());
+    let inner =
+        d.exemplar.curves.iter().filter(|c| c.path.bounds().centre().0.iter().all(|v| (10.0..90.0).contains(v)));
+    assert!(inner.clone().count() >= 8 && inner.clone().all(|c| (c.width - 2.0).abs() < 0.1));
+    let each = read_with(&tiled("M0 0H20V20H0ZM1 1V19H19V1Z"), Method::Elements).unwrap();
+    assert!(each.exemplar.curves.is_empty());
+}
+
+#[test]
+fn tiles_that_are_no_lines_together_stay_elements() {
+    // Filled squares side by side, and squares that only touch at corners.
+    for (data, count) in [("M0 0H20V20H0Z", 25), ("M0 0H10V10H0ZM10 10H20V20H10Z", 25)] {
+        let d = read_with(&tiled(data), Method::Auto).unwrap();
+        assert!(d.exemplar.curves.is_empty());
+        assert_eq!(d.exemplar.elements.len(), count, "{data}");
+    }
+}
+
 #[test]
 fn outlines_of_other_networks_are_refused_by_name() {
     let message = error(&outline_of_a_net([21, 9]));

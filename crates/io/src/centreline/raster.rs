@@ -95,16 +95,25 @@ impl Raster {
 
     /// Marks off what lies within `radius` of `at`.
     pub(super) fn erase_disc(&mut self, at: Vector<2>, radius: f64) {
+        for pixel in self.disc(at, radius) {
+            self.ink[pixel] = false;
+        }
+    }
+
+    /// Numbers of blank and of all pixels within `radius` of `at`.
+    pub(super) fn blank_in_disc(&self, at: Vector<2>, radius: f64) -> (usize, usize) {
+        let disc = self.disc(at, radius);
+        (disc.iter().filter(|&&pixel| !self.ink[pixel]).count(), disc.len())
+    }
+
+    fn disc(&self, at: Vector<2>, radius: f64) -> Vec<usize> {
         let low = (at - Vector::splat(radius) - self.origin).map(|c| (c / self.step).floor().max(0.0));
         let high = (at + Vector::splat(radius) - self.origin).map(|c| (c / self.step).ceil().max(0.0));
-        for y in low[1] as usize..(high[1] as usize).min(self.height) {
-            for x in low[0] as usize..(high[0] as usize).min(self.width) {
-                let pixel = y * self.width + x;
-                if (self.centre(pixel) - at).norm2() <= radius * radius {
-                    self.ink[pixel] = false;
-                }
-            }
-        }
+        let rows = low[1] as usize..(high[1] as usize).min(self.height);
+        let columns = low[0] as usize..(high[0] as usize).min(self.width);
+        rows.flat_map(|y| columns.clone().map(move |x| y * self.width + x))
+            .filter(|&pixel| (self.centre(pixel) - at).norm2() <= radius * radius)
+            .collect()
     }
 
     /// Thins the ink to lines of one pixel with the same connections: Zhang and Suen's parallel thinning, then single redundant pixels.

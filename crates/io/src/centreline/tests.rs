@@ -135,3 +135,17 @@ fn fewer_than_two_points_have_no_path() {
         assert!(!super::fit::fitted(&[point, (Vector::xy(5.0, 1.0), true)], closed, 1.0).is_empty());
     }
 }
+
+#[test]
+fn half_lines_along_the_frame_are_dropped() {
+    let lines = (0..6).flat_map(|k| {
+        let at = 20.0 * f64::from(k);
+        [bar((0.0, at), (100.0, at), 2.0), bar((at, 0.0), (at, 100.0), 2.0)]
+    });
+    let frame = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
+    let page = Outline { rings: vec![bar((0.0, 50.0), (100.0, 50.0), 100.0)] };
+    let found = centrelines(&union(&lines.collect::<Vec<_>>()).intersection(&page), Some(&frame)).unwrap();
+    assert!((found.width - 2.0).abs() < 0.05, "{}", found.width);
+    assert_eq!(found.paths.len(), 8, "{:?}", found.paths.iter().map(Path::bounds).collect::<Vec<_>>());
+    assert!(found.paths.iter().all(|p| (p.bounds().size().norm() - 100.0).abs() < 0.1), "{:?}", found.paths);
+}

@@ -10,6 +10,7 @@ use super::{
     ink::Inker,
     item::{Item, Kind, Origin, Selection},
     notes::Note,
+    seam,
     touch::{Budget, Edge, Sets, edges_meet, meeting},
 };
 
@@ -29,11 +30,14 @@ pub(super) fn join(found: Selection, inker: &Inker<'_, '_>, frame: Bounds<2>, me
         let loose = a != Origin::Whole && b != Origin::Whole;
         pieces || (method == Method::Elements && loose && (a == Origin::Stroke || b == Origin::Stroke))
     };
-    if !items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
-        return Ok(Selection { items, background });
-    }
-    let groups = connected(&items, may_join, SEAM * longer(&frame), inker);
-    let items = groups.into_iter().map(|group| merged(&items, &group, frame)).collect();
+    let tolerance = SEAM * longer(&frame);
+    let items = if items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
+        let groups = connected(&items, may_join, tolerance, inker);
+        groups.into_iter().map(|group| merged(&items, &group, frame)).collect()
+    } else {
+        items
+    };
+    let items = if method == Method::Elements { items } else { seam::join_lines(items, frame, tolerance) };
     Ok(Selection { items, background })
 }
 
@@ -68,7 +72,8 @@ fn connected(
     sets.groups()
 }
 
-fn merged(items: &[Item], group: &[usize], frame: Bounds<2>) -> Item {
+/// The items of a group as one.
+pub(super) fn merged(items: &[Item], group: &[usize], frame: Bounds<2>) -> Item {
     let mut all = items[group[0]].clone();
     if group.len() == 1 {
         return all;

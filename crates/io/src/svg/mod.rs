@@ -33,6 +33,7 @@ mod placed;
 mod read;
 mod rest;
 mod scene;
+mod seam;
 mod select;
 mod signature;
 mod simplify;

@@ -68,17 +68,31 @@ pub(super) type Edge = (Vector<2>, Vector<2>);
 #[derive(Debug)]
 pub(super) struct Budget(pub(super) u64);
 
+impl Budget {
+    /// Whether `test` holds for an edge of `a` and one of `b` whose boxes come within `tolerance` of those of the other side; `None` when
+    /// the budget is spent.
+    pub(super) fn any(
+        &mut self,
+        a: &[Edge],
+        b: &[Edge],
+        tolerance: f64,
+        test: impl Fn(Edge, Edge) -> bool,
+    ) -> Option<bool> {
+        self.0 = self.0.checked_sub((a.len() + b.len()) as u64)?;
+        let around = |edges: &[Edge]| Bounds::around(edges.iter().flat_map(|e| [e.0, e.1]));
+        let (box_a, box_b) = (around(a).grown(tolerance), around(b).grown(tolerance));
+        let near = |edges: &[Edge], other: &Bounds<2>| -> Vec<Edge> {
+            edges.iter().filter(|e| Bounds::around([e.0, e.1]).intersects(other)).copied().collect()
+        };
+        let (a, b) = (near(a, &box_b), near(b, &box_a));
+        self.0 = self.0.checked_sub(a.len() as u64 * b.len() as u64)?;
+        Some(a.iter().any(|&p| b.iter().any(|&q| test(p, q))))
+    }
+}
+
 /// Whether an edge of `a` comes within `tolerance` of an edge of `b`; `None` when the budget is spent.
 pub(super) fn edges_meet(a: &[Edge], b: &[Edge], tolerance: f64, budget: &mut Budget) -> Option<bool> {
-    budget.0 = budget.0.checked_sub((a.len() + b.len()) as u64)?;
-    let around = |edges: &[Edge]| Bounds::around(edges.iter().flat_map(|e| [e.0, e.1]));
-    let (box_a, box_b) = (around(a).grown(tolerance), around(b).grown(tolerance));
-    let near = |edges: &[Edge], other: &Bounds<2>| -> Vec<Edge> {
-        edges.iter().filter(|e| Bounds::around([e.0, e.1]).intersects(other)).copied().collect()
-    };
-    let (a, b) = (near(a, &box_b), near(b, &box_a));
-    budget.0 = budget.0.checked_sub(a.len() as u64 * b.len() as u64)?;
-    Some(a.iter().any(|&p| b.iter().any(|&q| edge_distance(p, q) <= tolerance)))
+    budget.any(a, b, tolerance, |p, q| edge_distance(p, q) <= tolerance)
 }
 
 fn edge_distance(p: Edge, q: Edge) -> f64 {

@@ -48,7 +48,9 @@ pub(super) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
 
 /// Makes an item a curve where it is the outline of lines.
 fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> bool {
-    item.lines = centrelines(&item.outline, Some(window)).map(Rc::new);
+    if item.lines.is_none() {
+        item.lines = centrelines(&item.outline, Some(window)).map(Rc::new);
+    }
     if item.lines.is_some() {
         item.kind = Kind::Curve;
         source.notes.add(Note::Traced, || name(source, item));

@@ -26,7 +26,8 @@
 //!
 //! Where it departs from the papers, each departure measured to be better and switchable by [`Params`]: patches are laid out in register with what
 //! is there and prefer not to go on copying; missing elements cost as much as surplus ones; numbers of elements are kept near those of the exemplar; holes larger
-//! than any in the exemplar are laid out anew; overlaps are mended on the real outlines.
+//! than any in the exemplar are laid out anew; a start in disorder keeps its largest part in order and is grown anew around it; strokes that cross or run
+//! side by side as the exemplar's never do are taken apart; overlaps are mended on the real outlines.
 //!
 //! Not handled: interleaved physics; anything outside two and three dimensions.
 

@@ -2,7 +2,7 @@
 # What each component of the engine for curves is good for: fills a page from each exemplar with everything, and again with one
 # component switched off, and lays the results out on one sheet. docs/ablations.md says what to see.
 #
-#   scripts/ablations.sh [-o FOLDER] [-s SIZE] [-n SEED] [-i START] [-m on|off] [EXEMPLAR.svg ...]
+#   scripts/ablations.sh [-o FOLDER] [-s SIZE] [-n SEED] [-i START] [-m on|off] [-g on|off] [EXEMPLAR.svg ...]
 #
 #   -o FOLDER  where the results go; default: ablations
 #   -s SIZE    size of the pages; default: 400x400
@@ -10,21 +10,23 @@
 #   -i START   first layout of every run: patch-copy, random-copy or white-noise; default: random-copy, since patches chosen to agree
 #              leave the rest little to do
 #   -m on|off  whether dangling ends are mended at the end, which hides part of what goes wrong before; default: off
+#   -g on|off  whether a start in disorder is grown anew, which hides what the start was; default: off
 #
 # Exemplars default to four of examples/. Results are FOLDER/NAME-VARIANT.svg and FOLDER/sheet.png, one row an exemplar.
 # Runs from the root of the repository; builds the program first, unless ARABESQUE names one and SHEET names the sheet maker
 # (crates/arabesque/examples/sheet.rs).
 set -eu
 
-folder=ablations size=400x400 seed=1 start=random-copy mending=off
-while getopts o:s:n:i:m: option; do
+folder=ablations size=400x400 seed=1 start=random-copy mending=off regrowth=off
+while getopts o:s:n:i:m:g: option; do
     case $option in
         o) folder=$OPTARG ;;
         s) size=$OPTARG ;;
         n) seed=$OPTARG ;;
         i) start=$OPTARG ;;
         m) mending=$OPTARG ;;
-        *) sed -n '5,12p' "$0" >&2; exit 2 ;;
+        g) regrowth=$OPTARG ;;
+        *) sed -n '5,13p' "$0" >&2; exit 2 ;;
     esac
 done
 shift $((OPTIND - 1))
@@ -64,7 +66,7 @@ for exemplar; do
         # The settings are words without blanks, to be split.
         # shellcheck disable=SC2086
         "$ARABESQUE" fill "$exemplar" --size "$size" --seed "$seed" --set "initialisation=$start" \
-            --set "mending=$mending" $arguments \
+            --set "mending=$mending" --set "regrowth=$regrowth" $arguments \
             -o "$result" < /dev/null
         printf '%s\n' "$result=$label" >> "$cells"
     done

@@ -89,6 +89,10 @@ fn strokes_without_length_are_left_out_and_told() {
     let (told, paths) = filled(&(net(5, 20, 1.5) + &dust), "");
     assert!(told.contains("strokes too short to be seen left out: 40"), "{told}");
     assert_net("dust", &paths);
+    // What lies in a junction is part of it: nothing is lost.
+    let (told, paths) = filled(&(net(5, 20, 1.5) + &stroke("M50 50l.01 .01")), "");
+    assert!(!told.contains("too short"), "{told}");
+    assert_net("speck in a junction", &paths);
 }
 
 #[test]

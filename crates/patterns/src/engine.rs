@@ -200,12 +200,16 @@ impl<const D: usize> Prepared<D> {
         doubts
     }
 
-    /// Curves in the window that are in no line of the skeleton.
+    /// Curves in the window that are in no line of the skeleton and not part of a junction either.
     fn unseen(&self, skeleton: &Skeleton<D>) -> usize {
         let mut is_seen = vec![false; self.exemplar.curves.len()];
         skeleton.lines.iter().for_each(|line| is_seen[line.curve as usize] = true);
-        let is_inside = |n: &usize| self.exemplar.window.contains(self.exemplar.curves[*n].path.bounds().centre());
-        (0..is_seen.len()).filter(|&n| !is_seen[n]).filter(is_inside).count()
+        let side = shortest(self.exemplar.window.size());
+        let is_lost = |n: &usize| {
+            let centre = self.exemplar.curves[*n].path.bounds().centre();
+            self.exemplar.window.contains(centre) && !skeleton.is_in_junction(centre, side)
+        };
+        (0..is_seen.len()).filter(|&n| !is_seen[n]).filter(is_lost).count()
     }
 
     fn has_curves(&self) -> bool {

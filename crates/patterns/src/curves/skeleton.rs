@@ -95,6 +95,12 @@ impl<const D: usize> Skeleton<D> {
         Self::joined(lines, &contacts, side)
     }
 
+    /// Whether lines meet so close to a place that what lies there is part of the junction; `side` is the size of the picture.
+    pub(crate) fn is_in_junction(&self, place: Vector<D>, side: f64) -> bool {
+        let is_near = |p: Vector<D>| (p - place).norm() <= TOUCH_SHARE * side;
+        self.knots.iter().any(|&(p, knot)| knot == Knot::Junction && is_near(p))
+    }
+
     fn joined(lines: Vec<Line<D>>, contacts: &[Contact<D>], side: f64) -> Self {
         let reach = reach(&lines, side);
         let mut skeleton = Self { lines, knots: Vec::new() };

@@ -324,6 +324,25 @@ fn lines_that_tiles_cut_at_their_seams_are_whole_again() {
 }
 
 #[test]
+fn a_net_and_what_lies_in_its_meshes_are_told_apart() {
+    // The net along the borders of the tiles, and in each mesh a frame with a dot in it.
+    let motif = "M6 6H14V14H6ZM8 8V12H12V8ZM9 9H11V11H9Z";
+    let d = read_with(&tiled(&format!("M0 0H20V20H0ZM1 1V19H19V1Z{motif}")), Method::Auto).unwrap();
+    assert!(d.exemplar.curves.len() >= 8 && d.exemplar.curves.iter().all(|c| (c.width - 2.0).abs() < 0.1));
+    assert_eq!(class_sizes(&d), [25]);
+    assert!((d.exemplar.elements[0].outline.area() - 52.0).abs() < 0.1);
+}
+
+#[test]
+fn outlines_that_tiles_cut_at_their_seams_are_whole_elements() {
+    // Frames in the middle of the upper and the lower side of each tile, half of them in either.
+    let d = read_with(&tiled("M4 0V6H16V0H15V5H5V0ZM4 20V14H16V20H15V15H5V20Z"), Method::Auto).unwrap();
+    let whole: Vec<_> = d.exemplar.elements.iter().filter(|e| e.role == Role::Source).collect();
+    assert_eq!((whole.len(), d.exemplar.elements.len()), (20, 30));
+    assert!(whole.iter().all(|e| (e.outline.area() - 44.0).abs() < 0.1));
+}
+
+#[test]
 fn tiles_that_are_no_lines_together_stay_elements() {
     // Filled squares side by side, and squares that only touch at corners.
     for (data, count) in [("M0 0H20V20H0Z", 25), ("M0 0H10V10H0ZM10 10H20V20H10Z", 25)] {

@@ -23,21 +23,22 @@ const SEAM: f64 = 2e-4;
 /// Joins items: pieces of the same colour that touch always, strokes and what they touch when every connected piece is an element.
 pub(super) fn join(found: Selection, inker: &Inker<'_, '_>, frame: Bounds<2>, method: Method) -> Result<Selection> {
     let Selection { items, background } = found;
+    let tolerance = SEAM * longer(&frame);
+    let items = if method == Method::Elements { items } else { seam::join_lines(items, inker, frame, tolerance)? };
     let colours: Vec<String> = items.iter().map(|item| item.ink.colours_key()).collect();
     let may_join = |i: usize, j: usize| {
         let (a, b) = (items[i].origin, items[j].origin);
         let pieces = a == Origin::Piece && b == Origin::Piece && colours[i] == colours[j];
         let loose = a != Origin::Whole && b != Origin::Whole;
-        pieces || (method == Method::Elements && loose && (a == Origin::Stroke || b == Origin::Stroke))
+        let is_done = items[i].lines.is_some() || items[j].lines.is_some();
+        (!is_done && pieces) || (method == Method::Elements && loose && (a == Origin::Stroke || b == Origin::Stroke))
     };
-    let tolerance = SEAM * longer(&frame);
     let items = if items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
         let groups = connected(&items, may_join, tolerance, inker);
         groups.into_iter().map(|group| merged(&items, &group, frame)).collect()
     } else {
         items
     };
-    let items = if method == Method::Elements { items } else { seam::join_lines(items, frame, tolerance) };
     Ok(Selection { items, background })
 }
 
@@ -83,6 +84,7 @@ pub(super) fn merged(items: &[Item], group: &[usize], frame: Bounds<2>) -> Item 
         all.ink.append(items[i].ink.clone());
         all.is_cut |= items[i].is_cut;
     }
+    all.compound = None;
     let rings: Vec<_> = group.iter().flat_map(|&i| items[i].outline.rings.iter().cloned()).collect();
     all.outline = Outline::union(&rings, FillRule::NonZero);
     let strokes = group.iter().any(|&i| items[i].kind == Kind::Curve);

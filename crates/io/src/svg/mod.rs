@@ -8,6 +8,8 @@ mod area;
 mod areas;
 mod classes;
 mod colour;
+mod compound;
+mod context;
 mod css;
 mod curves;
 mod cut_path;

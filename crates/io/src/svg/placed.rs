@@ -8,6 +8,7 @@ use kurbo::Affine;
 use super::{
     Drawing, Fragment, Method, Page, Placed, ReadOptions, Stroke, Unit,
     classes::{self, WOBBLE},
+    context::Context,
     curves::{Curves, Gatherer},
     cut_path::{Side, cut},
     definitions::Definitions,
@@ -15,7 +16,7 @@ use super::{
     item::{Item, Kind},
     meta::Meta,
     read::{fragment, root},
-    select::{Context, select},
+    select::select,
     signature::Signature,
     source::with_source,
     write_curves::stroke_markup,

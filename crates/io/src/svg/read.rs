@@ -8,6 +8,7 @@ use kurbo::Affine;
 use super::{
     Drawing, Fragment, Method, Page, ReadOptions, Stacking, Unit, area,
     classes::{self, Classes},
+    context::Context,
     curves::{Curves, Gatherer},
     definitions::Definitions,
     extent::{self, bounds},
@@ -19,7 +20,7 @@ use super::{
     meta::Part,
     notes::Note,
     scene::{self, Node},
-    select::{Context, select},
+    select::select,
     source::{Source, with_source},
     traced::trace,
 };

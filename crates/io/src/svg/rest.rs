@@ -13,13 +13,14 @@ use roxmltree::NodeId;
 
 use super::{
     Drawing, Method, Page, Placed, ReadOptions, Unit,
+    context::Context,
     definitions::Definitions,
     extent::bounds,
     ink::Inker,
     item::Item,
     placed::{Kept, Matcher, Sorter},
     read::{fragment, is_frame_mark, root},
-    select::{Context, select},
+    select::select,
     source::{SVG, Source, with_source},
     traced::trace,
     write::NAMESPACE,

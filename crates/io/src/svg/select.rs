@@ -17,58 +17,29 @@ use roxmltree::NodeId;
 
 use super::{
     Method,
+    compound::Compound,
+    context::Context,
     curves::is_all_closed,
     extent::{bounds, clusters, longer, sole_shape},
     flatten,
     geometry::{Geometry, Painted},
     ink::Inker,
     item::{Item, Kind, Origin, Selection},
-    meta::{Mark, Meta, Part},
+    meta::{Mark, Part},
     notes::Note,
     paint::fraction,
-    pieces,
     scene::{Content, Node},
-    style::{Own, Property as P},
+    style::Own,
 };
 
 /// Share of the frame from which on something is too large for an element.
-const HALF: f64 = 0.5;
+pub(super) const HALF: f64 = 0.5;
 /// Share of the frame from which on a group of distant things is a container.
 const ROOMY: f64 = 0.1;
 /// Widest gap inside one thing, as a share of the smaller neighbour.
 const GAP: f64 = 0.4;
 /// Share of the frame that a background covers at least.
 const COVER: f64 = 0.95;
-
-/// What holds for everything inside a container.
-#[derive(Clone)]
-pub(super) struct Context {
-    pub(super) parent: Affine,
-    pub(super) layer: Option<Rc<str>>,
-    opacity: f64,
-    clip: Option<Rc<Outline<2>>>,
-    mark: Option<Mark>,
-    without: Rc<[String]>,
-}
-
-impl Context {
-    /// Nothing but the transform from the parent to the root.
-    pub(super) fn new(parent: Affine) -> Self {
-        Self { parent, layer: None, opacity: 1.0, clip: None, mark: None, without: Rc::default() }
-    }
-
-    /// The same, but for the items of those names.
-    pub(super) fn without(self, names: &[String]) -> Self {
-        Self { without: names.into(), ..self }
-    }
-}
-
-impl Context {
-    fn excludes(&self, meta: &Meta) -> bool {
-        let named = |name: &Option<String>| name.as_ref().is_some_and(|name| self.without.contains(name));
-        named(&meta.id) || named(&meta.label)
-    }
-}
 
 /// Walks the drawing.
 struct Selector<'a, 's, 'i> {
@@ -149,19 +120,14 @@ impl Selector<'_, '_, '_> {
         if opacity == 0.0 {
             return Ok(());
         }
-        self.note_effects(&node.own, &node.meta);
+        if has_effects(&node.own) {
+            self.inker.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());
+        }
         let name = node.meta.label.as_ref().or(node.meta.id.as_ref());
         let layer = if node.meta.is_layer { name.map(|l| l.as_str().into()) } else { at.layer.clone() };
         let mark = node.meta.mark.or(at.mark);
         let inside = Context { parent: world, layer, opacity, clip, mark, without: Rc::clone(&at.without) };
         node.children().iter().try_for_each(|child| self.visit(child, &inside))
-    }
-
-    fn note_effects(&self, own: &Own, meta: &Meta) {
-        if ["mask", "filter", "mix-blend-mode"].iter().any(|e| own.get(e).is_some_and(|v| v != "none" && v != "normal"))
-        {
-            self.inker.source.notes.add(Note::ContainerEffect, || meta.id.clone().unwrap_or_default());
-        }
     }
 
     fn visit(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
@@ -220,43 +186,8 @@ impl Selector<'_, '_, '_> {
 
     /// Takes a node as a whole.
     fn take(&mut self, node: &Rc<Node>, at: &Context, kind: Kind, origin: Origin) -> Result<()> {
-        let item = Item {
-            parts: vec![(at.parent, Rc::clone(node))],
-            meta: named(node),
-            layer: at.layer.clone(),
-            opacity: at.opacity,
-            outline: Outline::default(),
-            ink: self.inker.ink(node, at.parent)?,
-            kind,
-            origin,
-            lines: None,
-            clip: at.clip.clone(),
-            is_cut: false,
-        };
-        self.push(item, at);
+        self.found.items.extend(Item::taken(self.inker, node, at, kind, origin)?);
         Ok(())
-    }
-
-    fn push(&mut self, mut item: Item, at: &Context) {
-        item.outline = item.ink.outline();
-        if let Some(clip) = &at.clip {
-            let before = item.outline.area();
-            item.outline = item.outline.intersection(clip);
-            item.is_cut = item.outline.area() < 0.999 * before;
-        }
-        let extent = item.outline.bounds();
-        if item.outline.rings.is_empty() || longer(&extent) <= self.inker.source.limits.extent {
-            let seen = item.parts.iter().any(|(parent, node)| !bounds(node, *parent).is_empty());
-            if item.parts.iter().any(|(_, node)| node.style.has_no_width()) {
-                self.inker.source.notes.add(Note::NoWidth, || item.meta.id.clone().unwrap_or_default());
-            }
-            if seen && !item.is_cut {
-                let meta = &item.meta;
-                self.inker.source.notes.add(Note::ZeroSize, || meta.id.clone().unwrap_or_default());
-            }
-            return;
-        }
-        self.found.items.push(item);
     }
 
     /// Decides about a node that is, or wraps, a single shape.
@@ -272,11 +203,17 @@ impl Selector<'_, '_, '_> {
         let closed = is_all_closed(&geometry.path);
         let origin = if filled { Origin::Fill } else { Origin::Stroke };
         if filled {
-            if geometry.paint == Painted::Style && self.split(node, leaf, parent, at)? {
-                return Ok(());
+            let compound = match geometry.paint {
+                Painted::Style => Compound::new(self.inker, node, (leaf, parent), at)?.map(Rc::new),
+                Painted::Picture => None,
+            };
+            if let Some(compound) = compound.as_ref().filter(|compound| !self.is_compact(compound)) {
+                return self.split(compound);
             }
             let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
-            return self.take(node, at, kind, origin);
+            let whole = Item::taken(self.inker, node, at, kind, origin)?;
+            self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
+            return Ok(());
         }
         if closed && self.is_frame(leaf, geometry, world) {
             self.inker.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
@@ -309,94 +246,30 @@ impl Selector<'_, '_, '_> {
         Ok(outline.area() >= COVER * self.frame.measure())
     }
 
-    /// Takes a compound path apart; `false` when it stays in one piece.
-    fn split(&mut self, node: &Rc<Node>, leaf: &Rc<Node>, parent: Affine, at: &Context) -> Result<bool> {
-        let Content::Shape(geometry) = &leaf.content else { return Ok(false) };
-        let all: Vec<_> = geometry.path.subpaths().collect();
-        if all.len() < 2 {
-            return Ok(false);
-        }
-        let rule = flatten::fill_rule(leaf.style.get(P::FillRule));
-        let Some(pieces) = pieces::pieces(&geometry.path, rule) else {
-            self.inker.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
-            return Ok(false);
-        };
-        let mut inside = at.clone();
-        let bare = self.unwrapped(node, leaf, parent, &mut inside)?;
-        let nodes: Vec<_> = pieces.iter().map(|p| Rc::new(piece(&bare, &all, &p.subpaths))).collect();
-        let boxes: Vec<_> = nodes.iter().map(|n| bounds(n, parent)).collect();
-        if pieces.len() < 2 || self.is_compact(&boxes) {
-            return Ok(false);
-        }
-        if leaf.style.get(P::Fill).starts_with("url(") {
-            self.inker.source.notes.add(Note::SplitGradient, || node.meta.id.clone().unwrap_or_default());
-        }
-        let mut sets = super::touch::Sets::new(pieces.len());
-        for (k, p) in pieces.iter().enumerate() {
-            if let Some(home) = p.within.filter(|&home| self.share(&boxes[home]) < HALF) {
+    /// Takes the pieces of a compound path, those in the hole of another with it.
+    fn split(&mut self, compound: &Rc<Compound>) -> Result<()> {
+        compound.note_losses(self.inker);
+        let mut sets = super::touch::Sets::new(compound.pieces.len());
+        for (k, p) in compound.pieces.iter().enumerate() {
+            if let Some(home) = p.within.filter(|&home| self.share(&compound.boxes[home]) < HALF) {
                 sets.join(k, home);
             }
         }
         for group in sets.groups() {
-            let whole: Vec<usize> = group.iter().flat_map(|&k| pieces[k].subpaths.iter().copied()).collect();
-            let one = if group.len() == 1 { Rc::clone(&nodes[group[0]]) } else { Rc::new(piece(&bare, &all, &whole)) };
-            let extent = bounds(&one, parent);
-            let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
-            let here = Context { parent, ..inside.clone() };
-            self.take(&one, &here, kind, Origin::Piece)?;
+            self.found.items.extend(compound.item(self.inker, group, self.frame)?);
         }
-        Ok(true)
+        Ok(())
     }
 
-    fn is_compact(&self, boxes: &[Bounds<2>]) -> bool {
-        let all = boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b));
-        self.share(&all) < ROOMY && clusters(boxes, GAP) == 1
-    }
-
-    /// The shape without its own clip and without the groups around it; what these do goes into the context.
-    fn unwrapped(&self, node: &Rc<Node>, leaf: &Rc<Node>, parent: Affine, inside: &mut Context) -> Result<Node> {
-        let mut at = node;
-        let mut world = inside.parent;
-        loop {
-            world *= at.transform;
-            if let Some(clip) = self.inker.clip(at, world)? {
-                let both = inside.clip.as_ref().map_or_else(|| clip.clone(), |outer| outer.intersection(&clip));
-                inside.clip = Some(Rc::new(both));
-            }
-            if Rc::ptr_eq(at, leaf) {
-                break;
-            }
-            inside.opacity *= at.own.get("opacity").map_or(1.0, fraction);
-            self.note_effects(&at.own, &at.meta);
-            let [child] = at.children() else { break };
-            at = child;
-        }
-        let _ = parent;
-        let nameless = Meta { class: None, label: None, kind: None, shows: None, ..(*leaf.meta).clone() };
-        Ok(Node { own: leaf.own.without("clip-path"), meta: Rc::new(nameless), ..(**leaf).clone() })
+    fn is_compact(&self, compound: &Compound) -> bool {
+        let all = compound.boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b));
+        self.share(&all) < ROOMY && clusters(&compound.boxes, GAP) == 1
     }
 }
 
-fn piece(bare: &Node, all: &[&[kurbo::PathEl]], subpaths: &[usize]) -> Node {
-    let geometry = Geometry::from_path(pieces::chosen(all, subpaths));
-    Node { content: Content::Shape(Rc::new(geometry)), ..bare.clone() }
-}
-
-/// The names of a node, completed by those of the only shape in it.
-fn named(node: &Rc<Node>) -> Rc<Meta> {
-    match sole_shape(node, Affine::IDENTITY) {
-        Some((leaf, _)) if !Rc::ptr_eq(leaf, node) => {
-            let (outer, inner) = (&*node.meta, &*leaf.meta);
-            Rc::new(Meta {
-                class: outer.class.clone().or_else(|| inner.class.clone()),
-                label: outer.label.clone().or_else(|| inner.label.clone()),
-                kind: outer.kind.clone().or_else(|| inner.kind.clone()),
-                shows: outer.shows.clone().or_else(|| inner.shows.clone()),
-                ..outer.clone()
-            })
-        }
-        _ => Rc::clone(&node.meta),
-    }
+/// Whether a container does something to its content that its items cannot do alone.
+pub(super) fn has_effects(own: &Own) -> bool {
+    ["mask", "filter", "mix-blend-mode"].iter().any(|e| own.get(e).is_some_and(|v| v != "none" && v != "normal"))
 }
 
 /// Whether a fill covers more than a line.

@@ -95,7 +95,8 @@ pub(super) fn edges_meet(a: &[Edge], b: &[Edge], tolerance: f64, budget: &mut Bu
     budget.any(a, b, tolerance, |p, q| edge_distance(p, q) <= tolerance)
 }
 
-fn edge_distance(p: Edge, q: Edge) -> f64 {
+/// Distance between two edges.
+pub(super) fn edge_distance(p: Edge, q: Edge) -> f64 {
     let side = |e: Edge, v: Vector<2>| (e.1 - e.0).cross(v - e.0);
     let apart = |e: Edge, f: Edge| side(e, f.0) * side(e, f.1) > 0.0;
     if !apart(p, q) && !apart(q, p) && Bounds::around([p.0, p.1]).intersects(&Bounds::around([q.0, q.1])) {

@@ -64,6 +64,9 @@ fn whole(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>, tolerance: f64
         let one = merged(&items, &group, frame);
         let area = one.outline.area();
         let item = lined(one.clone(), frame).inspect(|_| lines += area).unwrap_or(one);
+        // What is no net now is a thing of its own, and no scrap of one.
+        let origin = if item.lines.is_some() { item.origin } else { Origin::Whole };
+        let item = Item { origin, ..item };
         has_net |= item.lines.is_some();
         ink += area;
         found.push(item);

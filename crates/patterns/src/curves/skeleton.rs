@@ -121,7 +121,11 @@ impl<const D: usize> Skeleton<D> {
         for members in group.sets() {
             let centre = members.iter().fold(Vector::ZERO, |sum, &m| sum + points[m]) * (1.0 / members.len() as f64);
             let knot = self.knots.len() as u32;
-            self.knots.push((centre, Knot::Junction));
+            // Of a junction on the frame nobody sees all arms.
+            let is_cut =
+                |&m: &usize| is_cut_at(&self.lines[sides[m].0 as usize], sides[m].1, reach[sides[m].0 as usize]);
+            let kind = if members.iter().all(is_cut) { Knot::Cut } else { Knot::Junction };
+            self.knots.push((centre, kind));
             self.stop_at(knot, &members, &sides, reach);
         }
     }
@@ -219,9 +223,15 @@ fn reach<const D: usize>(lines: &[Line<D>], side: f64) -> Vec<f64> {
 
 /// All places where lines touch.
 fn contacts<const D: usize>(lines: &[Line<D>], side: f64) -> Vec<Contact<D>> {
+    let reach = reach(lines, side);
     let mut contacts = crossings(lines, side, 1e-4 * side);
-    contacts.extend(end_contacts(lines, &reach(lines, side), side));
+    contacts.extend(end_contacts(lines, &reach, side));
     contacts
+}
+
+/// Whether the window has cut a line within `reach` of a place on it.
+fn is_cut_at<const D: usize>(line: &Line<D>, arc: f64, reach: f64) -> bool {
+    (line.is_cut[0] && arc <= reach) || (line.is_cut[1] && arc >= line.measured.length() - reach)
 }
 
 /// Arc lengths of the corners, where the directions over `reach` before and after differ.
@@ -252,7 +262,6 @@ fn corners<const D: usize>(measured: &Measured<D>, reach: f64) -> Vec<f64> {
 fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) -> Vec<Line<D>> {
     let measured = Measured::new(curve.path.clone(), 5e-4 * side);
     let near = (0.5 * curve.width).min(AT_FRAME * side).max(SCRAP * side);
-    let on_frame = |p: Vector<D>| window.signed_distance(p) < near;
     let line = |path: Path<D>, is_cut| Line {
         measured: Measured::new(path, 5e-4 * side),
         curve: k,
@@ -262,15 +271,35 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
     };
     let spans = inside(&measured, side / 200.0, &|p| window.contains(p));
     let whole = matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length());
-    if whole && measured.is_closed() {
-        return vec![line(curve.path.clone(), [false; 2])];
-    }
-    let lines = spans.into_iter().map(|(a, b)| {
-        let path = measured.part(a, b);
-        let ends = [path.start(), path.end()].map(|p| p.is_some_and(on_frame));
+    let pieces: Vec<Path<D>> = match whole && measured.is_closed() {
+        true => vec![curve.path.clone()],
+        false => spans.into_iter().map(|(a, b)| measured.part(a, b)).collect(),
+    };
+    let lines = pieces.into_iter().flat_map(|path| cut_at_corners(path, window, side, near)).map(|path| {
+        let on_frame = |p: Vector<D>| window.signed_distance(p) < near;
+        let ends = [path.start(), path.end()].map(|p| !path.closed && p.is_some_and(on_frame));
         line(path, ends)
     });
     lines.filter(|l| l.measured.length() > SCRAP * side).collect()
+}
+
+/// Cuts a path at its corners on the frame: where two lines cross exactly there, the window shows a corner.
+fn cut_at_corners<const D: usize>(path: Path<D>, window: &Bounds<D>, side: f64, near: f64) -> Vec<Path<D>> {
+    let measured = Measured::new(path, 5e-4 * side);
+    let length = measured.length();
+    let is_inner = |arc: f64| measured.is_closed() || (arc > near && arc < length - near);
+    let mut places = corners(&measured, near.max(TOUCH_SHARE * side));
+    places.retain(|&arc| is_inner(arc) && window.signed_distance(measured.point(arc)) < near);
+    places.sort_by(f64::total_cmp);
+    let Some((&first, &last)) = places.first().zip(places.last()) else { return vec![measured.path().clone()] };
+    let mut pieces: Vec<_> = places.windows(2).map(|w| measured.part(w[0], w[1])).collect();
+    if measured.is_closed() {
+        pieces.push(measured.part(last, first + length));
+    } else {
+        pieces.insert(0, measured.part(0.0, first));
+        pieces.push(measured.part(last, length));
+    }
+    pieces
 }
 
 /// Disjoint sets.

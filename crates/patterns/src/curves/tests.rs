@@ -153,6 +153,23 @@ fn a_line_from_side_to_side_has_no_ends() {
 }
 
 #[test]
+fn lines_that_meet_on_the_frame_may_cross_there() {
+    // Drawn as two lines, as one line with a corner, and as the corner of a closed one.
+    let (a, top, b) = ((30.0, 40.0), (50.0, 0.0), (70.0, 40.0));
+    let two = [polyline(&[a, top], false), polyline(&[top, b], false)];
+    let one = [polyline(&[a, top, b], false)];
+    for paths in [&two[..], &one[..]] {
+        let tent = rebuilt(paths);
+        assert_eq!((tent.degrees(Knot::Cut), tent.degrees(Knot::End)), (vec![4], vec![1, 1]));
+        assert_eq!((tent.degrees(Knot::Corner), tent.degrees(Knot::Junction)), (vec![], vec![]));
+    }
+    let closed = rebuilt(&[polyline(&[a, top, b], true)]);
+    assert_eq!((closed.degrees(Knot::Cut), closed.degrees(Knot::Corner)), (vec![4], vec![2, 2]));
+    let inner = rebuilt(&[polyline(&[a, (50.0, 1.0), b], false)]);
+    assert_eq!((inner.degrees(Knot::Cut), inner.degrees(Knot::Corner)), (vec![], vec![2]));
+}
+
+#[test]
 fn a_tee_is_two_strokes_that_meet() {
     let bar = polyline(&[(20.0, 40.0), (80.0, 40.0)], false);
     let tee = same_shape(&[bar, polyline(&[(50.0, 40.0), (50.0, 80.0)], false)]);

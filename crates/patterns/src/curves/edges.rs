@@ -22,7 +22,8 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize)
     let Some(net) = &level.net else {
         return (Votes { candidates: Vec::new(), degree: Vec::new() }, 0);
     };
-    let votes = votes::collect(state, net);
+    let mut votes = votes::collect(state, net);
+    tell_kept(state, net, &mut votes);
     let mut links = frozen_links(state);
     switch_on(&votes, &mut links, &|a, b| state.is_frozen(a) && state.is_frozen(b));
     let mut changed = 0;
@@ -35,6 +36,15 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize)
         }
     }
     (votes, changed)
+}
+
+/// Of a kept sample its own strokes tell how many edges it has, more than its neighbours.
+fn tell_kept<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &mut Votes) {
+    for s in (0..votes.degree.len() as u32).filter(|&s| state.is_frozen(s)) {
+        if let Some(node) = state.node(s) {
+            votes.degree[s as usize] = net.degree(node) as f64;
+        }
+    }
 }
 
 /// Switches candidates on, in falling confidence, wherever that lowers the objective; those that are fixed stay as they are.

@@ -26,6 +26,9 @@ const FACING: f64 = 0.9;
 /// What a false end is taken on to lies ahead of it: cosine of 70 degrees.
 const AHEAD: f64 = 0.34;
 
+/// How far beyond the border of the domain a kept stroke may end that goes on inside, in sampling distances.
+const AT_BORDER: f64 = 0.3;
+
 /// Edges that end within this many sampling distances of one another want the same sample.
 const SAME_PLACE: f64 = 0.5;
 
@@ -81,7 +84,8 @@ fn extend<const D: usize>(
             let cost = offset.norm() * (2.0 - cosine);
             let is_own = o == s || o == before || state.links[before as usize].contains(&o);
             let degree = state.links[o as usize].len();
-            if !is_own && cosine > AHEAD && (1..=2).contains(&degree) && state.share_style(o, s) {
+            let is_kept = state.is_frozen(s) && state.is_frozen(o);
+            if !is_own && !is_kept && cosine > AHEAD && (1..=2).contains(&degree) && state.share_style(o, s) {
                 ahead.push((cost, o));
             }
         });
@@ -133,7 +137,8 @@ fn bridge<const D: usize>(
         index.within(places[i], SPAN * unit, |j, offset| {
             let across = direction(offset);
             let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
-            if j > i && out > FACING && back > FACING && state.share_style(s, ends[j]) {
+            let is_new = !(state.is_frozen(s) && state.is_frozen(ends[j]));
+            if j > i && is_new && out > FACING && back > FACING && state.share_style(s, ends[j]) {
                 wishes.push((offset.norm() / unit + ANGLE * (2.0 - out - back), i, j));
             }
         });
@@ -219,17 +224,19 @@ fn is_taken<const D: usize>(state: &State<'_, D>, net: &Net<D>, node: u32, place
 
 /// Number of edges that a sample should have.
 fn expected<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> f64 {
-    let told = votes.degree.get(s as usize).copied().filter(|d| d.is_finite());
+    // Of a kept sample its strokes tell more than its neighbours.
+    let told = votes.degree.get(s as usize).copied().filter(|d| d.is_finite() && !state.is_frozen(s));
     told.unwrap_or_else(|| state.node(s).map_or(0.0, |e| net.degree(e) as f64))
 }
 
 /// Whether a stroke ends at `s` that should go on. Beyond the border of the domain anything may end.
 fn is_false_end<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose, s: u32) -> bool {
     let p = state.samples[s as usize].position;
+    let room = if state.is_frozen(s) { -AT_BORDER * net.spacing } else { 0.0 };
     state.node(s).is_some()
         && state.links[s as usize].len() == 1
-        && state.domain().signed_distance(p) > 0.0
-        && (expected(state, net, votes, s) > EXPECTED || loose.is_too_long(state, s))
+        && state.domain().signed_distance(p) > room
+        && (expected(state, net, votes, s) > EXPECTED || (!state.is_frozen(s) && loose.is_too_long(state, s)))
 }
 
 /// The false ends of a state.
@@ -270,7 +277,8 @@ fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s
     state.index.within(position, REACH * unit, |slot, offset| {
         let o = state.living[slot];
         let is_near = o == s || o == before || state.links[before as usize].contains(&o);
-        if is_near || !state.share_style(o, s) {
+        let is_kept = state.is_frozen(s) && state.is_frozen(o);
+        if is_near || is_kept || !state.share_style(o, s) {
             return;
         }
         let degree = state.links[o as usize].len();

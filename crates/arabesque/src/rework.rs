@@ -50,13 +50,17 @@ impl Preparation<'_> {
         };
         self.note_overhang(&place_of(&target), whole.outline().area() - shape.outline().area(), whole.outline().area());
         let rest = svg::read_rest(&text, &drawing, shape.outline(), &options)?;
-        let window = match self.recipe.from.clone() {
-            Some(from) => self.source_window(&from, &text, &drawing)?,
-            None => around_hole(&drawing, &shape.outline().bounds(), &rest, &place_of(&target))?,
+        let (window, hole) = match self.recipe.from.clone() {
+            Some(from) => (self.source_window(&from, &text, &drawing)?, None),
+            None => {
+                let hole = shape.outline().bounds();
+                check_rim(&drawing, &hole, &rest, &place_of(&target))?;
+                (drawing.exemplar.window, Some(hole))
+            }
         };
         let page = drawing.page;
         let place = place_of(self.recipe.from.as_ref().unwrap_or(&target));
-        let drawing = drawing.within(window, &place).map_err(|_| {
+        let drawing = drawing.within(window, hole, &place).map_err(|_| {
             let advice = "choose a region that holds a few elements or curves of the pattern";
             Error::input(place, "nothing of the drawing lies in the region that is to be the example", advice)
         })?;
@@ -173,8 +177,8 @@ impl Preparation<'_> {
     }
 }
 
-/// The largest part of the drawing beside a hole, for what lies in the hole is to be no example.
-fn around_hole(drawing: &Drawing, hole: &Bounds<2>, rest: &Rest, place: &str) -> Result<Bounds<2>> {
+/// Refuses a hole that leaves too little around it, for what lies in the hole is to be no example.
+fn check_rim(drawing: &Drawing, hole: &Bounds<2>, rest: &Rest, place: &str) -> Result<()> {
     if !hole.intersects(&rest.content) {
         let advice = "give a region that the drawing reaches into";
         return Err(Error::input(place, "nothing of the drawing lies in or around the region", advice));
@@ -186,14 +190,13 @@ fn around_hole(drawing: &Drawing, hole: &Bounds<2>, rest: &Rest, place: &str) ->
         Bounds::new(a, b)
     };
     let strips = (0..2).flat_map(|k| [strip(k, f64::NEG_INFINITY, hole.min[k]), strip(k, hole.max[k], f64::INFINITY)]);
-    let largest = strips.filter(|s| !s.is_empty()).max_by(|a, b| a.measure().total_cmp(&b.measure()));
     let least = LEAST_SIDE * spacing(&drawing.exemplar);
-    match largest.filter(|s| s.size()[0].min(s.size()[1]) >= least) {
-        Some(window) => Ok(window),
-        None => Err(Error::input(
-            place,
-            "the region leaves too little of the drawing to be the example",
-            "make the region smaller, or say with --from REGION --to REGION where the example is",
-        )),
+    if strips.filter(|s| !s.is_empty()).any(|s| s.size()[0].min(s.size()[1]) >= least) {
+        return Ok(());
     }
+    Err(Error::input(
+        place,
+        "the region leaves too little of the drawing to be the example",
+        "make the region smaller, or say with --from REGION --to REGION where the example is",
+    ))
 }

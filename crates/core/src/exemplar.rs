@@ -63,6 +63,56 @@ pub struct Exemplar<const D: usize> {
     pub styles: Vec<Class>,
     /// The frame: inside it every element is known, outside it nothing is, but for elements that reach in.
     pub window: Bounds<D>,
+    /// A part of the window of which nothing is known.
+    pub hole: Option<Bounds<D>>,
+}
+
+/// What an exemplar shows: everything in a box, but for a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View<const D: usize> {
+    /// The box.
+    pub window: Bounds<D>,
+    /// The hole in it.
+    pub hole: Option<Bounds<D>>,
+}
+
+impl<const D: usize> View<D> {
+    /// Whether a place is shown.
+    pub fn contains(&self, p: Vector<D>) -> bool {
+        self.window.contains(p) && !self.hole.is_some_and(|hole| hole.contains(p))
+    }
+
+    /// Distance to the border of what is shown: positive inside, negative outside.
+    pub fn signed_distance(&self, p: Vector<D>) -> f64 {
+        self.window.signed_distance(p).min(self.from_hole(p))
+    }
+
+    /// Distance to the hole; infinite without one.
+    pub fn from_hole(&self, p: Vector<D>) -> f64 {
+        self.hole.map_or(f64::INFINITY, |hole| -hole.signed_distance(p))
+    }
+
+    /// How far across it can be seen at least: the shorter side of the box, or of the widest of the strips beside the hole.
+    pub fn side(&self) -> f64 {
+        let across = |b: &Bounds<D>| b.size().0.into_iter().fold(f64::INFINITY, f64::min);
+        let Some(hole) = self.hole else { return across(&self.window) };
+        let strips = (0..D).flat_map(|k| {
+            let (mut before, mut after) = (self.window, self.window);
+            before.max[k] = before.max[k].min(hole.min[k]);
+            after.min[k] = after.min[k].max(hole.max[k]);
+            [before, after]
+        });
+        strips.map(|strip| across(&strip)).fold(0.0, f64::max)
+    }
+
+    /// Area or volume of what is shown.
+    pub fn measure(&self) -> f64 {
+        let common = |hole: Bounds<D>| {
+            Bounds::new(hole.min.zip(self.window.min, f64::max), hole.max.zip(self.window.max, f64::min))
+        };
+        let lost = self.hole.map(common).filter(|hole| !hole.is_empty()).map_or(0.0, |hole| hole.measure());
+        self.window.measure() - lost
+    }
 }
 
 impl<const D: usize> Exemplar<D> {
@@ -107,7 +157,7 @@ impl<const D: usize> Exemplar<D> {
         if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
             return fail("the frame has no area", "give the exemplar a width and a height");
         }
-        Ok(Self { elements, classes, curves, styles, window })
+        Ok(Self { elements, classes, curves, styles, window, hole: None })
     }
 
     /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.
@@ -128,10 +178,16 @@ impl<const D: usize> Exemplar<D> {
         Self::new(place, elements.collect(), classes, window_around(points))
     }
 
-    /// Mean distance scale: (measure of the window / number of elements in it)^(1/D).
+    /// What it shows.
+    pub fn view(&self) -> View<D> {
+        View { window: self.window, hole: self.hole }
+    }
+
+    /// Mean distance scale: (measure of what is shown / number of elements in it)^(1/D).
     pub fn spacing(&self) -> f64 {
-        let inside = self.elements.iter().filter(|e| self.window.contains(e.centre)).count().max(1);
-        (self.window.measure() / inside as f64).powf(1.0 / D as f64)
+        let view = self.view();
+        let inside = self.elements.iter().filter(|e| view.contains(e.centre)).count().max(1);
+        (view.measure() / inside as f64).powf(1.0 / D as f64)
     }
 }
 

@@ -35,7 +35,7 @@ pub use arc::Measured;
 pub use bounds::Bounds;
 pub use domain::{Domain, Region};
 pub use error::{Error, Result};
-pub use exemplar::{Class, Curve, Element, Exemplar, Role};
+pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use grid_index::GridIndex;
 pub use image::Image;

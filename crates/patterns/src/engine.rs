@@ -70,7 +70,7 @@ impl<const D: usize> Prepared<D> {
             let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
             return Err(Error::input("exemplar", problem, advice));
         }
-        let side = shortest(exemplar.window.size());
+        let side = exemplar.view().side();
         if let Some(radius) = params.radius.filter(|r| *r > side) {
             return Err(Error::parameter(
                 "radius",
@@ -80,7 +80,7 @@ impl<const D: usize> Prepared<D> {
         }
         let skeleton = match exemplar.curves.as_slice() {
             [] => None,
-            curves => Some(Arc::new(Skeleton::new(curves, &exemplar.window)?)),
+            curves => Some(Arc::new(Skeleton::new(curves, &exemplar.view())?)),
         };
         if skeleton.as_ref().is_some_and(|s| s.lines.is_empty()) && exemplar.elements.is_empty() {
             let problem = "every curve lies outside the frame or is too short to be seen";
@@ -164,7 +164,7 @@ impl<const D: usize> Prepared<D> {
     fn doubts(&self) -> Vec<Warning> {
         let mut doubts = Vec::new();
         let Some(setting) = self.settings.first().filter(|_| self.has_curves()) else { return doubts };
-        let side = shortest(self.exemplar.window.size());
+        let side = self.exemplar.view().side();
         if setting.level.radius >= 0.5 * side {
             doubts.push(Warning::new(
                 format!("the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one", 2.0 * setting.level.radius),
@@ -204,10 +204,10 @@ impl<const D: usize> Prepared<D> {
     fn unseen(&self, skeleton: &Skeleton<D>) -> usize {
         let mut is_seen = vec![false; self.exemplar.curves.len()];
         skeleton.lines.iter().for_each(|line| is_seen[line.curve as usize] = true);
-        let side = shortest(self.exemplar.window.size());
+        let side = self.exemplar.view().side();
         let is_lost = |n: &usize| {
             let centre = self.exemplar.curves[*n].path.bounds().centre();
-            self.exemplar.window.contains(centre) && !skeleton.is_in_junction(centre, side)
+            self.exemplar.view().contains(centre) && !skeleton.is_in_junction(centre, side)
         };
         (0..is_seen.len()).filter(|&n| !is_seen[n]).filter(is_lost).count()
     }
@@ -238,7 +238,7 @@ impl<const D: usize> Prepared<D> {
     /// Levels whose neighbourhoods fit into the domain, and what to say about the rest.
     fn usable_levels(&self, request: &Request<D>) -> (Vec<usize>, Vec<Warning>) {
         let mut warnings = Vec::new();
-        let inside = self.exemplar.elements.iter().filter(|e| self.exemplar.window.contains(e.centre)).count();
+        let inside = self.exemplar.elements.iter().filter(|e| self.exemplar.view().contains(e.centre)).count();
         if inside < FEW && !self.has_curves() {
             warnings.push(Warning::new(
                 format!("the exemplar shows only {inside} elements"),

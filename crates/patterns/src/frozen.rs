@@ -44,7 +44,7 @@ fn strokes<const D: usize>(request: &Request<D>, setting: &Setting<D>, net: &Net
         return;
     }
     let scale = request.fields.frame(request.domain.bounds().centre()).spacing_scale;
-    let side = setting.library.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+    let side = setting.library.view.side();
     let ends = request.frozen_curves.iter().flat_map(|drawn| drawn.path.cubics.iter().flat_map(|c| [c[0], c[3]]));
     let frame = Bounds::around(ends);
     let lines = request.frozen_curves.iter().enumerate().map(|(n, drawn)| {

@@ -38,6 +38,9 @@ const RIM: f64 = 0.3;
 /// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
 const MEMBERS: usize = 80;
 
+/// Least distance of a patch's middle from a hole of the exemplar, in patch radii.
+const FROM_HOLE: f64 = 0.7;
+
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
 
@@ -97,7 +100,8 @@ impl<'a, const D: usize> Grower<'a, D> {
         watch: Watch<'_, D>,
     ) -> ControlFlow<()> {
         let start = self.start(canvas);
-        let rounds = self.rounds(coverage, start);
+        let kept: Vec<_> = canvas.items.iter().filter(|item| item.frozen.is_some()).map(|item| item.position).collect();
+        let rounds = self.rounds(coverage, start, &kept);
         let all = rounds.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         let mut done = 0;
         for (round, sites) in rounds.into_iter().enumerate() {
@@ -127,8 +131,17 @@ impl<'a, const D: usize> Grower<'a, D> {
     }
 
     /// Sites in rounds: those of one round are too far apart to see one another.
-    fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>) -> Vec<Vec<Vector<D>>> {
-        let sites = site_order(coverage, start, self.params.patch * self.smallest_scale());
+    fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>, kept: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
+        let patch = self.params.patch * self.smallest_scale();
+        let mut sites = site_order(coverage, start, patch);
+        if !kept.is_empty() {
+            // Ring by ring around what is kept, so that a gap in it closes from all sides.
+            let far = |site: &Vector<D>| {
+                let squares = kept.iter().map(|p| self.request.domain.offset(*site, *p).norm2());
+                (squares.fold(f64::INFINITY, f64::min).sqrt() / patch) as u32
+            };
+            sites.sort_by_cached_key(far);
+        }
         let reach = (self.params.patch + self.params.context) * self.largest_scale();
         let mut earlier = crate::buckets::Buckets::new(&self.request.domain, self.extent.margin, reach);
         let mut round_of: Vec<usize> = Vec::with_capacity(sites.len());
@@ -188,8 +201,8 @@ impl<'a, const D: usize> Grower<'a, D> {
             self.usage[element as usize] += 1;
         }
         let radius = self.params.patch * frame.spacing_scale;
-        let window = self.library.window;
-        coverage.cover(patch.site, radius, |offset| window.contains(patch.centre + frame.to_exemplar(offset)));
+        let view = self.library.view;
+        coverage.cover(patch.site, radius, |offset| view.contains(patch.centre + frame.to_exemplar(offset)));
         // The cell of the site itself is always done, so that a patch from the rim of the exemplar makes progress too.
         coverage.cover(patch.site, 0.3 * radius, |_| true);
     }
@@ -254,7 +267,12 @@ impl<'a, const D: usize> View<'a, D> {
         let mut centres = Vec::new();
         for (source, offset) in self.anchors(anchors) {
             let members = library.members(library.class[source as usize]);
-            let usable = |i: &u32| library.window.contains(library.centre[*i as usize] - offset);
+            // At the rim of a hole all that is known agrees with itself, and nothing is there to go on with.
+            let margin = FROM_HOLE * self.grower.params.patch;
+            let usable = |i: &u32| {
+                let centre = library.centre[*i as usize] - offset;
+                library.view.contains(centre) && library.view.from_hole(centre) >= margin
+            };
             if source < base || members.len() <= MEMBERS {
                 centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i as usize] - offset));
             } else {
@@ -265,8 +283,7 @@ impl<'a, const D: usize> View<'a, D> {
         }
         let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
         while centres.len() < wanted {
-            let (a, b) = (library.window.min, library.window.max);
-            centres.push(Vector(std::array::from_fn(|k| random.range(a[k], b[k]))));
+            centres.push(library.any_place(random));
         }
         centres
     }
@@ -303,7 +320,7 @@ impl<'a, const D: usize> View<'a, D> {
         for &(source, offset, weight) in &self.around {
             weights += weight;
             let p = centre + offset;
-            if !library.window.contains(p) {
+            if !library.view.contains(p) {
                 cost += UNSEEN * weight;
                 continue;
             }
@@ -320,7 +337,7 @@ impl<'a, const D: usize> View<'a, D> {
         }
         let (missing, missing_weights, usage) = self.missing(centre, &taken);
         let total = weights + missing_weights;
-        let known = library.window.signed_distance(centre).min(params.patch) / params.patch;
+        let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
         (cost + missing) / total + params.repeat * repeated / weights + params.balance * usage + RIM * (1.0 - known)
     }
 

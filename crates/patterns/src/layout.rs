@@ -145,7 +145,7 @@ impl<const D: usize> Layout<'_, D> {
 
     fn patch_radius(&self) -> f64 {
         let shortest = |v: arabesque_core::Vector<D>| v.0.into_iter().fold(f64::INFINITY, f64::min);
-        let side = shortest(self.library.window.size());
+        let side = self.library.view.side();
         let radius = self.library.radius_for(self.params.patch);
         // A handful of curve samples is no patch: several strokes side by side are.
         let radius = if self.has_strokes() { f64::INFINITY } else { radius }.min(self.params.patch_share * side);

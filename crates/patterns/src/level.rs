@@ -80,7 +80,7 @@ impl<const D: usize> Level<D> {
         (radius, slack): (f64, f64),
     ) -> Self {
         let mut level = Self::sampled(library, samples, detail, radius);
-        level.flatten(&Domain::Box(library.window), slack);
+        level.flatten(&Domain::Box(library.view.window), slack);
         level
     }
 

@@ -1,8 +1,11 @@
 //! The exemplar, analysed: what every later stage looks up.
 
-use arabesque_core::{Bounds, Domain, Exemplar, GridIndex, Role, Vector};
+use arabesque_core::{Domain, Exemplar, GridIndex, Role, Stream, Vector, View};
 
 use crate::{features::Feature, kinds::kinds};
+
+/// Random places that are tried where most of the window is a hole.
+const TRIES: usize = 64;
 
 /// Elements of one class, for look-ups by place.
 #[derive(Clone, Debug)]
@@ -26,7 +29,7 @@ pub(crate) struct Library<const D: usize> {
     /// Whether each element may be copied.
     pub(crate) copyable: Vec<bool>,
     /// Where the exemplar is known.
-    pub(crate) window: Bounds<D>,
+    pub(crate) view: View<D>,
     /// Mean element spacing: (window measure / elements)^(1/D).
     pub(crate) spacing: f64,
     /// Outlier distance `k` of each class [Tu 2020 §4.2.3]: its mean nearest-neighbour distance, any class counted.
@@ -69,17 +72,31 @@ impl<const D: usize> Library<D> {
             feature: elements.iter().map(|e| Feature::of(e, spacing)).collect(),
             radius: elements.iter().map(|e| e.outline.radius(e.centre)).collect(),
             copyable: elements.iter().map(|e| e.role == Role::Source).collect(),
-            window: exemplar.window,
+            view: exemplar.view(),
             centre,
             class,
             spacing,
             outlier,
             nearest,
             closest,
-            emptiness: emptiness(&exemplar.window, &all, spacing),
+            emptiness: emptiness(&exemplar.view(), &all, spacing),
             by_class,
             all,
         }
+    }
+
+    /// A random place that the exemplar shows.
+    pub(crate) fn any_place(&self, random: &mut Stream) -> Vector<D> {
+        let (a, b) = (self.view.window.min, self.view.window.max);
+        let mut draw = || Vector(std::array::from_fn(|k| random.range(a[k], b[k])));
+        let mut place = draw();
+        for _ in 0..TRIES {
+            if self.view.contains(place) {
+                break;
+            }
+            place = draw();
+        }
+        place
     }
 
     /// Number of elements.
@@ -143,8 +160,8 @@ impl<const D: usize> Library<D> {
 }
 
 /// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that centre.
-fn emptiness<const D: usize>(window: &Bounds<D>, all: &GridIndex<D>, spacing: f64) -> f64 {
-    let size = window.size();
+fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -> f64 {
+    let (window, size) = (view.window, view.window.size());
     let step = if D == 2 { 0.2 * spacing } else { 0.34 * spacing };
     let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).clamp(1, 2048));
     let mut largest = 0.0_f64;
@@ -155,7 +172,7 @@ fn emptiness<const D: usize>(window: &Bounds<D>, all: &GridIndex<D>, spacing: f6
             rest /= cells[k];
             window.min[k] + size[k] * (i as f64 + 0.5) / cells[k] as f64
         }));
-        let side = window.signed_distance(p);
+        let side = view.signed_distance(p);
         let Some((_, distance)) = (0..6).find_map(|n| all.nearest(p, spacing * f64::from(1 << n), None)) else {
             continue;
         };

@@ -90,7 +90,7 @@ fn most_similar<const D: usize>(
 pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
     const ASKED: usize = 96;
     let inner: Vec<u32> = (0..level.position.len() as u32)
-        .filter(|&i| library.window.signed_distance(level.position[i as usize]) > 0.7 * level.radius)
+        .filter(|&i| library.view.signed_distance(level.position[i as usize]) > 0.7 * level.radius)
         .collect();
     let asked: Vec<u32> = inner.iter().copied().step_by(inner.len().div_ceil(ASKED).max(1)).collect();
     let energies: Vec<f64> = asked
@@ -265,7 +265,7 @@ fn implied<const D: usize>(state: &State<'_, D>, o: u32, s: u32) -> Option<u32> 
 
 /// A random sample of the same key, in a window around `seed` that halves with each draw.
 fn random_near<const D: usize>(state: &State<'_, D>, seed: u32, all: &[u32], n: usize, random: &mut Stream) -> u32 {
-    let size = state.library.window.size().0.into_iter().fold(0.0, f64::max);
+    let size = state.library.view.window.size().0.into_iter().fold(0.0, f64::max);
     let window = size * 0.5_f64.powi((n % 4) as i32);
     let centre = state.level.position[seed as usize];
     let mut pick = all[random.below(all.len())];

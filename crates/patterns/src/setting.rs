@@ -73,7 +73,7 @@ fn detail(params: &Params, number: usize) -> f64 {
 /// Radius of the neighbourhoods, and by how much those of the exemplar are larger.
 fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> (f64, f64) {
     let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
-    let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(shortest(library.window.size())));
+    let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(library.view.side()));
     let slack = match params.matching {
         // Where junctions lie closer than samples, the slack would take in many times the neighbourhood.
         Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max).min(radius),
@@ -85,8 +85,8 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
 /// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as
 /// across.
 fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
-    let side = shortest(exemplar.window.size());
-    let gap = (exemplar.window.measure() / length(skeleton).max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));
+    let side = exemplar.view().side();
+    let gap = (exemplar.view().measure() / length(skeleton).max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));
     params.spacing.unwrap_or((STROKE_GAP * gap).clamp(STEP_RANGE.0 * side, STEP_RANGE.1 * side))
 }
 

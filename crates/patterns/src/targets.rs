@@ -66,7 +66,7 @@ fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32)
 
 /// Elements of each class per measure of the exemplar's window.
 fn intensities<const D: usize>(library: &Library<D>) -> Vec<f64> {
-    let inside = |e: &&u32| library.window.contains(library.centre[**e as usize]);
+    let inside = |e: &&u32| library.view.contains(library.centre[**e as usize]);
     let count = |c: u32| library.members(c).iter().filter(inside).count() as f64;
-    (0..library.classes() as u32).map(|c| count(c) / library.window.measure()).collect()
+    (0..library.classes() as u32).map(|c| count(c) / library.view.measure()).collect()
 }

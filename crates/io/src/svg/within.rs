@@ -6,14 +6,17 @@ use super::Drawing;
 
 impl Drawing {
     /// The drawing seen through a smaller window: elements with their centre in it, those that reach in as context only, and the curves
-    /// that meet it. The page stays.
+    /// that meet it. Elements with their centre in the `hole` are left out. The page stays.
     ///
     /// # Errors
     /// As [`Exemplar::with_curves`], naming `place`.
-    pub fn within(self, window: Bounds<2>, place: &str) -> Result<Self> {
+    pub fn within(self, window: Bounds<2>, hole: Option<Bounds<2>>, place: &str) -> Result<Self> {
         let Exemplar { elements, classes, curves, styles, .. } = self.exemplar;
         let (mut kept, mut fragments) = (Vec::new(), Vec::new());
         for (mut element, fragment) in elements.into_iter().zip(self.fragments) {
+            if hole.is_some_and(|hole| hole.contains(element.centre)) {
+                continue;
+            }
             if window.contains(element.centre) || element.outline.bounds().intersects(&window) {
                 if !window.contains(element.centre) {
                     element.role = Role::Context;
@@ -32,7 +35,7 @@ impl Drawing {
             curves.into_iter().zip(self.strokes).filter(|(curve, _)| meets(curve)).unzip();
         let classes = renumbered(classes, kept.iter_mut().map(|e| &mut e.class));
         let styles = renumbered(styles, curves.iter_mut().map(|c| &mut c.style));
-        let exemplar = Exemplar::with_curves(place, (kept, classes), (curves, styles), window)?;
+        let exemplar = Exemplar { hole, ..Exemplar::with_curves(place, (kept, classes), (curves, styles), window)? };
         Ok(Self { exemplar, fragments, strokes, ..self })
     }
 }
@@ -64,7 +67,7 @@ mod tests {
             <circle cx='80' cy='20' r='5' fill='red'/><circle cx='20' cy='20' r='5'/><circle cx='53' cy='20' r='5'/>
             <path d='M0 90H100' stroke='red'/><path d='M0 30H100' stroke='blue'/></svg>";
         let drawing = read_exemplar(text, &ReadOptions::new("w.svg")).unwrap();
-        let part = drawing.within(Bounds::new(Vector::ZERO, Vector::xy(50.0, 50.0)), "w.svg").unwrap();
+        let part = drawing.within(Bounds::new(Vector::ZERO, Vector::xy(50.0, 50.0)), None, "w.svg").unwrap();
         let roles: Vec<_> = part.exemplar.elements.iter().map(|e| (e.class, e.role)).collect();
         assert_eq!(roles, [(0, Role::Source), (0, Role::Context)]);
         assert_eq!((part.exemplar.classes.len(), part.exemplar.styles.len(), part.strokes.len()), (1, 1, 1));

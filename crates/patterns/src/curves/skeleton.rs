@@ -3,7 +3,7 @@
 //! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the stroke is wide. Lines
 //! that run side by side do not meet, however close they are.
 
-use arabesque_core::{Bounds, Curve, Error, Measured, Path, Result, Vector};
+use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View};
 
 use super::{
     contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
@@ -64,13 +64,13 @@ pub(crate) struct Skeleton<const D: usize> {
 }
 
 impl<const D: usize> Skeleton<D> {
-    /// The skeleton of the curves inside `window`.
+    /// The skeleton of the curves that are in `view`.
     ///
     /// # Errors
     /// [`Error::Limit`] when they meet in too many places.
-    pub(crate) fn new(curves: &[Curve<D>], window: &Bounds<D>) -> Result<Self> {
-        let side = window.size().0.into_iter().fold(f64::INFINITY, f64::min);
-        let lines: Vec<_> = curves.iter().enumerate().flat_map(|(k, c)| cut(k as u32, c, window, side)).collect();
+    pub(crate) fn new(curves: &[Curve<D>], view: &View<D>) -> Result<Self> {
+        let side = view.side();
+        let lines: Vec<_> = curves.iter().enumerate().flat_map(|(k, c)| cut(k as u32, c, view, side)).collect();
         let too_many = |found: String| Error::Limit {
             what: "places of the exemplar where strokes meet, end or turn sharply".into(),
             found,
@@ -259,7 +259,7 @@ fn corners<const D: usize>(measured: &Measured<D>, reach: f64) -> Vec<f64> {
 }
 
 /// The parts of a curve inside the window.
-fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) -> Vec<Line<D>> {
+fn cut<const D: usize>(k: u32, curve: &Curve<D>, view: &View<D>, side: f64) -> Vec<Line<D>> {
     let measured = Measured::new(curve.path.clone(), 5e-4 * side);
     let near = (0.5 * curve.width).min(AT_FRAME * side).max(SCRAP * side);
     let line = |path: Path<D>, is_cut| Line {
@@ -269,14 +269,14 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
         is_cut,
         stops: Vec::new(),
     };
-    let spans = inside(&measured, side / 200.0, &|p| window.contains(p));
+    let spans = inside(&measured, side / 200.0, &|p| view.contains(p));
     let whole = matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length());
     let pieces: Vec<Path<D>> = match whole && measured.is_closed() {
         true => vec![curve.path.clone()],
         false => spans.into_iter().map(|(a, b)| measured.part(a, b)).collect(),
     };
-    let lines = pieces.into_iter().flat_map(|path| cut_at_corners(path, window, side, near)).map(|path| {
-        let on_frame = |p: Vector<D>| window.signed_distance(p) < near;
+    let lines = pieces.into_iter().flat_map(|path| cut_at_corners(path, view, side, near)).map(|path| {
+        let on_frame = |p: Vector<D>| view.signed_distance(p) < near;
         let ends = [path.start(), path.end()].map(|p| !path.closed && p.is_some_and(on_frame));
         line(path, ends)
     });
@@ -284,12 +284,12 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, window: &Bounds<D>, side: f64) 
 }
 
 /// Cuts a path at its corners on the frame: where two lines cross exactly there, the window shows a corner.
-fn cut_at_corners<const D: usize>(path: Path<D>, window: &Bounds<D>, side: f64, near: f64) -> Vec<Path<D>> {
+fn cut_at_corners<const D: usize>(path: Path<D>, view: &View<D>, side: f64, near: f64) -> Vec<Path<D>> {
     let measured = Measured::new(path, 5e-4 * side);
     let length = measured.length();
     let is_inner = |arc: f64| measured.is_closed() || (arc > near && arc < length - near);
     let mut places = corners(&measured, near.max(TOUCH_SHARE * side));
-    places.retain(|&arc| is_inner(arc) && window.signed_distance(measured.point(arc)) < near);
+    places.retain(|&arc| is_inner(arc) && view.signed_distance(measured.point(arc)) < near);
     places.sort_by(f64::total_cmp);
     let Some((&first, &last)) = places.first().zip(places.last()) else { return vec![measured.path().clone()] };
     let mut pieces: Vec<_> = places.windows(2).map(|w| measured.part(w[0], w[1])).collect();

@@ -130,6 +130,7 @@ impl Preparation<'_> {
         let exemplar = points.as_ref().unwrap_or(&drawing.exemplar);
         self.check_room(exemplar, &place.domain).map_err(|error| self.in_region(error))?;
         let mut request = Request::new(place.domain);
+        request.known = rest.is_some().then_some(drawing.page.view);
         request.border = self.border(exemplar, rest.is_some()).into();
         request.fields = self.fields(&drawing, &request.domain.bounds())?;
         request.obstacles = self.avoided(&drawing, points.is_some(), &request.domain)?;

@@ -1,6 +1,6 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
-use crate::{Domain, Drawn, Fields, Outline, Placement};
+use crate::{Bounds, Domain, Drawn, Fields, Outline, Placement};
 
 /// What happens where elements meet the border of the domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,6 +33,8 @@ pub struct Request<const D: usize> {
     pub frozen_curves: Vec<Drawn<D>>,
     /// Ink that is in the way but is no element of the exemplar, in output coordinates: nothing may overlap it.
     pub obstacles: Vec<Outline<D>>,
+    /// Box in which everything outside the domain stays as it is, so that new strokes end where the domain does. Default none.
+    pub known: Option<Bounds<D>>,
     /// Seed of all random choices. Default 0.
     pub seed: u64,
 }
@@ -47,6 +49,7 @@ impl<const D: usize> Request<D> {
             frozen: Vec::new(),
             frozen_curves: Vec::new(),
             obstacles: Vec::new(),
+            known: None,
             seed: 0,
         }
     }

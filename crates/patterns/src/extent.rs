@@ -102,6 +102,7 @@ impl<'a, const D: usize> Extent<'a, D> {
         match self.border(i) {
             Border::Cross => distance >= 0.0,
             Border::Clip if distance >= 0.0 => true,
+            Border::Clip if i >= self.base && self.is_known(p) => false,
             Border::Clip => {
                 !self.is_drawn(p, reach)
                     && distance >= -reach
@@ -112,6 +113,11 @@ impl<'a, const D: usize> Extent<'a, D> {
                 distance >= 0.0 && self.outline_at(i, p).points().all(|q| self.request.domain.contains(q))
             }
         }
+    }
+
+    /// Whether everything at a place outside the domain stays as it is.
+    pub(crate) fn is_known(&self, p: Vector<D>) -> bool {
+        self.request.known.is_some_and(|known| known.contains(p))
     }
 
     /// Whether a frozen stroke lies within `reach` of `p`.
@@ -139,6 +145,7 @@ impl<'a, const D: usize> Extent<'a, D> {
         let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
         let allowed = match self.border(i) {
             Border::Cross | Border::Inside | Border::Turn => 0.0,
+            Border::Clip if i >= self.base && self.is_known(p) => 0.0,
             Border::Clip => -reach,
         };
         let distance = domain.signed_distance(p);

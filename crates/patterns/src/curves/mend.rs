@@ -110,7 +110,8 @@ fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize
     let open: Vec<OpenArm<D>> = inside.iter().flat_map(|&s| open_arms(state, net, s)).collect();
     let beyond = |arm: &&OpenArm<D>| !state.domain().contains(arm.place) || state.extent.is_blocked(arm.place, 0.0);
     let base = state.level.base;
-    let new: Vec<OpenArm<D>> = open.iter().filter(beyond).cloned().collect();
+    let is_open = |arm: &&OpenArm<D>| !state.extent.is_known(arm.place);
+    let new: Vec<OpenArm<D>> = open.iter().filter(beyond).filter(is_open).cloned().collect();
     for arm in &new {
         let sample = state.samples.len() as u32;
         state.push(Item { source: base + arm.node, position: arm.place, frozen: None }, Matrix::identity());

@@ -76,6 +76,13 @@ pub struct View<const D: usize> {
     pub hole: Option<Bounds<D>>,
 }
 
+impl<const D: usize> From<Bounds<D>> for View<D> {
+    /// The whole box.
+    fn from(window: Bounds<D>) -> Self {
+        Self { window, hole: None }
+    }
+}
+
 impl<const D: usize> View<D> {
     /// Whether a place is shown.
     pub fn contains(&self, p: Vector<D>) -> bool {
@@ -244,6 +251,30 @@ fn interior_cell<const D: usize>(points: &[Vector<D>], tight: &Bounds<D>, spacin
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn square(min: f64, max: f64) -> Bounds<2> {
+        Bounds::new(Vector::xy(min, min), Vector::xy(max, max))
+    }
+
+    #[test]
+    fn a_hole_is_not_shown() {
+        let view = View { window: square(0.0, 100.0), hole: Some(square(40.0, 60.0)) };
+        assert!(view.contains(Vector::xy(30.0, 50.0)) && !view.contains(Vector::xy(50.0, 50.0)));
+        assert!(!view.contains(Vector::xy(101.0, 50.0)));
+        assert_eq!(view.signed_distance(Vector::xy(30.0, 50.0)), 10.0);
+        assert_eq!(view.signed_distance(Vector::xy(5.0, 50.0)), 5.0);
+        assert!(view.signed_distance(Vector::xy(45.0, 50.0)) < 0.0);
+        assert_eq!((view.measure(), view.side()), (9600.0, 40.0));
+        let whole = View::from(square(0.0, 100.0));
+        assert_eq!((whole.measure(), whole.side(), whole.from_hole(Vector::ZERO)), (1e4, 100.0, f64::INFINITY));
+    }
+
+    #[test]
+    fn only_what_a_hole_takes_of_the_window_counts() {
+        let window = square(0.0, 100.0);
+        assert_eq!(View { window, hole: Some(square(90.0, 120.0)) }.measure(), 9900.0);
+        assert_eq!(View { window, hole: Some(square(120.0, 130.0)) }.measure(), 1e4);
+    }
 
     #[test]
     fn an_exemplar_of_cut_elements_alone_is_refused() {

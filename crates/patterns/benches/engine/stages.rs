@@ -43,8 +43,8 @@ pub(crate) enum Stage {
 /// Samples of the finest level that the exemplar shows, per area.
 fn density(setting: &Setting<2>) -> f64 {
     let level = &setting.level;
-    let inside = level.position.iter().filter(|p| setting.library.window.contains(**p)).count();
-    inside as f64 / setting.library.window.measure()
+    let inside = level.position.iter().filter(|p| setting.library.view.contains(**p)).count();
+    inside as f64 / setting.library.view.measure()
 }
 
 /// A square page for about `n` samples at the finest level.

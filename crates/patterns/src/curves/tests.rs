@@ -46,7 +46,7 @@ struct Rebuilt {
 fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     let exemplar = exemplar(paths);
     let params = Params { levels: 1, ..Params::default() };
-    let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.window).unwrap());
+    let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.view()).unwrap());
     let setting = settings(&exemplar, Some(&skeleton), &params).remove(0);
     let request = Request::new(Domain::Box(window().grown(SIDE)));
     let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);

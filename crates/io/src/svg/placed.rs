@@ -186,10 +186,18 @@ pub(super) struct Matcher<'d> {
     signatures: Vec<Option<Signature>>,
     /// The first curve painted in each way.
     painted: BTreeMap<String, usize>,
+    /// Whether copies that say what they are copies of mean this drawing.
+    is_origin: bool,
 }
 
 impl<'d> Matcher<'d> {
+    /// For a file that was made from `drawing`.
     pub(super) fn new(drawing: &'d Drawing) -> Self {
+        Self { is_origin: true, ..Self::of_itself(drawing) }
+    }
+
+    /// For the file that `drawing` was read from: what it says of copies is about the exemplar that it was made from itself.
+    pub(super) fn of_itself(drawing: &'d Drawing) -> Self {
         let elements = drawing.exemplar.elements.as_slice();
         let signature = |e: &Element<2>| (e.role == Role::Source).then(|| Signature::new(&e.outline)).flatten();
         let class_names = drawing.exemplar.classes.iter().map(|c| c.name.as_str()).collect();
@@ -197,13 +205,20 @@ impl<'d> Matcher<'d> {
         for (k, stroke) in drawing.strokes.iter().enumerate() {
             painted.entry(stroke.key()).or_insert(k);
         }
-        Self { drawing, elements, class_names, signatures: elements.iter().map(signature).collect(), painted }
+        Self {
+            drawing,
+            elements,
+            class_names,
+            signatures: elements.iter().map(signature).collect(),
+            painted,
+            is_origin: false,
+        }
     }
 
     /// The stroke as one painted like a curve of the exemplar: the one that it says where that is painted so but for its width, else
     /// the first that is painted exactly so.
     fn stroke(&self, path: &Path<2>, width: f64, stroke: &Stroke, meta: &Meta) -> Option<Drawn<2>> {
-        let stated = meta.curve.filter(|&k| {
+        let stated = meta.curve.filter(|_| self.is_origin).filter(|&k| {
             let known = self.drawing.strokes.get(k);
             known.is_some_and(|known| known.scaled(width / known.width).key() == stroke.key())
         });
@@ -222,7 +237,7 @@ impl<'d> Matcher<'d> {
 
     /// The element that a copy says it is: by its transform when its ink then lies where it should, else by its outline.
     fn stated(&self, item: &Item, whole: &Outline<2>) -> Option<(usize, Similarity<2>)> {
-        let source = item.meta.source?;
+        let source = item.meta.source.filter(|_| self.is_origin)?;
         let element = self.elements.get(source).filter(|e| e.role == Role::Source)?;
         if let [(parent, node)] = item.parts.as_slice() {
             let transform = similarity(*parent * node.transform);

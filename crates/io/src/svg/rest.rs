@@ -64,7 +64,7 @@ pub fn read_rest(text: &str, drawing: &Drawing, area: &Outline<2>, options: &Rea
         }
         let mut sorter = Sorter {
             inker: &inker,
-            matcher: Matcher::new(drawing),
+            matcher: Matcher::of_itself(drawing),
             area: Some(area),
             window: content.union(&page.view),
         };

@@ -38,9 +38,6 @@ const RIM: f64 = 0.3;
 /// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
 const MEMBERS: usize = 80;
 
-/// Least distance of a patch's middle from a hole of the exemplar, in patch radii.
-const FROM_HOLE: f64 = 0.7;
-
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
 
@@ -267,12 +264,7 @@ impl<'a, const D: usize> View<'a, D> {
         let mut centres = Vec::new();
         for (source, offset) in self.anchors(anchors) {
             let members = library.members(library.class[source as usize]);
-            // At the rim of a hole all that is known agrees with itself, and nothing is there to go on with.
-            let margin = FROM_HOLE * self.grower.params.patch;
-            let usable = |i: &u32| {
-                let centre = library.centre[*i as usize] - offset;
-                library.view.contains(centre) && library.view.from_hole(centre) >= margin
-            };
+            let usable = |i: &u32| library.view.contains(library.centre[*i as usize] - offset);
             if source < base || members.len() <= MEMBERS {
                 centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i as usize] - offset));
             } else {

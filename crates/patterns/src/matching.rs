@@ -15,9 +15,6 @@ use crate::{
     params::Matching,
 };
 
-/// Price of a sample that falls into a hole of the exemplar, in outlier distances.
-const IN_HOLE: f32 = 3.0;
-
 /// Cost of a sample that hard matching leaves without a partner, in squared outlier distances.
 const LEFT_OVER: f32 = 4.0;
 
@@ -34,7 +31,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) offset: Vector<D>,
     /// Weight by distance.
     pub(crate) weight: f32,
-    /// Whether it may be an outlier: frozen samples may not.
+    /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put them, and their neighbours
+    /// along the stroke serve as well.
     pub(crate) frozen: bool,
     /// Its edges, in exemplar directions and units.
     pub(crate) star: Star<D>,
@@ -121,15 +119,9 @@ impl<'a, const D: usize> Matcher<'a, D> {
         self.assignment.begin(near.len());
         for row in &around.rows {
             let outlier2 = level.outlier2[row.key as usize];
-            // Nobody knows what lies beyond the frame of the exemplar: half the price. What a hole hides is what is asked for: the rim of
-            // the hole, where all that is known agrees with itself, is no answer.
-            let place = origin + row.offset;
-            let price = match library.view.window.contains(place) {
-                false => 0.5,
-                true if library.view.contains(place) => 1.0,
-                true => IN_HOLE,
-            };
-            let alone = price * outlier2;
+            // Nobody knows what lies beyond the frame of the exemplar: half the price.
+            let seen = library.view.contains(origin + row.offset);
+            let alone = if seen { outlier2 } else { 0.5 * outlier2 };
             self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
             let offset = row.offset.0.map(|v| v as f32);
             for column in level.neighbours_of_key(i, row.key) {

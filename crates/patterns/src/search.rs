@@ -196,7 +196,7 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
             source: item.source,
             offset,
             weight: fall_off(offset, radius),
-            frozen: item.frozen.is_some(),
+            frozen: item.frozen.is_some() && item.source < state.level.base,
             star: state.star(other),
         });
     });

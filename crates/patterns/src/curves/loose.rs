@@ -41,6 +41,11 @@ impl Loose {
         loose
     }
 
+    /// Whether the exemplar has strokes with two free ends.
+    pub(crate) fn has_single(&self) -> bool {
+        self.single > 0.0
+    }
+
     /// Whether the free end `s` hangs farther than the exemplar's do.
     pub(crate) fn is_too_long<const D: usize>(&self, state: &State<'_, D>, s: u32) -> bool {
         let Some(&first) = state.links[s as usize].first() else { return false };

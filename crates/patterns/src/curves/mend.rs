@@ -46,7 +46,7 @@ pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> u
     let mut changed = tangle.undo(state, votes) + restore(state, net);
     for _ in 0..3 {
         let ends = false_ends(state, net, votes, &loose);
-        let joined = join(state, net, (votes, &tangle), &ends);
+        let joined = join(state, net, votes, (&loose, &tangle), &ends);
         changed += joined;
         if joined == 0 {
             break;
@@ -248,10 +248,11 @@ fn false_ends<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes,
 fn join<const D: usize>(
     state: &mut State<'_, D>,
     net: &Net<D>,
-    (votes, tangle): (&Votes, &Tangle),
+    votes: &Votes,
+    (loose, tangle): (&Loose, &Tangle),
     ends: &[u32],
 ) -> usize {
-    let mut wishes: Vec<(f64, u32, u32)> = ends.iter().flat_map(|&s| partners(state, net, votes, s)).collect();
+    let mut wishes: Vec<(f64, u32, u32)> = ends.iter().flat_map(|&s| partners(state, net, votes, loose, s)).collect();
     wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut taken = vec![false; state.samples.len()];
     let mut joined = 0;
@@ -268,12 +269,20 @@ fn join<const D: usize>(
 }
 
 /// What the end `s` could be joined to, with the cost in sampling distances.
-fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> Vec<(f64, u32, u32)> {
+fn partners<const D: usize>(
+    state: &State<'_, D>,
+    net: &Net<D>,
+    votes: &Votes,
+    loose: &Loose,
+    s: u32,
+) -> Vec<(f64, u32, u32)> {
     let position = state.samples[s as usize].position;
     let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
     let Some(&before) = state.links[s as usize].first() else { return Vec::new() };
     let way = direction(state.offset(before, s));
     let branches = net.branches();
+    // What is too long would only grow with another end of a stroke.
+    let takes_ends = expected(state, net, votes, s) > EXPECTED || !loose.has_single();
     let mut found = Vec::new();
     state.index.within(position, REACH * unit, |slot, offset| {
         let o = state.living[slot];
@@ -283,7 +292,7 @@ fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s
             return;
         }
         let degree = state.links[o as usize].len();
-        if degree == 0 {
+        if degree == 0 || (degree == 1 && !takes_ends) {
             return;
         }
         let wants = expected(state, net, votes, o) - degree as f64 > 0.4;

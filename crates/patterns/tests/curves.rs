@@ -165,6 +165,73 @@ fn what_the_user_drew_stays_and_is_joined() {
     assert!(joined >= 5, "{joined} of 6: {starts:?}");
 }
 
+/// What is left of a path outside a box, for horizontal and vertical lines that cross it once at most.
+fn outside(path: &Path<2>, hole: &Bounds<2>) -> Vec<Path<2>> {
+    let points = path.flatten(1e-3);
+    let parts = points.split(|p| hole.grown(-1e-9).contains(*p)).filter(|part| part.len() > 1);
+    parts.map(Path::polyline).collect()
+}
+
+/// Blocks of five lines each, across and down by turns, like a parquet floor.
+fn parquet(n: usize) -> Exemplar<2> {
+    let mut random = Stream::new(7, Stage::Test, 0);
+    let mut curves = Vec::new();
+    for block in 0..n * n {
+        let (i, j) = (block % n, block / n);
+        let corner = Vector::xy(22.0 * i as f64, 22.0 * j as f64);
+        for k in 0..5 {
+            let across = 4.0 * f64::from(k) + 3.0 + random.range(-0.4, 0.4);
+            // In small steps, so that a cut goes through a point.
+            let line: Vec<_> = (0..=18).map(|t| (2.0 + f64::from(t), across)).collect();
+            let turned =
+                line.iter().map(|&(a, b)| corner + if (i + j) % 2 == 0 { Vector::xy(a, b) } else { Vector::xy(b, a) });
+            curves.push(curve(&turned.collect::<Vec<_>>(), false));
+        }
+    }
+    exemplar(curves, page(22.0 * n as f64, 22.0 * n as f64))
+}
+
+/// Fills a hole of an exemplar from what lies around it, which stays.
+fn mended(whole: &Exemplar<2>, hole: Bounds<2>, seed: u64) -> Outcome<2> {
+    let left =
+        |c: &Curve<2>| outside(&c.path, &hole).into_iter().map(|path| Curve { path, ..c.clone() }).collect::<Vec<_>>();
+    let curves: Vec<_> = whole.curves.iter().flat_map(left).collect();
+    let kept =
+        curves.iter().enumerate().map(|(k, c)| Drawn { path: c.path.clone(), source: k, scale: 1.0, frozen: None });
+    let request =
+        Request { frozen_curves: kept.collect(), known: Some(whole.window), seed, ..Request::new(Domain::Box(hole)) };
+    let exemplar = Exemplar { hole: Some(hole), ..exemplar(curves, whole.window) };
+    fill(&exemplar, &Params::default(), &request)
+}
+
+#[test]
+fn a_hole_is_filled_from_what_is_around_it() {
+    let hole = Bounds::new(Vector::xy(30.0, 30.0), Vector::xy(70.0, 70.0));
+    let outcome = mended(&grid(10, 0.4), hole, 0);
+    let new: Vec<_> = outcome.curves.iter().filter(|d| d.frozen.is_none()).collect();
+    // Four lines each way, from side to side and not beyond.
+    assert!((8..=9).contains(&new.len()), "{}", new.len());
+    let inside = hole.grown(1e-6);
+    assert!(new.iter().all(|d| d.path.flatten(0.1).into_iter().all(|p| inside.contains(p))));
+    let ends: Vec<_> = new.iter().flat_map(|d| [d.path.start(), d.path.end()]).flatten().collect();
+    let is_cut = |d: &&Drawn<2>| d.frozen.is_some();
+    let cuts = outcome.curves.iter().filter(is_cut).flat_map(|d| [d.path.start(), d.path.end()]).flatten();
+    let on_hole: Vec<_> = cuts.filter(|p| hole.signed_distance(*p).abs() < 1e-6).collect();
+    let met = on_hole.iter().filter(|p| ends.contains(p)).count();
+    assert!(on_hole.len() == 16 && met >= 15, "{met} of {}", on_hole.len());
+}
+
+#[test]
+fn no_stroke_grows_longer_than_the_exemplar_shows() {
+    let hole = Bounds::new(Vector::xy(40.0, 40.0), Vector::xy(100.0, 100.0));
+    for seed in 0..3 {
+        let outcome = mended(&parquet(7), hole, seed);
+        let length = |d: &Drawn<2>| Measured::new(d.path.clone(), 1e-3).length();
+        let longest = outcome.curves.iter().map(length).fold(0.0, f64::max);
+        assert!(longest < 1.5 * 18.0, "seed {seed}: {longest}");
+    }
+}
+
 #[test]
 fn the_number_of_threads_makes_no_difference() {
     let exemplar = grid(6, 0.6);

@@ -239,6 +239,16 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_another_exemplar_do_not_count() {
+        let line = |y: u32, width: u32| {
+            format!("<path d='M0 {y}H100' stroke='red' stroke-width='{width}' data-arabesque-curve='0'/>")
+        };
+        let rest = rest(&[line(10, 1), line(20, 3), line(30, 1), line(50, 3)].concat()).unwrap();
+        let sources: Vec<_> = rest.placed.curves.iter().map(|c| (c.source, c.scale)).collect();
+        assert_eq!(sources, [(0, 1.0), (1, 1.0), (0, 1.0), (1, 1.0), (1, 1.0)]);
+    }
+
+    #[test]
     fn pieces_of_one_path_are_parted() {
         let squares = "M45 45h9v9h-9zM5 5h9v9h-9zM75 5h9v9h-9z";
         let rest = rest(&format!("<path d='{squares}'/>")).unwrap();

@@ -148,7 +148,8 @@ fn bridge<const D: usize>(
     let mut taken = vec![false; ends.len()];
     let mut joined = 0;
     for (_, i, j) in wishes {
-        if !taken[i] && !taken[j] && tangle.allows(state, ends[i], ends[j]) {
+        let is_bad = |a: u32, b: u32| !tangle.allows(state, a, b) || loose.forbids(state, a, b);
+        if !taken[i] && !taken[j] && !is_bad(ends[i], ends[j]) {
             (taken[i], taken[j]) = (true, true);
             state.links[ends[i] as usize].push(ends[j]);
             state.links[ends[j] as usize].push(ends[i]);
@@ -257,7 +258,7 @@ fn join<const D: usize>(
     let mut taken = vec![false; state.samples.len()];
     let mut joined = 0;
     for (_, a, b) in wishes {
-        if taken[a as usize] || taken[b as usize] || !tangle.allows(state, a, b) {
+        if taken[a as usize] || taken[b as usize] || !tangle.allows(state, a, b) || loose.forbids(state, a, b) {
             continue;
         }
         (taken[a as usize], taken[b as usize]) = (true, true);

@@ -1,6 +1,6 @@
 //! Paths of cubic Bézier segments: the geometry of a stroke.
 
-use crate::{Bounds, Similarity, Vector};
+use crate::space::{Bounds, Similarity, Vector};
 
 /// A cubic Bézier segment: start, two control points, end.
 pub type Cubic<const D: usize> = [Vector<D>; 4];

@@ -1,8 +1,8 @@
 //! Paths by arc length.
 
 use crate::{
-    Path, Vector,
-    path::{cubic_at, cubic_part, steps},
+    curve::path::{Path, cubic_at, cubic_part, steps},
+    space::Vector,
 };
 
 /// Where along a path something is.

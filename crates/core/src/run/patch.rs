@@ -1,6 +1,6 @@
 //! Pieces of a picture laid somewhere else.
 
-use crate::Vector;
+use crate::space::Vector;
 
 /// A quadrilateral that shows part of an exemplar picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

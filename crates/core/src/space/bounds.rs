@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use crate::Vector;
+use crate::space::Vector;
 
 /// An axis-aligned box, `min` to `max` in every coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]

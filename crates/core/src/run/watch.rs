@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::{Drawn, Patch, Placement};
+use crate::run::{Drawn, Patch, Placement};
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq)]

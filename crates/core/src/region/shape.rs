@@ -1,6 +1,9 @@
 //! Plane regions bounded by polygons.
 
-use crate::{Bounds, FillRule, Outline, Region, Ring, Vector};
+use crate::{
+    region::{FillRule, Outline, Region, Ring},
+    space::{Bounds, Vector},
+};
 
 /// One or several shapes with holes, ready for distance queries.
 ///
@@ -202,7 +205,7 @@ impl Region<2> for Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Stage, Stream};
+    use crate::random::{Stage, Stream};
 
     fn ring(n: usize, radius: f64) -> Ring<2> {
         (0..n)

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::{Bounds, Outline, Vector};
+use crate::{
+    region::Outline,
+    space::{Bounds, Vector},
+};
 
 /// A set of points with a boundary.
 pub trait Region<const D: usize>: Send + Sync + std::fmt::Debug {

@@ -9,7 +9,7 @@ use i_overlay::{
     },
 };
 
-use crate::{Bounds, Similarity, Vector};
+use crate::space::{Bounds, Similarity, Vector};
 
 /// Rounded corners are polygons with an edge for every so many radians.
 const ROUND: f64 = 0.1;

@@ -1,6 +1,9 @@
 //! Points in the cells of a uniform grid, for queries by radius.
 
-use crate::{Bounds, Domain, Vector};
+use crate::{
+    region::Domain,
+    space::{Bounds, Vector},
+};
 
 /// Point indices sorted by grid cell. On a torus the grid divides the period, and queries go around the back.
 #[derive(Clone, Debug)]
@@ -124,7 +127,7 @@ impl<const D: usize> GridIndex<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Stage, Stream};
+    use crate::random::{Stage, Stream};
 
     fn check(domain: &Domain<2>, radius: f64) {
         let mut s = Stream::new(3, Stage::Test, 0);

@@ -1,6 +1,6 @@
 //! Similarity transforms: turn, scale, shift.
 
-use crate::{Matrix, Vector};
+use crate::space::{Matrix, Vector};
 
 /// `p -> scale * rotation * p + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,9 @@
 //! What a run gives back.
 
-use crate::{Path, Similarity, Vector};
+use crate::{
+    curve::Path,
+    space::{Similarity, Vector},
+};
 
 /// One element of the output.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,11 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
-use crate::{Bounds, Domain, Drawn, Fields, Outline, Placement};
+use crate::{
+    field::Fields,
+    region::{Domain, Outline},
+    run::{Drawn, Placement},
+    space::Bounds,
+};
 
 /// What happens where elements meet the border of the domain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

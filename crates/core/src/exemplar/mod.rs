@@ -1,0 +1,171 @@
+//! The small example, already simplified.
+
+mod view;
+mod window;
+
+pub use view::View;
+
+use crate::{
+    curve::Path,
+    error::{Error, Result},
+    region::Outline,
+    space::{Bounds, Similarity, Vector},
+};
+use window::window_around;
+
+/// What an element of the exemplar may be used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// May be copied into the output.
+    Source,
+    /// Cut at the frame of the exemplar: it shows where something is, but is never copied.
+    Context,
+}
+
+/// One whole thing that is never broken: a leaf, a cherry pair with its stalk, a dot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element<const D: usize> {
+    /// Index into [`Exemplar::classes`].
+    pub class: usize,
+    /// Centre of area of the outline; the position of a point.
+    pub centre: Vector<D>,
+    /// From the coordinates of the first element of the class to those of this one, as well as a similarity can.
+    pub pose: Similarity<D>,
+    /// The ink.
+    pub outline: Outline<D>,
+    /// Mean colour of the ink, sRGB in [0, 1].
+    pub colour: [f64; 3],
+    /// Whether it may be copied.
+    pub role: Role,
+}
+
+/// One stroke of a continuous pattern: it may be cut anywhere, joined to others, and go on for ever.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve<const D: usize> {
+    /// The line that the stroke follows.
+    pub path: Path<D>,
+    /// Index into [`Exemplar::styles`].
+    pub style: usize,
+    /// Width of the stroke.
+    pub width: f64,
+    /// Colour of the stroke, sRGB in [0, 1].
+    pub colour: [f64; 3],
+}
+
+/// Elements that count as the same kind of thing, or curves painted alike.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Class {
+    /// Name for people: from the file where it has one, else made up (`class 3`).
+    pub name: String,
+}
+
+/// A set of elements and curves in a window.
+///
+/// Promises: at least one element with [`Role::Source`] or one curve; every coordinate finite; every class and style index valid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exemplar<const D: usize> {
+    /// The elements, in drawing order.
+    pub elements: Vec<Element<D>>,
+    /// The classes.
+    pub classes: Vec<Class>,
+    /// The curves, in drawing order.
+    pub curves: Vec<Curve<D>>,
+    /// Ways in which curves are painted.
+    pub styles: Vec<Class>,
+    /// The frame: inside it every element is known, outside it nothing is, but for elements that reach in.
+    pub window: Bounds<D>,
+    /// A part of the window of which nothing is known.
+    pub hole: Option<Bounds<D>>,
+}
+
+impl<const D: usize> Exemplar<D> {
+    /// An exemplar of elements alone.
+    ///
+    /// # Errors
+    /// As [`Exemplar::with_curves`].
+    pub fn new(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>, window: Bounds<D>) -> Result<Self> {
+        Self::with_curves(place, (elements, classes), (Vec::new(), Vec::new()), window)
+    }
+
+    /// Checks the promises.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with `place` when a promise is broken.
+    pub fn with_curves(
+        place: &str,
+        (elements, classes): (Vec<Element<D>>, Vec<Class>),
+        (curves, styles): (Vec<Curve<D>>, Vec<Class>),
+        window: Bounds<D>,
+    ) -> Result<Self> {
+        let fail = |problem: &str, advice: &str| Err(Error::input(place, problem, advice));
+        if elements.is_empty() && curves.is_empty() {
+            return fail("no element found", "draw a few shapes or groups that should be repeated");
+        }
+        let broken = |c: &Curve<D>| {
+            let bad = c.path.cubics.iter().flatten().any(|p| !p.is_finite());
+            bad || c.path.is_empty() || c.style >= styles.len() || !c.width.is_finite()
+        };
+        if curves.iter().any(broken) {
+            return fail("a curve has no length or no style", "remove curves with NaN or infinite coordinates");
+        }
+        if curves.is_empty() && elements.iter().all(|e| e.role == Role::Context) {
+            return fail(
+                "every element is cut by the frame",
+                "make the frame larger, or leave at least one element whole",
+            );
+        }
+        if elements.iter().any(|e| !e.centre.is_finite() || e.class >= classes.len()) {
+            return fail("an element has no position or no class", "remove elements with NaN or infinite coordinates");
+        }
+        if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
+            return fail("the frame has no area", "give the exemplar a width and a height");
+        }
+        Ok(Self { elements, classes, curves, styles, window, hole: None })
+    }
+
+    /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.
+    /// The window is the bounding box, grown until its density is that of the interior.
+    ///
+    /// # Errors
+    /// As [`Exemplar::new`].
+    pub fn from_points(place: &str, points: &[Vector<D>], class_of: &[usize], names: &[String]) -> Result<Self> {
+        let elements = points.iter().zip(class_of).map(|(&p, &class)| Element {
+            class,
+            centre: p,
+            pose: Similarity::shift(p),
+            outline: Outline::default(),
+            colour: [0.0; 3],
+            role: Role::Source,
+        });
+        let classes = names.iter().map(|name| Class { name: name.clone() }).collect();
+        Self::new(place, elements.collect(), classes, window_around(points))
+    }
+
+    /// What it shows.
+    pub fn view(&self) -> View<D> {
+        View { window: self.window, hole: self.hole }
+    }
+
+    /// Mean distance scale: (measure of what is shown / number of elements in it)^(1/D).
+    pub fn spacing(&self) -> f64 {
+        let view = self.view();
+        let inside = self.elements.iter().filter(|e| view.contains(e.centre)).count().max(1);
+        (view.measure() / inside as f64).powf(1.0 / D as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_exemplar_of_cut_elements_alone_is_refused() {
+        let mut e =
+            Exemplar::from_points("t", &[Vector::xy(0.0, 0.0), Vector::xy(1.0, 1.0)], &[0, 0], &["a".into()]).unwrap();
+        for element in &mut e.elements {
+            element.role = Role::Context;
+        }
+        let err = Exemplar::new("t", e.elements, e.classes, e.window).unwrap_err();
+        assert!(err.to_string().contains("cut by the frame"));
+    }
+}

@@ -1,0 +1,81 @@
+//! The window that a set of points was probably cut from.
+
+use crate::{
+    index::GridIndex,
+    region::Domain,
+    space::{Bounds, Vector},
+};
+
+/// Share of the estimated margin that is used: a window that is too large claims emptiness that nobody has seen, and thins the output.
+const KEPT_MARGIN: f64 = 0.15;
+
+/// The window that points were probably cut from: their bounding box, moved outwards so far that its density is that of the interior.
+///
+/// The interior density is one over the mean Voronoi cell of the points whose cell does not reach the bounding box. A lattice gets half
+/// its step around it, a random set nearly nothing; half the mean spacing serves when too few cells are whole.
+pub(super) fn window_around<const D: usize>(points: &[Vector<D>]) -> Bounds<D> {
+    let tight = Bounds::around(points.iter().copied());
+    let extent = tight.size().map(|s| s.max(1e-9));
+    let spacing = (extent.0.iter().product::<f64>() / points.len().max(1) as f64).powf(1.0 / D as f64);
+    let grown = |margin: f64| {
+        Bounds::new(tight.min - extent.map(|s| margin.min(0.5 * s)), tight.max + extent.map(|s| margin.min(0.5 * s)))
+    };
+    let Some(cell) = interior_cell(points, &tight, spacing) else {
+        return grown(0.5 * spacing);
+    };
+    let wanted = cell * points.len() as f64;
+    let (mut low, mut high) = (0.0, 1.5 * spacing);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if grown(middle).measure() < wanted { low = middle } else { high = middle }
+    }
+    grown(KEPT_MARGIN * low)
+}
+
+/// Mean measure of the Voronoi cells that do not reach the box, found by sampling; `None` when fewer than nine are whole.
+fn interior_cell<const D: usize>(points: &[Vector<D>], tight: &Bounds<D>, spacing: f64) -> Option<f64> {
+    let index = GridIndex::new(points, spacing, &Domain::Box(*tight));
+    let per_point = if points.len() > 20_000 { 16.0 } else { 128.0 };
+    let side = ((points.len() as f64 * per_point).powf(1.0 / D as f64).ceil() as usize).clamp(8, 4096);
+    let (mut hits, mut cut) = (vec![0_u32; points.len()], vec![false; points.len()]);
+    let size = tight.size();
+    for sample in 0..side.pow(D as u32) {
+        let (mut rest, mut rim) = (sample, false);
+        let p = Vector(std::array::from_fn(|k| {
+            let i = rest % side;
+            rest /= side;
+            rim |= i == 0 || i == side - 1;
+            tight.min[k] + size[k] * (i as f64 + 0.5) / side as f64
+        }));
+        let (nearest, _) = (0..6).find_map(|n| index.nearest(p, spacing * f64::from(1 << n), None))?;
+        hits[nearest] += 1;
+        cut[nearest] |= rim;
+    }
+    let whole: Vec<f64> = (0..points.len()).filter(|&i| !cut[i]).map(|i| f64::from(hits[i])).collect();
+    let sample_measure = tight.measure() / side.pow(D as u32) as f64;
+    (whole.len() >= 9).then(|| whole.iter().sum::<f64>() / whole.len() as f64 * sample_measure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        exemplar::Exemplar,
+        random::{Stage, Stream},
+    };
+
+    #[test]
+    fn the_window_of_a_grid_gives_back_its_spacing() {
+        let points: Vec<_> = (0..100).map(|i| Vector::xy(f64::from(i % 10), f64::from(i / 10))).collect();
+        let e = Exemplar::from_points("t", &points, &[0; 100], &["a".into()]).unwrap();
+        assert!((e.spacing() - 0.915).abs() < 0.02, "{}", e.spacing());
+    }
+
+    #[test]
+    fn the_window_of_random_points_is_hardly_larger_than_their_box() {
+        let mut random = Stream::new(5, Stage::Test, 0);
+        let points: Vec<_> = (0..400).map(|_| Vector::xy(random.unit(), random.unit())).collect();
+        let e = Exemplar::from_points("t", &points, &[0; 400], &["a".into()]).unwrap();
+        assert!((e.window.measure() - 1.0).abs() < 0.06, "{:?}", e.window);
+    }
+}

@@ -1,0 +1,5 @@
+//! Points sorted by where they lie.
+
+mod grid;
+
+pub use grid::GridIndex;

@@ -1,0 +1,11 @@
+//! What a run is asked, what it tells on the way, and what it gives back.
+
+mod outcome;
+mod patch;
+mod request;
+mod watch;
+
+pub use outcome::{Drawn, EnergyPoint, Outcome, Placement, StopReason, Warning};
+pub use patch::Patch;
+pub use request::{Border, Request};
+pub use watch::{Observer, Preview, Progress, Unobserved};

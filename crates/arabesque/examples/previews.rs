@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use arabesque::{Input, Observer, Progress, Recipe, core::Preview, in_pool};
+use arabesque::{Input, Progress, Recipe, Snapshot, in_pool};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -25,10 +25,10 @@ struct Watch {
     shown: Vec<(Duration, Duration)>,
 }
 
-impl Observer<2> for Watch {
-    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Preview<2>) -> ControlFlow<()> {
+impl arabesque::Watch<Snapshot<2>> for Watch {
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Snapshot<2>) -> ControlFlow<()> {
         let now = self.started.elapsed();
-        self.offers.push((now, *progress));
+        self.offers.push((now, progress.clone()));
         if self.shown.last().is_none_or(|(last, _)| now >= *last + PAUSE) {
             let built = preview();
             if !built.placements.is_empty() || !built.curves.is_empty() {
@@ -81,14 +81,6 @@ fn report(watch: &Watch, total: Duration) {
     }
     waits.sort_by_key(|wait| std::cmp::Reverse(wait.0));
     for (wait, at, p) in waits.iter().take(5) {
-        println!(
-            "  {:4} ms without an offer before {} ms: level {} of {}, iteration {} of {}",
-            wait.as_millis(),
-            at.as_millis(),
-            p.level + 1,
-            p.levels,
-            p.iteration,
-            p.iterations
-        );
+        println!("  {:4} ms without an offer before {} ms: {p}", wait.as_millis(), at.as_millis());
     }
 }

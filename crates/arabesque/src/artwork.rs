@@ -1,6 +1,6 @@
 //! Results, and the files they are written as.
 
-use arabesque_core::{Drawn, Error, Limits, Observer, Outcome, Result, StopReason, Warning};
+use arabesque_core::{Drawn, Error, Limits, Outcome, Result, Snapshot, StopReason, Warning, Watch};
 use arabesque_io::{
     csv, json,
     png::{Plate, Resolution, write_png},
@@ -33,12 +33,12 @@ impl Prepared {
     ///
     /// # Errors
     /// [`Error::NoResult`] when nothing can be placed, [`Error::Limit`] when a limit is reached.
-    pub fn run(&self, seed: u64, observer: &mut dyn Observer<2>) -> Result<Artwork<'_>> {
+    pub fn run(&self, seed: u64, watch: &mut dyn Watch<Snapshot<2>>) -> Result<Artwork<'_>> {
         let mut request = self.request.clone();
         request.seed = seed;
-        let mut outcome = self.engine.run(&request, observer)?;
+        let mut outcome = self.engine.run(&request, watch)?;
         let is_empty = outcome.placements.is_empty() && outcome.curves.is_empty();
-        if is_empty && outcome.stopped == StopReason::Observer {
+        if is_empty && outcome.stopped == StopReason::Stopped {
             return Err(Error::no_result("stopped before anything was placed", "give it more time"));
         }
         if is_empty {

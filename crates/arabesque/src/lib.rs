@@ -44,7 +44,7 @@ pub use arabesque_patterns as patterns;
 pub use arabesque_ribbons as ribbons;
 
 pub use arabesque_core::{
-    EnergyPoint, Error, Limits, Observer, Outcome, Progress, Result, StopReason, Unobserved, Warning,
+    EnergyPoint, Error, Limits, Outcome, Progress, Result, Snapshot, StopReason, Unobserved, Warning, Watch,
 };
 pub use arabesque_io::nearest::nearest;
 pub use artwork::{Artwork, Encoded};

@@ -2,7 +2,9 @@
 
 use std::path::Path as FilePath;
 
-use arabesque_core::{Bounds, Error, Image, Limits, Observer, Outline, Path, Result, StopReason, Vector, Warning};
+use arabesque_core::{
+    Bounds, Error, Image, Limits, Outline, Path, Result, Snapshot, StopReason, Vector, Warning, Watch,
+};
 use arabesque_io::{
     file,
     image::{self, Alpha},
@@ -400,14 +402,18 @@ impl RibbonPrepared {
     ///
     /// # Errors
     /// [`Error::NoResult`] where no part of an exemplar is valid for a piece, [`Error::Limit`] when a limit is reached.
-    pub fn run(&self, seed: u64, observer: &mut (impl Observer<2> + Observer<3>)) -> Result<RibbonArtwork<'_>> {
+    pub fn run(
+        &self,
+        seed: u64,
+        watch: &mut (impl Watch<Snapshot<2>> + Watch<Snapshot<3>>),
+    ) -> Result<RibbonArtwork<'_>> {
         let (laid, warnings, stopped) = match &self.track {
             Track::Plane { request, .. } => {
-                let outcome = self.engine.run(&ribbons::Request { seed, ..request.clone() }, observer)?;
+                let outcome = self.engine.run(&ribbons::Request { seed, ..request.clone() }, watch)?;
                 (Laid::Plane(outcome.ribbons), outcome.warnings, outcome.stopped)
             }
             Track::Space { request } => {
-                let outcome = self.engine.run_in_space(&ribbons::Request { seed, ..request.clone() }, observer)?;
+                let outcome = self.engine.run_in_space(&ribbons::Request { seed, ..request.clone() }, watch)?;
                 (Laid::Space(outcome.ribbons), outcome.warnings, outcome.stopped)
             }
         };

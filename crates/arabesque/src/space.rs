@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use arabesque_core::{
-    Bounds, Domain, Error, Exemplar, Limits, Observer, Outcome, Request, Result, ScalarField, StopReason, Vector,
-    Warning,
+    Bounds, Domain, Error, Exemplar, Limits, Outcome, Request, Result, ScalarField, Snapshot, StopReason, Vector,
+    Warning, Watch,
 };
 use arabesque_io::{csv, json, obj};
 use arabesque_patterns::Prepared as Engine;
@@ -197,13 +197,13 @@ impl SpacePrepared {
     ///
     /// # Errors
     /// [`Error::NoResult`] when nothing can be placed, [`Error::Limit`] when a limit is reached.
-    pub fn run(&self, seed: u64, observer: &mut dyn Observer<3>) -> Result<SpaceArtwork<'_>> {
+    pub fn run(&self, seed: u64, watch: &mut dyn Watch<Snapshot<3>>) -> Result<SpaceArtwork<'_>> {
         let mut request = self.request.clone();
         request.seed = seed;
-        let mut outcome = self.engine.run(&request, observer)?;
+        let mut outcome = self.engine.run(&request, watch)?;
         if outcome.placements.is_empty() && outcome.curves.is_empty() {
             return Err(match outcome.stopped {
-                StopReason::Observer => Error::no_result("stopped before anything was placed", "give it more time"),
+                StopReason::Stopped => Error::no_result("stopped before anything was placed", "give it more time"),
                 StopReason::Finished => Error::no_result("nothing fits the box", "make it larger"),
             });
         }

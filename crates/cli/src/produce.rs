@@ -12,7 +12,7 @@ use crate::{
     control::{self, Deadline, is_interrupted},
     duration,
     failure::{Failure, INTERRUPTED},
-    progress::{Steps, Watch},
+    progress::Watch,
     say::{self, Level},
     summary::{self, Message, Output, Ribbons, Summary},
 };
@@ -164,14 +164,6 @@ impl Ready {
         })
     }
 
-    /// What the progress bar counts.
-    fn steps(&self) -> Steps {
-        match self {
-            Self::Plane(_) | Self::Space(_) => Steps::Iterations,
-            Self::Ribbon(_) => Steps::Pieces,
-        }
-    }
-
     /// What was understood of the exemplar, in words.
     fn exemplar(&self) -> String {
         let ((elements, classes), (curves, styles)) = match self {
@@ -270,7 +262,7 @@ fn make(
     output: &OutputOptions,
     (level, time_limit): (Level, Option<Duration>),
 ) -> Result<Output, Failure> {
-    let mut watch = Watch::new(level, Deadline::after(time_limit), ready.steps());
+    let mut watch = Watch::new(level, Deadline::after(time_limit));
     let ran = ready.run(plan.seed, output, &mut watch);
     watch.finish();
     let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };
@@ -295,8 +287,8 @@ fn describe(ran: Ran, plan: &Plan, output: &OutputOptions, elapsed: Duration) ->
         energy: ran.energy.last().map(|e| e.energy),
         stopped: match ran.stopped {
             StopReason::Finished => "finished",
-            StopReason::Observer if is_interrupted() => "interrupted",
-            StopReason::Observer => "time limit",
+            StopReason::Stopped if is_interrupted() => "interrupted",
+            StopReason::Stopped => "time limit",
         },
         seconds: elapsed.as_secs_f64(),
         warnings: ran.warnings.iter().map(Message::from).collect(),

@@ -8,7 +8,7 @@
 //! | request | [`Request`]: domain, border, fields, frozen parts, seed |
 //! | outcome | [`Outcome`]: [`Placement`]s and [`Drawn`] curves, energy trace, warnings |
 //!
-//! Methods take an exemplar and a request, tell an [`Observer`] how they fare, and return an outcome.
+//! Methods take an exemplar and a request, tell whoever keeps [`Watch`] how they fare, and return an outcome.
 //! Nothing here reads files, prints, or synthesises.
 
 mod curve;
@@ -33,7 +33,7 @@ pub use limits::Limits;
 pub use random::{Stage, Stream};
 pub use region::{Domain, FillRule, Outline, Region, Ring, Shape, ring_area};
 pub use run::{
-    Border, Drawn, EnergyPoint, Observer, Outcome, Patch, Placement, Preview, Progress, Request, StopReason,
-    Unobserved, Warning,
+    Border, Drawn, EnergyPoint, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason, Unobserved,
+    Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Vector};

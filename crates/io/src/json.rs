@@ -114,7 +114,7 @@ pub fn write_json<const D: usize>(
         warnings: outcome.warnings.iter().map(|w| WarningRecord { message: &w.message, advice: &w.advice }).collect(),
         stopped: match outcome.stopped {
             StopReason::Finished => "finished",
-            StopReason::Observer => "early",
+            StopReason::Stopped => "early",
         },
         recipe: frame.recipe,
     };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Exemplar, Limits, Observer, Outcome, Request, Result, Role, StopReason, Warning};
+use arabesque_core::{Error, Exemplar, Limits, Outcome, Request, Result, Role, Snapshot, StopReason, Warning, Watch};
 
 use crate::{
     clearance::{self, ExemplarClearance},
@@ -115,7 +115,7 @@ impl<const D: usize> Prepared<D> {
     /// # Errors
     /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too large;
     /// [`Error::NoResult`] when nothing fits into the domain.
-    pub fn run(&self, request: &Request<D>, observer: &mut dyn Observer<D>) -> Result<Outcome<D>> {
+    pub fn run(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
         let (levels, mut warnings) = self.usable_levels(request);
         let iterations = if levels.is_empty() { 0 } else { self.params.iterations };
         // Where no neighbourhood fits, the first layout is all there can be.
@@ -146,7 +146,7 @@ impl<const D: usize> Prepared<D> {
         let stands: Vec<_> = levels.iter().enumerate().map(stand).collect();
         let run = Run { prepared: self, request, stands, iterations };
         let mut trace = Vec::new();
-        let (mut found, flow) = run.synthesise(&mut trace, observer);
+        let (mut found, flow) = run.synthesise(&mut trace, watch);
         let last = &extents[extents.len() - 1];
         warnings.extend(finish::mend(&mut found.placements, self.clearance.as_ref(), (request, last), &self.params));
         if found.placements.is_empty() && found.curves.is_empty() {
@@ -156,7 +156,7 @@ impl<const D: usize> Prepared<D> {
                 "make the domain larger, lower the scale, or allow elements to cross its border",
             ));
         }
-        let stopped = if flow.is_break() { StopReason::Observer } else { StopReason::Finished };
+        let stopped = if flow.is_break() { StopReason::Stopped } else { StopReason::Finished };
         Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Drawn, EnergyPoint, Matrix, Observer, Preview, Progress, Request};
+use arabesque_core::{Drawn, EnergyPoint, Matrix, Progress, Request, Snapshot, Watch};
 
 use crate::{
     attributes,
@@ -64,12 +64,12 @@ struct Finished<const D: usize> {
 }
 
 impl<const D: usize> Run<'_, D> {
-    /// Everything up to the clearance check, in the state in which the observer left it.
+    /// Everything up to the clearance check, in the state in which it was stopped.
     pub(crate) fn synthesise(
         &self,
         trace: &mut Vec<EnergyPoint>,
-        observer: &mut dyn Observer<D>,
-    ) -> (Preview<D>, ControlFlow<()>) {
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> (Snapshot<D>, ControlFlow<()>) {
         let mut flow = ControlFlow::Continue(());
         let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
         let from_noise = self.prepared.params.initialisation == Initialisation::WhiteNoise;
@@ -77,7 +77,7 @@ impl<const D: usize> Run<'_, D> {
             let frozen = frozen::draft(self.request, stand.setting);
             let layout = self.layout(stand);
             (done.draft, flow) = layout.initialise(frozen, &mut |items, share| {
-                observer.step(&self.laid_out(items.len(), share), &|| self.layout_preview(stand, items))
+                watch.step(&self.laid_out(items.len(), share), &|| self.layout_preview(stand, items))
             });
             if !from_noise {
                 done.draft = self.coarsened(&done.draft);
@@ -87,7 +87,7 @@ impl<const D: usize> Run<'_, D> {
             if flow.is_break() && k > 0 {
                 break;
             }
-            (done, flow) = self.level((k, &done.draft), flow, trace, observer);
+            (done, flow) = self.level((k, &done.draft), flow, trace, watch);
         }
         (self.result(&done), flow)
     }
@@ -117,25 +117,24 @@ impl<const D: usize> Run<'_, D> {
         }
     }
 
-    fn result(&self, done: &Finished<D>) -> Preview<D> {
-        let Some(stand) = self.stands.last() else { return Preview::default() };
+    fn result(&self, done: &Finished<D>) -> Snapshot<D> {
+        let Some(stand) = self.stands.last() else { return Snapshot::default() };
         let mut placements =
             finish::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
         for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
             placement.control.clone_from(control);
         }
-        Preview { placements, curves: done.curves.clone(), ..Preview::default() }
+        Snapshot { placements, curves: done.curves.clone(), ..Snapshot::default() }
     }
 
     fn laid_out(&self, elements: usize, share: f64) -> Progress {
         Progress {
-            level: 0,
-            levels: self.stands.len(),
-            iteration: 0,
-            iterations: self.iterations,
+            stage: "laying out".into(),
+            done: (100.0 * share) as usize,
+            total: 100,
             fraction: LAYOUT_SHARE * share,
             energy: None,
-            elements,
+            count: elements,
         }
     }
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
@@ -170,23 +169,22 @@ impl<const D: usize> Run<'_, D> {
         let (levels, expected) = (self.stands.len(), self.iterations.max(1));
         let within = (done as f64 / expected as f64).min(1.0);
         Progress {
-            level: k,
-            levels,
-            iteration: done,
+            stage: format!("level {} of {levels}", k + 1).into(),
+            done,
             // A second round on the same level is more than was expected.
-            iterations: self.iterations * done.div_ceil(expected).max(1),
+            total: self.iterations * done.div_ceil(expected).max(1),
             fraction: (LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * (k as f64 + within) / levels as f64).min(1.0),
             energy: (done > 0).then(|| state.energy()),
-            elements: state.count(),
+            count: state.count(),
         }
     }
 
     /// The elements alone: strokes are not known before the samples are joined.
-    fn layout_preview(&self, stand: &Stand<'_, D>, items: &[Item<D>]) -> Preview<D> {
+    fn layout_preview(&self, stand: &Stand<'_, D>, items: &[Item<D>]) -> Snapshot<D> {
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
         let placements = finish::placements(&items, self.request, stand.extent, stand.setting.level.base);
         let state = self.state(stand, &Draft { items, links: Vec::new() });
-        Preview { placements, curves: self.strokes(state), ..Preview::default() }
+        Snapshot { placements, curves: self.strokes(state), ..Snapshot::default() }
     }
 
     fn state<'s>(&'s self, stand: &Stand<'s, D>, draft: &Draft<D>) -> State<'s, D> {
@@ -200,20 +198,20 @@ impl<const D: usize> Run<'_, D> {
         (k, draft): (usize, &Draft<D>),
         mut flow: ControlFlow<()>,
         trace: &mut Vec<EnergyPoint>,
-        observer: &mut dyn Observer<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
     ) -> (Finished<D>, ControlFlow<()>) {
         let stand = &self.stands[k];
         let mut state = self.state(stand, draft);
         curves::link_sources(&mut state);
         if k > 0 && flow.is_continue() {
             // Handing over takes as long as iterations do, and strokes have come out finer.
-            flow = observer.step(&self.progress(k, 0, &state), &|| self.snapshot(stand, &state));
+            flow = watch.step(&self.progress(k, 0, &state), &|| self.snapshot(stand, &state));
         }
         if flow.is_continue() {
-            flow = self.refine((k, 0), &mut state, trace, observer);
+            flow = self.refine((k, 0), &mut state, trace, watch);
         }
         if k == 0 && flow.is_continue() && self.may_regrow() {
-            flow = self.regrow(&mut state, trace, observer);
+            flow = self.regrow(&mut state, trace, watch);
         }
         let params = &self.prepared.params;
         if params.existence == Existence::Voted && flow.is_continue() {
@@ -234,7 +232,7 @@ impl<const D: usize> Run<'_, D> {
         &'s self,
         state: &mut State<'s, D>,
         trace: &mut Vec<EnergyPoint>,
-        observer: &mut dyn Observer<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
     ) -> ControlFlow<()> {
         let (Some(nucleus), Some(stand)) = (grains::nucleus(state), self.stands.first()) else {
             return ControlFlow::Continue(());
@@ -242,12 +240,12 @@ impl<const D: usize> Run<'_, D> {
         let known = self.progress(0, self.iterations, state);
         let frozen = frozen::draft(self.request, stand.setting);
         let (draft, flow) = self.layout(stand).regrow(frozen, &nucleus.items, &mut |items, _| {
-            observer.step(&Progress { elements: items.len(), ..known }, &|| self.layout_preview(stand, items))
+            watch.step(&Progress { count: items.len(), ..known.clone() }, &|| self.layout_preview(stand, items))
         });
         *state = self.state(stand, &draft);
         curves::link_sources(state);
         flow?;
-        self.refine((0, self.iterations), state, trace, observer)
+        self.refine((0, self.iterations), state, trace, watch)
     }
 
     /// Iterations at level `k`; `before` is how many there were already.
@@ -256,13 +254,13 @@ impl<const D: usize> Run<'_, D> {
         (k, before): (usize, usize),
         state: &mut State<'_, D>,
         trace: &mut Vec<EnergyPoint>,
-        observer: &mut dyn Observer<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
     ) -> ControlFlow<()> {
         for iteration in before..before + self.iterations {
             let searched = search::search(state, &self.search_params(k, iteration));
             trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
             let changed = self.assign(state, &self.stands[k], self.floor(k, iteration));
-            observer.step(&self.progress(k, iteration + 1, state), &|| self.snapshot(&self.stands[k], state))?;
+            watch.step(&self.progress(k, iteration + 1, state), &|| self.snapshot(&self.stands[k], state))?;
             if !changed || searched == 0 {
                 break;
             }
@@ -350,13 +348,13 @@ impl<const D: usize> Run<'_, D> {
         curves::draw(&state, &chains)
     }
 
-    fn snapshot(&self, stand: &Stand<'_, D>, state: &State<'_, D>) -> Preview<D> {
+    fn snapshot(&self, stand: &Stand<'_, D>, state: &State<'_, D>) -> Snapshot<D> {
         let base = state.level.base;
         let mut placements = finish::placements(&living(state), self.request, stand.extent, base);
         for (placement, control) in placements.iter_mut().zip(finish::bends(state).into_iter().flatten()) {
             placement.control = control;
         }
-        Preview { placements, curves: self.strokes(state.clone()), ..Preview::default() }
+        Snapshot { placements, curves: self.strokes(state.clone()), ..Snapshot::default() }
     }
 }
 

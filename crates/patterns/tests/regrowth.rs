@@ -98,13 +98,13 @@ fn the_number_of_threads_makes_no_difference() {
 #[test]
 fn progress_never_goes_back() {
     struct Fractions(Vec<f64>);
-    impl arabesque_core::Observer<2> for Fractions {
+    impl arabesque_core::Watch<arabesque_core::Snapshot<2>> for Fractions {
         fn step(
             &mut self,
             progress: &arabesque_core::Progress,
-            _: &dyn Fn() -> arabesque_core::Preview<2>,
+            _: &dyn Fn() -> arabesque_core::Snapshot<2>,
         ) -> std::ops::ControlFlow<()> {
-            assert!(progress.iteration <= progress.iterations, "{progress:?}");
+            assert!(progress.done <= progress.total, "{progress:?}");
             self.0.push(progress.fraction);
             std::ops::ControlFlow::Continue(())
         }

@@ -5,8 +5,8 @@
 use std::ops::ControlFlow;
 
 use arabesque_core::{
-    Border, Bounds, Domain, Exemplar, Fields, FillRule, Matrix, Observer, OrientationField, Outcome, Placement,
-    Preview, Progress, Region, Request, ScalarField, Shape, Similarity, StopReason, Unobserved, Vector,
+    Border, Bounds, Domain, Exemplar, Fields, FillRule, Matrix, OrientationField, Outcome, Placement, Progress, Region,
+    Request, ScalarField, Shape, Similarity, Snapshot, StopReason, Unobserved, Vector, Watch,
 };
 use arabesque_patterns::{Params, Prepared};
 
@@ -189,8 +189,8 @@ struct Stopper {
     preview: usize,
 }
 
-impl Observer<2> for Stopper {
-    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Preview<2>) -> ControlFlow<()> {
+impl Watch<Snapshot<2>> for Stopper {
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Snapshot<2>) -> ControlFlow<()> {
         self.steps += 1;
         self.preview = preview().placements.len();
         assert!((0.0..=1.0).contains(&progress.fraction));
@@ -204,7 +204,7 @@ fn an_observer_sees_previews_and_may_stop() {
     let mut observer = Stopper { steps: 0, preview: 0 };
     let prepared = Prepared::new(&exemplar, &Params::default()).unwrap();
     let outcome = prepared.run(&Request::new(page(15.0, 15.0)), &mut observer).unwrap();
-    assert_eq!(outcome.stopped, StopReason::Observer);
+    assert_eq!(outcome.stopped, StopReason::Stopped);
     assert!(observer.steps > 1 && observer.preview > 100);
     assert!(!outcome.placements.is_empty());
 }

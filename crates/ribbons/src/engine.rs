@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Observer, Patch, Path, Preview, Progress, Result, StopReason, Vector, Warning};
+use arabesque_core::{Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
 
 use crate::{
     cage::Cage,
@@ -105,8 +105,8 @@ impl Prepared {
     /// # Errors
     /// [`arabesque_core::Error::NoResult`] names a piece for which no part of the exemplar is valid; [`arabesque_core::Error::Input`] and [`arabesque_core::Error::Limit`] a curve that
     /// cannot be used.
-    pub fn run(&self, request: &Request<2>, observer: &mut dyn Observer<2>) -> Result<Outcome<2>> {
-        self.resume(request, &Memory::default(), observer)
+    pub fn run(&self, request: &Request<2>, watch: &mut dyn Watch<Snapshot<2>>) -> Result<Outcome<2>> {
+        self.resume(request, &Memory::default(), watch)
     }
 
     /// The same as [`Prepared::run`], and the same result, taking over from an earlier run what did not change: the pieces before the
@@ -114,13 +114,18 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Prepared::run`].
-    pub fn resume(&self, request: &Request<2>, before: &Memory, observer: &mut dyn Observer<2>) -> Result<Outcome<2>> {
+    pub fn resume(
+        &self,
+        request: &Request<2>,
+        before: &Memory,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Outcome<2>> {
         let along = |(name, path): &(String, Path<2>)| {
             Cage::along(path, &self.params, self.full.height as f64, self.scale(), name)
         };
         let cages = request.curves.iter().map(along).collect::<Result<Vec<_>>>()?;
         let free = forbidden(&cages, request.avoid.as_ref());
-        let mut outcome = self.lay(&cages, free, request, before, observer)?;
+        let mut outcome = self.lay(&cages, free, request, before, watch)?;
         for (ribbon, cage) in outcome.ribbons.iter_mut().zip(&cages) {
             self.spare(ribbon, cage, request.avoid.as_ref());
         }
@@ -131,13 +136,13 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Prepared::run`].
-    pub fn run_in_space(&self, request: &Request<3>, observer: &mut dyn Observer<3>) -> Result<Outcome<3>> {
+    pub fn run_in_space(&self, request: &Request<3>, watch: &mut dyn Watch<Snapshot<3>>) -> Result<Outcome<3>> {
         let along = |(name, path): &(String, Path<3>)| {
             Cage::in_space(path, &self.params, self.full.height as f64, self.scale(), name)
         };
         let cages = request.curves.iter().map(along).collect::<Result<Vec<_>>>()?;
         let free = cages.iter().map(|cage| vec![Vec::new(); cage.len()]).collect();
-        self.lay(&cages, free, request, &Memory::default(), observer)
+        self.lay(&cages, free, request, &Memory::default(), watch)
     }
 
     /// User units a pixel of the search.
@@ -151,7 +156,7 @@ impl Prepared {
         free: Vec<Vec<Vec<crate::valid::Offset>>>,
         request: &Request<D>,
         before: &Memory,
-        observer: &mut dyn Observer<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<Outcome<D>> {
         let basis = Basis { params: self.params.clone(), seed: request.seed, exemplars: Arc::clone(&self.exemplars) };
         let known = before.basis.as_ref() == Some(&basis);
@@ -172,16 +177,15 @@ impl Prepared {
             let solution = self.solve(cage, &demands, (name, request.seed), rows, &mut |rows, energy, path| {
                 let iteration = done + rows;
                 let progress = Progress {
-                    level: 0,
-                    levels: 1,
-                    iteration,
-                    iterations: total,
+                    stage: "laying pieces".into(),
+                    done: iteration,
+                    total,
                     fraction: iteration as f64 / total as f64,
                     energy: Some(energy),
-                    elements: iteration,
+                    count: iteration,
                 };
-                let preview = || Preview { patches: self.preview(finished, cage, &path()), ..Preview::default() };
-                observer.step(&progress, &preview).is_continue()
+                let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };
+                watch.step(&progress, &preview).is_continue()
             })?;
             done += cage.len();
             memory.resumed += solution.resumed;
@@ -189,7 +193,7 @@ impl Prepared {
             outcome.ribbons.push(self.ribbon(cage, &solution));
             memory.curves.push(solution.kept);
             if solution.stopped {
-                outcome.stopped = StopReason::Observer;
+                outcome.stopped = StopReason::Stopped;
                 break;
             }
         }

@@ -5,7 +5,7 @@
 use std::ops::ControlFlow;
 
 use arabesque_core::{
-    Bounds, Error, Image, Observer, Path, Preview, Progress, Stage, StopReason, Stream, Unobserved, Vector, straight,
+    Bounds, Error, Image, Path, Progress, Snapshot, Stage, StopReason, Stream, Unobserved, Vector, Watch, straight,
 };
 use arabesque_ribbons::{Canvas, Closing, Exemplar, Mask, Outcome, Params, Prepared, Request, Search, Width, render};
 use proptest::prelude::*;
@@ -241,9 +241,9 @@ fn repetition_is_penalised() {
 
 struct StopAfter(usize, usize);
 
-impl Observer<2> for StopAfter {
-    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Preview<2>) -> ControlFlow<()> {
-        assert_eq!(preview().patches.len(), progress.elements);
+impl Watch<Snapshot<2>> for StopAfter {
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Snapshot<2>) -> ControlFlow<()> {
+        assert_eq!(preview().patches.len(), progress.count);
         self.1 += 1;
         if self.1 == self.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -253,7 +253,7 @@ impl Observer<2> for StopAfter {
 fn a_run_that_is_stopped_gives_back_the_ribbon_so_far() {
     let prepared = Prepared::new(vec![strip(60, 24, 1)], plain()).unwrap();
     let outcome = prepared.run(&request(line(&[(0.0, 20.0), (120.0, 20.0)])), &mut StopAfter(7, 0)).unwrap();
-    assert_eq!((outcome.ribbons[0].pieces.len(), outcome.stopped), (7, StopReason::Observer));
+    assert_eq!((outcome.ribbons[0].pieces.len(), outcome.stopped), (7, StopReason::Stopped));
 }
 
 #[test]

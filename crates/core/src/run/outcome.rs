@@ -50,8 +50,8 @@ pub struct EnergyPoint {
 pub enum StopReason {
     /// All planned iterations were done, or nothing changed any more.
     Finished,
-    /// The observer asked to stop.
-    Observer,
+    /// Whoever watched the run asked to stop.
+    Stopped,
 }
 
 /// Trouble that does not prevent a result.

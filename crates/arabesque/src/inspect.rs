@@ -9,11 +9,9 @@ use arabesque_io::{
 use serde::Serialize;
 
 use crate::{
-    Format, Input, Subject,
-    recipe::Method,
-    size::unit_name,
-    spacing::{length, spacing},
-    subject::dots,
+    Format, Input, LoadedExemplar, Method, Resources,
+    prepare::{length, points_as_drawing, spacing},
+    recipe::unit_name,
 };
 
 /// What was understood of an exemplar.
@@ -53,7 +51,7 @@ pub struct Report {
     /// Layers that make the file a whole job.
     pub layers: Vec<&'static str>,
     /// What was noticed while reading.
-    pub warnings: Vec<WarningReport>,
+    pub warnings: Vec<Warning>,
     /// The picture of what was understood.
     #[serde(skip)]
     drawing: Option<Drawing>,
@@ -87,50 +85,34 @@ pub struct StyleReport {
     pub width: f64,
 }
 
-/// A warning.
-#[derive(Clone, Debug, Serialize)]
-pub struct WarningReport {
-    /// What was noticed.
-    pub message: String,
-    /// What to do about it.
-    pub advice: String,
-}
-
-impl From<&Warning> for WarningReport {
-    fn from(w: &Warning) -> Self {
-        Self { message: w.message.clone(), advice: w.advice.clone() }
-    }
-}
-
 /// Neighbours that a neighbourhood of the suggested radius holds on average.
 const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 
 /// Reads an exemplar and says what was understood.
 ///
 /// # Errors
-/// As [`Subject::read`] and [`Input::read`].
-pub fn inspect(input: &Input, method: Method) -> Result<Report> {
-    let limits = Limits::default();
-    let bytes = input.read(None, &limits)?;
-    Ok(match Subject::read(input, &bytes, method, &limits)? {
-        Subject::Drawing(drawing) => {
+/// As [`LoadedExemplar::read`] and [`Resources::read`].
+pub fn inspect(input: &Input, method: Method, resources: &Resources) -> Result<Report> {
+    let bytes = resources.read(input)?;
+    Ok(match LoadedExemplar::read(input, &bytes, method, &resources.limits)? {
+        LoadedExemplar::Drawing(drawing) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
             report.unit = Some(unit_name(drawing.page.unit));
             report.unit_per_user = Some(drawing.page.unit_per_user);
             report.layers = layers(&drawing);
-            report.warnings = drawing.warnings.iter().map(WarningReport::from).collect();
+            report.warnings = drawing.warnings.clone();
             report.drawing = Some(*drawing);
             report
         }
-        Subject::Points(exemplar) => {
-            let drawing = dots(&exemplar);
+        LoadedExemplar::Points(exemplar) => {
+            let drawing = points_as_drawing(&exemplar);
             Report { drawing: Some(drawing), ..describe(input, "points", &exemplar) }
         }
-        Subject::Space(exemplar, warnings) => {
+        LoadedExemplar::Space(exemplar, warnings) => {
             let kind = if exemplar.curves.is_empty() { "points in space" } else { "curves in space" };
             Report {
                 junctions: (!exemplar.curves.is_empty()).then(|| junctions(&exemplar)),
-                warnings: warnings.iter().map(WarningReport::from).collect(),
+                warnings,
                 ..describe(input, kind, &exemplar)
             }
         }
@@ -198,9 +180,9 @@ impl Report {
     ///
     /// # Errors
     /// [`Error::Unsupported`] for points in space, and for formats other than SVG and PNG.
-    pub fn picture(&self, format: Format) -> Result<Vec<u8>> {
+    pub fn picture(&self, format: Format, limits: &Limits) -> Result<Vec<u8>> {
         let unsupported =
-            |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture away".into() };
+            |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture out".into() };
         let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of what lies in space"))?;
         let svg = write_survey(drawing);
         match format {
@@ -208,7 +190,7 @@ impl Report {
             Format::Png => {
                 let units = drawing.page.view.size().0;
                 let plate = Plate { svg: &svg, units, resolution: Resolution::default(), recipe: None };
-                write_png(&plate, &Limits::default())
+                write_png(&plate, limits)
             }
             Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Toml => {
                 Err(unsupported("a picture in this format"))

@@ -1,42 +1,64 @@
 //! Patterns by example: from one small example of a repeating pattern to as much of it as is wanted, in any shape.
 //!
-//! ```
-//! use arabesque::{Input, OutputOptions, Recipe, Unobserved};
+//! There is one door, whatever the method: a [`Recipe`] says what to read and which [`Job`] to do; [`Recipe::prepare`] reads the exemplar
+//! and analyses it; [`Prepared::run`] carries out a [`Request`], as often as wanted; the [`Artwork`] that comes out is drawn, written and
+//! counted. Fill a page:
 //!
-//! let points = b"x,y\n0,0\n1,0\n2,0\n0,1\n1,1\n2,1\n0,2\n1,2\n2,2\n";
-//! let mut recipe = Recipe::new(Input::file("grid.csv").carrying(points));
-//! recipe.size = Some("6x6".into());
-//! let prepared = recipe.prepare(None)?;
-//! let artwork = prepared.run(1, &mut Unobserved)?;
+//! ```
+//! use arabesque::{Fill, Input, OutputOptions, Recipe, Resources, Unobserved};
+//!
+//! let grid = b"x,y\n0,0\n1,0\n2,0\n0,1\n1,1\n2,1\n0,2\n1,2\n2,2\n";
+//! let resources = Resources::default().with_input("grid.csv", &grid[..]);
+//! let recipe = Recipe::new(Input::file("grid.csv"), Fill::page("6x6".parse()?));
+//! let prepared = recipe.prepare(&resources)?;
+//! let artwork = prepared.run(&prepared.request().with_seed(1), &mut Unobserved)?;
 //! let file = artwork.encode(&OutputOptions::default())?;
 //! assert!(file.bytes.starts_with(b"<?xml"));
 //! # Ok::<(), arabesque::Error>(())
 //! ```
 //!
-//! A [`Recipe`] describes a run; [`Recipe::prepare`] reads its files and analyses the exemplar; [`Prepared::run`] fills the domain, as often
-//! as wanted; [`Artwork::encode`] makes the bytes of a file, which carries its recipe ([`recipe_in`] finds it again). The engine and its
-//! vocabulary are re-exported as [`core`], [`patterns`] and [`ribbons`], the file formats as [`io`].
+//! Fill a box in space:
+//!
+//! ```
+//! use arabesque::{Format, Input, OutputOptions, Recipe, Resources, Space, Unobserved};
+//!
+//! let cube: String = (0..64).map(|k| format!("{},{},{}\n", k % 4, k / 4 % 4, k / 16)).collect();
+//! let recipe = Recipe::new(Input::file("cube.csv").embedding(("x,y,z\n".to_owned() + &cube).as_bytes()), Space::new("5x5x5".parse()?));
+//! let prepared = recipe.prepare(&Resources::default())?;
+//! let artwork = prepared.run(&prepared.request(), &mut Unobserved)?;
+//! assert!(artwork.summary().elements > 60);
+//! let file = artwork.encode(&OutputOptions { format: Some(Format::Csv), ..OutputOptions::default() })?;
+//! assert!(file.bytes.starts_with(b"x,y,z,class"));
+//! # Ok::<(), arabesque::Error>(())
+//! ```
+//!
+//! Lay a ribbon along a curve:
+//!
+//! ```
+//! use arabesque::{Format, Input, OutputOptions, Recipe, Resources, Ribbon, Unobserved};
+//!
+//! let svg = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' width='160' height='60' viewBox='0 0 160 60'>{body}</svg>");
+//! let strip = svg("<rect y='26' width='160' height='8'/><circle cx='40' cy='30' r='20'/><circle cx='110' cy='30' r='14'/>");
+//! let wave = svg("<path d='M5 30C50 0 110 60 155 30' fill='none' stroke='black'/>");
+//! let resources = Resources::default().with_input("strip.svg", strip.into_bytes()).with_input("wave.svg", wave.into_bytes());
+//! let recipe = Recipe::new(Input::file("strip.svg"), Ribbon { scale: Some(0.3), ..Ribbon::new(Input::file("wave.svg")) });
+//! let prepared = recipe.prepare(&resources)?;
+//! let artwork = prepared.run(&prepared.request(), &mut Unobserved)?;
+//! let file = artwork.encode(&OutputOptions { format: Some(Format::Svg), ..OutputOptions::default() })?;
+//! assert!(file.bytes.starts_with(b"<?xml"));
+//! # Ok::<(), arabesque::Error>(())
+//! ```
+//!
+//! Whoever watches a run gets [`Progress`] and, when wanted, the present state as an [`Artwork`]; see [`Watch`]. Files that carry a recipe
+//! are read by [`recipe_in`]. The methods and their vocabulary are re-exported as [`core`], [`patterns`] and [`ribbons`], the file formats
+//! as [`io`].
 
 mod artwork;
-mod carrier;
-mod format;
-mod input;
 mod inspect;
+mod method;
 mod pool;
 mod prepare;
 mod recipe;
-mod region;
-mod rework;
-mod ribbon;
-mod ribbon_cells;
-mod ribbon_files;
-mod ribbon_picture;
-mod ribbon_recipe;
-mod ribbon_vector;
-mod size;
-mod space;
-mod spacing;
-mod subject;
 
 pub use arabesque_core as core;
 pub use arabesque_io as io;
@@ -44,20 +66,14 @@ pub use arabesque_patterns as patterns;
 pub use arabesque_ribbons as ribbons;
 
 pub use arabesque_core::{
-    EnergyPoint, Error, Limits, Outcome, Progress, Result, Snapshot, StopReason, Unobserved, Warning, Watch,
+    Border, EnergyPoint, Error, Limits, Progress, Result, Snapshot, StopReason, Unobserved, Warning, Watch,
 };
 pub use arabesque_io::nearest::nearest;
-pub use artwork::{Artwork, Encoded};
-pub use carrier::recipe_in;
-pub use format::Format;
-pub use input::{EMBEDDED_BYTES, Encoding, Input};
+pub use artwork::{Artwork, Encoded, Geometry, RibbonSummary, Summary};
 pub use inspect::{ClassReport, Report, StyleReport, inspect};
 pub use pool::in_pool;
-pub use prepare::Prepared;
-pub use recipe::{BorderRule, FieldFile, FieldSource, Method, OutputOptions, Recipe};
-pub use region::Region;
-pub use ribbon::{Laid, RibbonArtwork, RibbonPrepared};
-pub use ribbon_recipe::{ClosingRule, RIBBON_OPTIONS, RibbonOption, RibbonRecipe, WidthSource};
-pub use size::Size;
-pub use space::{SpaceArtwork, SpacePrepared};
-pub use subject::Subject;
+pub use prepare::{LoadedExemplar, Prepared, Request, Resources};
+pub use recipe::{
+    ClosingRule, Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
+    OutputOptions, Parameters, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, recipe_in,
+};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Exemplar, Limits, Outcome, Request, Result, Role, Snapshot, StopReason, Warning, Watch};
+use arabesque_core::{Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Warning, Watch};
 
 use crate::{
     clearance::{self, ExemplarClearance},
@@ -217,7 +217,7 @@ impl<const D: usize> Prepared<D> {
     }
 
     fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {
-        let limit = Limits::default().output_elements;
+        let limit = request.limits.output_elements;
         if expected.is_nan() || expected > limit as f64 {
             return Err(Error::Limit {
                 what: "elements of the result".into(),

@@ -1,5 +1,7 @@
 //! What a run gives back.
 
+use serde::Serialize;
+
 use crate::{
     curve::Path,
     space::{Similarity, Vector},
@@ -55,7 +57,7 @@ pub enum StopReason {
 }
 
 /// Trouble that does not prevent a result.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Warning {
     /// What was noticed.
     pub message: String,

@@ -1,14 +1,19 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::{
     field::Fields,
+    limits::Limits,
     region::{Domain, Outline},
     run::{Drawn, Placement},
     space::Bounds,
 };
 
 /// What happens where elements meet the border of the domain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Border {
     /// Elements lie wholly inside.
     Inside,
@@ -42,6 +47,8 @@ pub struct Request<const D: usize> {
     pub known: Option<Bounds<D>>,
     /// Seed of all random choices. Default 0.
     pub seed: u64,
+    /// Limits of what may come out.
+    pub limits: Limits,
 }
 
 impl<const D: usize> Request<D> {
@@ -56,6 +63,7 @@ impl<const D: usize> Request<D> {
             obstacles: Vec::new(),
             known: None,
             seed: 0,
+            limits: Limits::default(),
         }
     }
 }

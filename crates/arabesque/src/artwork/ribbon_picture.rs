@@ -4,18 +4,18 @@ use arabesque_core::{Error, Image, Limits, Result, Vector};
 use arabesque_io::{image::draw_svg, png, svg::Page};
 use arabesque_ribbons::{Canvas, Mask, Ribbon, render};
 
-use crate::{OutputOptions, ribbon::RibbonArtwork, size::pixels_per_user};
+use crate::{OutputOptions, artwork::RibbonMade, method::Sheet, recipe::pixels_per_user};
 
-/// CSS pixels an inch.
+/// CSS pixels per inch.
 const PIXELS_PER_INCH: f64 = 96.0;
 const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
 
-/// Pixels a user unit of a picture.
+/// Pixels per user unit of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pixels(pub(crate) f64);
 
-/// The resolution that `output` asks for: one pixel a user unit by default.
-pub(crate) fn resolution(output: &OutputOptions, page: Option<&Page>) -> Result<Pixels> {
+/// The resolution that `output` asks for: one pixel per user unit by default.
+pub(crate) fn resolution_of_canvas(output: &OutputOptions, page: Option<&Page>) -> Result<Pixels> {
     let (name, value, scale) = match (output.dpi, output.pixels_per_unit) {
         (None, None) => return Ok(Pixels(1.0)),
         (Some(_), Some(_)) => {
@@ -51,29 +51,28 @@ impl Pixels {
     }
 }
 
-impl RibbonArtwork<'_> {
+impl RibbonMade {
     /// The ribbons on their canvas, as PNG; those of drawings are drawn as vectors.
     pub(crate) fn picture(
         &self,
         (ribbons, mask): (&[Ribbon<2>], Option<&Mask>),
         page: &Page,
-        output: &OutputOptions,
-        recipe: Option<&str>,
+        sheet: &Sheet<'_>,
     ) -> Result<Vec<u8>> {
-        let scale = resolution(output, Some(page))?;
-        let [width, height] = scale.pixels(page, &Limits::default())?;
+        let scale = resolution_of_canvas(sheet.output, Some(page))?;
+        let [width, height] = scale.pixels(page, sheet.limits)?;
         let canvas = Canvas { origin: page.view.min, width, height, pixels_per_unit: scale.0 };
         let image = match self.drawings() {
             Some(_) => {
                 let text = self.svg(ribbons, page, None)?;
-                let mut image = draw_svg("the ribbon", &text, (page.view.size().0, scale.0), &Limits::default())?;
+                let mut image = draw_svg("the ribbon", &text, (page.view.size().0, scale.0), sheet.limits)?;
                 mask.into_iter().for_each(|mask| clear(&mut image, mask, &canvas));
                 image
             }
-            None => render(ribbons, self.prepared.engine.exemplars(), mask, &canvas),
+            None => render(ribbons, self.exemplars(), mask, &canvas),
         };
         let per_metre = scale.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE;
-        png::write_image(&image, per_metre, recipe)
+        png::write_image(&image, per_metre, sheet.recipe)
     }
 }
 

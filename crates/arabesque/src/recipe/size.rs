@@ -1,9 +1,11 @@
-//! Sizes as people write them: `800x600`, `210mmx297mm`, `8inx8in`.
+//! Sizes as people write them: `800x600`, `210mmx297mm`, `8inx8in`, and boxes in space such as `10x10x5`.
 
-use std::{fmt, str::FromStr};
+use std::{borrow::Cow, fmt, str::FromStr};
 
-use arabesque_core::{Error, Limits};
+use arabesque_core::{Bounds, Error, Limits, Vector};
 use arabesque_io::svg::{Page, Unit};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 
 /// Width and height, in the units of the exemplar or in a unit of length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +50,7 @@ impl Size {
             Some(unit) => (pixels(unit) / user, unit, user / pixels(unit)),
         };
         let sides = self.sides.map(|s| s * factor);
-        let view = arabesque_core::Bounds::new(arabesque_core::Vector::ZERO, arabesque_core::Vector(sides));
+        let view = Bounds::new(Vector::ZERO, Vector(sides));
         (sides, Page { view, unit, unit_per_user })
     }
 }
@@ -104,6 +106,70 @@ impl fmt::Display for Size {
     }
 }
 
+/// Width, depth and height of a box in space, in the units of the exemplar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid(pub [f64; 3]);
+
+impl Cuboid {
+    /// The box with a corner at the origin.
+    pub(crate) fn bounds(&self) -> Bounds<3> {
+        Bounds::new(Vector::ZERO, Vector(self.0))
+    }
+}
+
+impl FromStr for Cuboid {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let most = Limits::default().coordinate;
+        let sound = |side: &f64| side.is_finite() && *side > 0.0 && *side <= most;
+        let lower = text.trim().to_ascii_lowercase();
+        let sides: Option<Vec<f64>> =
+            lower.split(['x', '*']).map(|side| side.trim().parse().ok().filter(sound)).collect();
+        sides.and_then(|sides| <[f64; 3]>::try_from(sides).ok()).map(Self).ok_or_else(|| {
+            let expected = "three positive numbers in the units of the exemplar, such as 10x10x5";
+            Error::parameter("box", format!("\"{text}\""), expected)
+        })
+    }
+}
+
+impl fmt::Display for Cuboid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.0;
+        write!(f, "{x}x{y}x{z}")
+    }
+}
+
+/// A type that a recipe holds as text.
+macro_rules! written_as_text {
+    ($type:ident, $words:literal) => {
+        impl Serialize for $type {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.collect_str(self)
+            }
+        }
+
+        impl<'de> Deserialize<'de> for $type {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+            }
+        }
+
+        impl JsonSchema for $type {
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!({ "type": "string", "description": $words })
+            }
+        }
+    };
+}
+
+written_as_text!(Size, "width x height, such as 800x600, 210mmx297mm or 8inx8in (px, mm, cm, in, pt, pc, q)");
+written_as_text!(Cuboid, "width x depth x height in the units of the exemplar, such as 10x10x5");
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -132,7 +198,7 @@ mod tests {
     #[test]
     fn millimetres_on_a_pixel_page() {
         let page = Page {
-            view: arabesque_core::Bounds::new(arabesque_core::Vector::ZERO, arabesque_core::Vector::xy(1.0, 1.0)),
+            view: Bounds::new(Vector::ZERO, Vector::xy(1.0, 1.0)),
             unit: Unit::Px,
             unit_per_user: 1.0,
         };
@@ -140,5 +206,14 @@ mod tests {
         assert!((sides[0] - 96.0).abs() < 1e-9 && (sides[1] - 192.0).abs() < 1e-9);
         assert_eq!(out.unit, Unit::Mm);
         assert!((out.view.size()[0] * out.unit_per_user - 25.4).abs() < 1e-9);
+    }
+
+    #[test]
+    fn boxes_have_three_positive_sides() {
+        let cuboid: Cuboid = "10x10X5.5".parse().unwrap();
+        assert_eq!((cuboid, cuboid.to_string().parse().unwrap()), (Cuboid([10.0, 10.0, 5.5]), cuboid));
+        for text in ["", "10", "10x10", "10x10x0", "axbxc", "1x2x3x4", "1xx2x3", "1e99x1x1", "nanx1x1"] {
+            assert!(text.parse::<Cuboid>().is_err(), "{text}");
+        }
     }
 }

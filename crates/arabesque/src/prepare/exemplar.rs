@@ -7,11 +7,11 @@ use arabesque_io::{
     svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Stacking, Unit},
 };
 
-use crate::{Error, Input, recipe::Method};
+use crate::{Error, Input, Method};
 
 /// An exemplar as it was read.
 #[derive(Clone, Debug)]
-pub enum Subject {
+pub enum LoadedExemplar {
     /// An SVG drawing.
     Drawing(Box<Drawing>),
     /// Points of the plane.
@@ -29,22 +29,14 @@ const DOT_SPACING_PIXELS: f64 = 24.0;
 /// Colours of the classes of points, told apart by people with any colour vision; further classes start again.
 const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
 
-impl Subject {
+impl LoadedExemplar {
     /// Reads an exemplar from the bytes of a file: SVG, CSV or OBJ, by its name and content.
     ///
     /// # Errors
     /// As [`svg::read_exemplar`], [`csv::read_points`] and [`obj::read_curves`]; [`Error::Unsupported`] for methods that do not exist yet.
     pub fn read(input: &Input, bytes: &[u8], method: Method, limits: &Limits) -> Result<Self> {
         let name = input.name();
-        let method = match method {
-            Method::Auto => svg::Method::Auto,
-            Method::Elements => svg::Method::Elements,
-            Method::Curves => svg::Method::Curves,
-            Method::Structures => {
-                let expected = "auto, elements or curves; structures are not handled yet";
-                return Err(Error::parameter("method", "structures", expected));
-            }
-        };
+        let method = method.of_drawings()?;
         if arabesque_io::png::is_png(bytes) {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
@@ -81,7 +73,7 @@ fn looks_like_points(name: &str, text: &str) -> bool {
 }
 
 /// Points as a drawing of dots, one colour a class.
-pub(crate) fn dots(points: &Exemplar<2>) -> Drawing {
+pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
     let spacing = points.spacing();
     let radius = DOT_RADIUS * spacing;
     let mut exemplar = points.clone();
@@ -124,14 +116,14 @@ fn circle(centre: Vector<2>, radius: f64) -> Vec<Vector<2>> {
 mod tests {
     use super::*;
 
-    fn read(name: &str, bytes: &[u8]) -> Result<Subject> {
-        Subject::read(&Input::file(name), bytes, Method::Auto, &Limits::default())
+    fn read(name: &str, bytes: &[u8]) -> Result<LoadedExemplar> {
+        LoadedExemplar::read(&Input::file(name), bytes, Method::Auto, &Limits::default())
     }
 
     #[test]
     fn the_content_decides_where_the_name_does_not() {
-        assert!(matches!(read("-", b"x,y\n0,0\n1,0\n0,1\n"), Ok(Subject::Points(_))));
-        assert!(matches!(read("a.csv", b"x,y,z\n0,0,0\n1,0,1\n0,1,0\n"), Ok(Subject::Space(..))));
+        assert!(matches!(read("-", b"x,y\n0,0\n1,0\n0,1\n"), Ok(LoadedExemplar::Points(_))));
+        assert!(matches!(read("a.csv", b"x,y,z\n0,0,0\n1,0,1\n0,1,0\n"), Ok(LoadedExemplar::Space(..))));
         assert!(read("a.svg", b"\x89PNG\r\n\x1a\n").unwrap_err().to_string().contains("a picture where"));
     }
 
@@ -139,21 +131,21 @@ mod tests {
     fn curves_in_space_are_known_by_name_or_content() {
         let net = b"# net\nv 0 0 0\nv 1 1 1\nl 1 2\n";
         for name in ["a.obj", "-"] {
-            assert!(matches!(read(name, net), Ok(Subject::Space(e, _)) if e.curves.len() == 1));
+            assert!(matches!(read(name, net), Ok(LoadedExemplar::Space(e, _)) if e.curves.len() == 1));
         }
     }
 
     #[test]
     fn later_methods_are_refused_by_name() {
         let err =
-            Subject::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Limits::default()).unwrap_err();
+            LoadedExemplar::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Limits::default()).unwrap_err();
         assert!(err.to_string().contains("structures are not handled yet"));
     }
 
     #[test]
     fn dots_have_area_and_colour() {
-        let Ok(Subject::Points(points)) = read("a.csv", b"x,y,class\n0,0,a\n1,0,b\n0,1,a\n") else { panic!() };
-        let drawing = dots(&points);
+        let Ok(LoadedExemplar::Points(points)) = read("a.csv", b"x,y,class\n0,0,a\n1,0,b\n0,1,a\n") else { panic!() };
+        let drawing = points_as_drawing(&points);
         assert!(drawing.exemplar.elements[0].outline.area() > 0.0);
         assert_ne!(drawing.fragments[0].markup, drawing.fragments[1].markup);
     }

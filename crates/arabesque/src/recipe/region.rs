@@ -1,4 +1,4 @@
-//! Regions of a drawing: what is made anew, or copied from.
+//! Regions of a drawing: what is filled again, or copied from.
 
 use std::{borrow::Cow, fmt};
 
@@ -9,7 +9,7 @@ use serde::{
     de::{MapAccess, Visitor, value::MapAccessDeserializer},
 };
 
-use crate::Input;
+use crate::recipe::Input;
 
 /// A region of the exemplar's file.
 #[derive(Clone, Debug, PartialEq)]

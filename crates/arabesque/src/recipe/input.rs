@@ -1,8 +1,8 @@
 //! Files that a recipe refers to, with their content where it is small.
 
-use std::{borrow::Cow, fmt, path::Path};
+use std::{borrow::Cow, fmt};
 
-use arabesque_core::{Error, Limits, Result};
+use arabesque_core::{Error, Result};
 use arabesque_io::file;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{
@@ -113,31 +113,31 @@ impl Input {
         }
     }
 
-    /// The content: from the recipe itself, or from the file, looked for beside `base` first.
+    /// The content that the recipe itself holds.
     ///
     /// # Errors
-    /// As [`file::read_bytes`]; [`Error::Input`] when the content is not the one that the fingerprint was taken of.
-    pub fn read(&self, base: Option<&Path>, limits: &Limits) -> Result<Vec<u8>> {
-        let bytes = match (&self.content, self.encoding) {
-            (Some(text), None) => text.clone().into_bytes(),
-            (Some(text), Some(Encoding::Base64)) => {
-                decode(text).ok_or_else(|| Error::input(self.name(), "broken base 64", "give the path alone"))?
-            }
-            (None, _) => file::read_bytes(&self.resolved(base), limits)?,
-        };
+    /// [`Error::Input`] when it is not what `encoding` says.
+    pub(crate) fn held(&self) -> Result<Option<Vec<u8>>> {
+        match (&self.content, self.encoding) {
+            (None, _) => Ok(None),
+            (Some(text), None) => Ok(Some(text.clone().into_bytes())),
+            (Some(text), Some(Encoding::Base64)) => match decode(text) {
+                Some(bytes) => Ok(Some(bytes)),
+                None => Err(Error::input(self.name(), "broken base 64", "give the path alone")),
+            },
+        }
+    }
+
+    /// Refuses content that is not the one that the fingerprint was taken of.
+    pub(crate) fn check(&self, bytes: &[u8]) -> Result<()> {
         match &self.hash {
-            Some(hash) if *hash != fingerprint(&bytes) => Err(Error::input(
+            Some(hash) if *hash != fingerprint(bytes) => Err(Error::input(
                 self.name(),
                 "the file has changed since the recipe was written",
                 "restore it, or remove the line `hash` from the recipe",
             )),
-            _ => Ok(bytes),
+            _ => Ok(()),
         }
-    }
-
-    fn resolved(&self, base: Option<&Path>) -> String {
-        let beside = base.map(|b| b.join(&self.path)).filter(|p| self.path != file::STANDARD && p.exists());
-        beside.map_or_else(|| self.path.clone(), |p| p.to_string_lossy().into_owned())
     }
 
     /// The name for messages.
@@ -145,9 +145,9 @@ impl Input {
         if self.path == file::STANDARD { "standard input" } else { &self.path }
     }
 
-    /// This input with its content in it, if that is small or cannot be read twice, and with its fingerprint.
+    /// This input as a recipe carries it: with its fingerprint, and with its content where that is small or cannot be read twice.
     #[must_use]
-    pub fn carrying(&self, bytes: &[u8]) -> Self {
+    pub fn embedding(&self, bytes: &[u8]) -> Self {
         let mut kept = Self { hash: Some(fingerprint(bytes)), content: None, encoding: None, ..self.clone() };
         if bytes.len() > EMBEDDED_BYTES && self.path != file::STANDARD {
             return kept;
@@ -225,17 +225,17 @@ mod tests {
     #[test]
     fn content_travels_and_changes_are_noticed() {
         for bytes in [&b"plain\ntext"[..], b"carriage\r\nreturn", &[0, 255, 7]] {
-            let input = Input::file("nowhere.svg").carrying(bytes);
-            assert_eq!(input.read(None, &Limits::default()).unwrap(), bytes);
+            let input = Input::file("nowhere.svg").embedding(bytes);
+            assert_eq!(input.held().unwrap().unwrap(), bytes);
+            assert!(input.check(bytes).is_ok());
         }
-        let mut input = Input::file("nowhere.svg").carrying(b"one");
-        input.content = Some("two".into());
-        assert!(input.read(None, &Limits::default()).unwrap_err().to_string().contains("has changed"));
+        let input = Input::file("nowhere.svg").embedding(b"one");
+        assert!(input.check(b"two").unwrap_err().to_string().contains("has changed"));
     }
 
     #[test]
     fn large_content_stays_outside() {
-        assert!(Input::file("x").carrying(&vec![b'a'; EMBEDDED_BYTES + 1]).content.is_none());
+        assert!(Input::file("x").embedding(&vec![b'a'; EMBEDDED_BYTES + 1]).content.is_none());
     }
 
     #[test]

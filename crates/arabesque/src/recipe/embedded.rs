@@ -3,7 +3,7 @@
 use arabesque_core::{Error, Result};
 use arabesque_io::{csv, file, gltf, json, obj, obj_strip, png, svg};
 
-use crate::{Format, Recipe};
+use crate::recipe::{Format, Recipe};
 
 /// Finds the recipe in a file: a TOML recipe, or a result in any format.
 ///

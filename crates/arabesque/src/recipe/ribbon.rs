@@ -1,17 +1,18 @@
-//! What a recipe says of a ribbon.
+//! Laying the pattern of a picture along curves.
+
+use std::collections::BTreeMap;
 
 use arabesque_core::{Error, Result};
 use arabesque_ribbons::{Closing, Params, Search, Width};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{FieldSource, Input, Recipe, nearest};
+use crate::{nearest, recipe::{Input, Size, parameters}};
 
-/// The pattern of a picture along curves. The exemplar of the recipe is the picture, its `size` the canvas (default: the page of the file
-/// of curves), its `scale` user units a pixel of the exemplar, its `avoid` shapes and pictures where no ink may fall.
+/// The pattern of a picture along curves. The exemplar of the recipe is the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RibbonRecipe {
+pub struct Ribbon {
     /// The file of curves: SVG for the plane, OBJ for curves in space.
     pub along: Input,
     /// Further exemplars, into which the pattern passes one after the other along each curve.
@@ -20,11 +21,17 @@ pub struct RibbonRecipe {
     /// Shares of the length, rising, at which the pattern passes from one exemplar into the next. Default: equal parts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<f64>,
+    /// Width and height of the canvas, from the origin. Default: the page of the file of curves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<Size>,
+    /// User units per pixel of the exemplar, or per unit of an exemplar that is a drawing. Default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
     /// Width of the ribbon in user units: a number, `20..40` from start to end, or `0:20,0.5:40,1:20` at shares of the length. Default: as
     /// wide as the exemplar is high.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<WidthSource>,
-    /// Length of a piece in user units. Default: a quarter of the height of the exemplar.
+    /// Length of a piece in user units. Default: a tenth of the height of the exemplar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
     /// Pixel of the exemplar at which the first piece begins: column, and row, which may lie above the picture.
@@ -45,6 +52,13 @@ pub struct RibbonRecipe {
     /// Whether the pattern may be cut where no part of the exemplar is valid. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relax: bool,
+    /// Shapes, and pictures whose dark opaque pixels count, where no ink may fall.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub avoid: Vec<Input>,
+    /// Single parameters by name, as `--set` has them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "parameters::plain_values")]
+    #[schemars(schema_with = "parameters::of_ribbons")]
+    pub params: BTreeMap<String, String>,
 }
 
 /// Width of a ribbon, as people write it.
@@ -150,13 +164,25 @@ pub const RIBBON_OPTIONS: &[RibbonOption] = &[
     },
 ];
 
-impl RibbonRecipe {
+
+fn set(params: &mut Params, name: &str, value: &str) -> Result<()> {
+    let Some(option) = RIBBON_OPTIONS.iter().find(|o| o.name == name) else {
+        let names: Vec<&str> = RIBBON_OPTIONS.iter().map(|o| o.name).collect();
+        let hint = nearest(name, names.iter().copied()).map(|n| format!("; did you mean {n}?")).unwrap_or_default();
+        return Err(Error::parameter(name, value, format!("a parameter of ribbons: {}{hint}", names.join(", "))));
+    };
+    (option.set)(params, value.trim()).ok_or_else(|| Error::parameter(name, value, option.values))
+}
+
+impl Ribbon {
     /// A ribbon along the curves of a file with everything else at its default.
     pub fn new(along: Input) -> Self {
         Self {
             along,
             then: Vec::new(),
             changes: Vec::new(),
+            size: None,
+            scale: None,
             width: None,
             step: None,
             first: None,
@@ -165,14 +191,16 @@ impl RibbonRecipe {
             closing: None,
             stitch: true,
             relax: false,
+            avoid: Vec::new(),
+            params: BTreeMap::new(),
         }
     }
 
-    /// The parameters of the engine; lengths in user units, `scale` in user units a pixel of the exemplar.
+    /// The parameters of the engine; lengths in user units, `scale` in user units per pixel of the exemplar.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for an unknown name in `set` or a value out of range.
-    pub(crate) fn params(&self, recipe: &Recipe) -> Result<Params> {
+    /// [`Error::Parameter`] for an unknown name in `params` or a value out of range.
+    pub(crate) fn engine_params(&self) -> Result<Params> {
         let mut params = Params {
             step: self.step,
             width: self.width.as_ref().map_or(Ok(Width::Exemplar), width)?,
@@ -183,28 +211,15 @@ impl RibbonRecipe {
         if self.closing == Some(ClosingRule::Exact) {
             params.closing = Closing::Exact;
         }
-        match &recipe.scale {
-            None => {}
-            Some(FieldSource::Constant(scale)) => params.scale = *scale,
-            Some(FieldSource::File(file)) => {
-                return Err(Error::parameter("scale", &file.file.path, "a number: user units a pixel of the exemplar"));
-            }
+        if let Some(scale) = self.scale {
+            params.scale = scale;
         }
-        for (name, value) in &recipe.set {
+        for (name, value) in &self.params {
             set(&mut params, name, value)?;
         }
         params.check()?;
         Ok(params)
     }
-}
-
-fn set(params: &mut Params, name: &str, value: &str) -> Result<()> {
-    let Some(option) = RIBBON_OPTIONS.iter().find(|o| o.name == name) else {
-        let names: Vec<&str> = RIBBON_OPTIONS.iter().map(|o| o.name).collect();
-        let hint = nearest(name, names.iter().copied()).map(|n| format!("; did you mean {n}?")).unwrap_or_default();
-        return Err(Error::parameter(name, value, format!("a parameter of ribbons: {}{hint}", names.join(", "))));
-    };
-    (option.set)(params, value.trim()).ok_or_else(|| Error::parameter(name, value, option.values))
 }
 
 /// The width in a text such as `30`, `20..40` or `0:20,0.5:40,1:20`.
@@ -249,17 +264,16 @@ mod tests {
 
     #[test]
     fn parameters_are_set_by_name() {
-        let mut recipe = Recipe::new(Input::file("a.png"));
-        let ribbon = RibbonRecipe::new(Input::file("c.svg"));
+        let mut ribbon = Ribbon::new(Input::file("c.svg"));
         for (name, value) in [("repetition", "2"), ("search", "exhaustive"), ("coarse", "2")] {
-            recipe.set.insert(name.into(), value.into());
+            ribbon.params.insert(name.into(), value.into());
         }
-        let params = ribbon.params(&recipe).unwrap();
-        assert_eq!((params.repetition, params.search, params.coarse), (2.0, Search::Exhaustive, 2));
-        recipe.set.insert("vareity".into(), "1".into());
-        assert!(ribbon.params(&recipe).unwrap_err().to_string().contains("did you mean variety"));
-        recipe.set.remove("vareity");
-        recipe.set.insert("window".into(), "9".into());
-        assert!(ribbon.params(&recipe).is_err());
+        let params = ribbon.engine_params().unwrap();
+        assert_eq!((params.repetition, params.coarse), (2.0, 2));
+        ribbon.params.insert("vareity".into(), "1".into());
+        assert!(ribbon.engine_params().unwrap_err().to_string().contains("did you mean"));
+        ribbon.params.remove("vareity");
+        ribbon.params.insert("window".into(), "9".into());
+        assert!(ribbon.engine_params().is_err());
     }
 }

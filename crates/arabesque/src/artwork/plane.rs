@@ -1,0 +1,173 @@
+//! Elements and strokes of the plane as files.
+
+use std::sync::Arc;
+
+use arabesque_core::{Drawn, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
+use arabesque_io::{
+    csv, json,
+    png::{Plate, Resolution, write_png},
+    svg::{Sheet as SvgSheet, Style, Written, simplified, write_svg},
+};
+
+use crate::{
+    Encoded, Format, Geometry, OutputOptions, Summary,
+    method::{Made, Sheet},
+    prepare::{Plane, PlaneRequest, Units, spacing},
+    recipe::unit_name,
+};
+
+/// How far a simplified stroke may lie from the true one, in mean spacings.
+const NODE_SPACING: f64 = 0.001;
+/// The same in stroke widths.
+const NODE_WIDTH: f64 = 0.02;
+
+/// Elements and strokes in a part of the plane.
+#[derive(Debug)]
+pub(crate) struct PlaneMade {
+    plane: Arc<Plane>,
+    request: Arc<PlaneRequest>,
+    outcome: Outcome<2>,
+}
+
+impl PlaneMade {
+    /// What a run ended with.
+    pub(crate) fn new(plane: Arc<Plane>, request: Arc<PlaneRequest>, mut outcome: Outcome<2>) -> Self {
+        simplify(&plane.drawing.exemplar, &mut outcome.curves);
+        Self { plane, request, outcome }
+    }
+
+    /// What a run has so far.
+    pub(crate) fn of_snapshot(plane: &Arc<Plane>, request: &Arc<PlaneRequest>, snapshot: Snapshot<2>) -> Self {
+        let outcome = unfinished(snapshot);
+        Self { plane: Arc::clone(plane), request: Arc::clone(request), outcome }
+    }
+
+    /// What a file of points cannot hold.
+    fn left_out(&self) -> Result<Vec<Warning>> {
+        let count = self.outcome.curves.len();
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let what = format!("{count} curves as a file of points");
+        let advice = "write SVG or JSON, which hold curves";
+        if self.outcome.placements.is_empty() {
+            return Err(Error::Unsupported { what, advice: advice.into() });
+        }
+        Ok(vec![Warning::new(format!("{what} cannot be written: left out"), advice)])
+    }
+
+    fn svg(&self, style: Style, recipe: Option<&str>) -> Result<Written> {
+        let placements = &self.outcome.placements;
+        let bend = |k: usize, p| arabesque_patterns::warp(&placements[k].control, p);
+        write_svg(&SvgSheet {
+            drawing: &self.plane.drawing,
+            placements,
+            curves: &self.outcome.curves,
+            kept: self.request.kept.as_ref(),
+            host: self.plane.region.as_ref().map(|region| &region.rest),
+            page: self.request.page,
+            domain: &self.request.engine.domain,
+            shape: self.request.shape.as_ref(),
+            border: self.request.engine.border,
+            bend: Some(&bend),
+            style,
+            recipe,
+        })
+    }
+}
+
+/// A snapshot as the outcome of a run that is not over.
+pub(crate) fn unfinished<const D: usize>(snapshot: Snapshot<D>) -> Outcome<D> {
+    Outcome {
+        placements: snapshot.placements,
+        curves: snapshot.curves,
+        energy: Vec::new(),
+        warnings: Vec::new(),
+        stopped: StopReason::Stopped,
+    }
+}
+
+/// Leaves strokes with as few nodes as their width and spacing allow; what the user drew stays as it is.
+fn simplify(exemplar: &Exemplar<2>, curves: &mut [Drawn<2>]) {
+    let spacing = spacing(exemplar);
+    for drawn in curves.iter_mut().filter(|d| d.frozen.is_none()) {
+        let width = exemplar.curves[drawn.source].width * drawn.scale;
+        drawn.path = simplified(&drawn.path, (NODE_SPACING * spacing).max(NODE_WIDTH * width));
+    }
+}
+
+impl Made for PlaneMade {
+    fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
+        let exemplar = &self.plane.drawing.exemplar;
+        let page = &self.request.page;
+        let size = page.view.size();
+        match sheet.format {
+            Format::Svg => {
+                let style = if sheet.output.expand { Style::Expanded } else { Style::Linked };
+                let written = self.svg(style, sheet.recipe)?;
+                Ok(Encoded { bytes: written.text.into_bytes(), warnings: written.warnings })
+            }
+            Format::Png => {
+                let written = self.svg(Style::Linked, None)?;
+                let resolution = resolution(sheet.output)?;
+                let plate = Plate { svg: &written.text, units: size.0, resolution, recipe: sheet.recipe };
+                Ok(Encoded { bytes: write_png(&plate, sheet.limits)?, warnings: written.warnings })
+            }
+            Format::Json => {
+                let has_unit = self.plane.units == Units::OfPage;
+                let unit = has_unit.then_some((unit_name(page.unit), page.unit_per_user));
+                let frame = json::Frame { view: page.view, unit, recipe: sheet.recipe };
+                json::write_json(exemplar, &self.outcome, &frame).map(Encoded::plain)
+            }
+            Format::Csv => {
+                let text = csv::write_points(exemplar, &self.outcome.placements, size[0].max(size[1]), sheet.recipe);
+                Ok(Encoded { bytes: text.into_bytes(), warnings: self.left_out()? })
+            }
+            Format::Obj | Format::Glb | Format::Toml => Err(Error::Unsupported {
+                what: format!("a drawing of the plane as {}", sheet.format.name()),
+                advice: "write svg, png, json or csv; obj holds curves in space (--box), glb ribbons".into(),
+            }),
+        }
+    }
+
+    fn summary(&self) -> Summary {
+        Summary::of(&self.plane.drawing.exemplar, &self.outcome)
+    }
+
+    fn geometry(&self) -> Geometry {
+        Geometry::Plane(snapshot(&self.outcome))
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.outcome.warnings
+    }
+
+    fn energy(&self) -> &[EnergyPoint] {
+        &self.outcome.energy
+    }
+
+    fn stopped(&self) -> StopReason {
+        self.outcome.stopped
+    }
+}
+
+/// The geometry of an outcome.
+pub(crate) fn snapshot<const D: usize>(outcome: &Outcome<D>) -> Snapshot<D> {
+    Snapshot { placements: outcome.placements.clone(), curves: outcome.curves.clone(), patches: Vec::new() }
+}
+
+fn resolution(output: &OutputOptions) -> Result<Resolution> {
+    let (name, value, resolution) = match (output.dpi, output.pixels_per_unit) {
+        (None, None) => return Ok(Resolution::default()),
+        (Some(_), Some(_)) => {
+            return Err(Error::parameter("dpi", "given with pixels-per-unit", "only one of the two"));
+        }
+        (Some(dpi), None) => ("dpi", dpi, Resolution::PerInch(dpi)),
+        (None, Some(n)) => ("pixels-per-unit", n, Resolution::PerUnit(n)),
+    };
+    if value.is_finite() && value > 0.0 {
+        Ok(resolution)
+    } else {
+        Err(Error::parameter(name, value, "a positive number"))
+    }
+}

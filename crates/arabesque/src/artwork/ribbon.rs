@@ -1,0 +1,288 @@
+//! Ribbons as files.
+
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Error, Patch, Result, Snapshot, StopReason, Vector, Warning};
+use arabesque_io::{
+    gltf::{self, Part},
+    number::Decimals,
+    obj_strip, png, ribbon_json,
+    strip::Strip,
+    svg::{Area, Cell, Embedded, Filled, Look, Page, RibbonSheet, areas_markup, write_ribbons},
+};
+use arabesque_ribbons::{Exemplar, Piece, Ribbon, Rung, facets, rungs, shown_areas};
+
+use crate::{
+    Encoded, Format, Geometry, RibbonSummary, Summary,
+    method::{Made, Sheet},
+    prepare::{RibbonReady, Track},
+    recipe::encode,
+};
+
+/// Pixels per metre of an embedded picture: 96 per inch.
+const PER_METRE: f64 = 96.0 / 0.0254;
+
+/// Ribbons along curves.
+#[derive(Debug)]
+pub(crate) struct RibbonMade {
+    pub(crate) ready: Arc<RibbonReady>,
+    track: Arc<Track>,
+    laid: Laid,
+    pub(crate) warnings: Vec<Warning>,
+    stopped: StopReason,
+}
+
+/// Ribbons of the plane or of space, one for each curve; fewer when the run was stopped.
+#[derive(Debug)]
+pub(crate) enum Laid {
+    Plane(Vec<Ribbon<2>>),
+    Space(Vec<Ribbon<3>>),
+}
+
+impl From<Vec<Ribbon<2>>> for Laid {
+    fn from(ribbons: Vec<Ribbon<2>>) -> Self {
+        Self::Plane(ribbons)
+    }
+}
+
+impl From<Vec<Ribbon<3>>> for Laid {
+    fn from(ribbons: Vec<Ribbon<3>>) -> Self {
+        Self::Space(ribbons)
+    }
+}
+
+impl RibbonMade {
+    pub(crate) fn new(
+        ready: &Arc<RibbonReady>,
+        track: &Arc<Track>,
+        laid: Laid,
+        warnings: Vec<Warning>,
+        stopped: StopReason,
+    ) -> Self {
+        Self { ready: Arc::clone(ready), track: Arc::clone(track), laid, warnings, stopped }
+    }
+
+    /// What a run in the plane has so far.
+    pub(crate) fn of_plane(ready: &Arc<RibbonReady>, track: &Arc<Track>, snapshot: Snapshot<2>) -> Self {
+        Self::new(ready, track, Laid::Plane(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
+    }
+
+    /// What a run in space has so far.
+    pub(crate) fn of_space(ready: &Arc<RibbonReady>, track: &Arc<Track>, snapshot: Snapshot<3>) -> Self {
+        Self::new(ready, track, Laid::Space(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
+    }
+
+    /// Number of pieces of each ribbon.
+    fn lengths(&self) -> Vec<usize> {
+        match &self.laid {
+            Laid::Plane(ribbons) => ribbons.iter().map(|r| r.pieces.len()).collect(),
+            Laid::Space(ribbons) => ribbons.iter().map(|r| r.pieces.len()).collect(),
+        }
+    }
+
+    /// Number of pieces of all ribbons.
+    pub(crate) fn pieces(&self) -> usize {
+        self.lengths().iter().sum()
+    }
+
+    /// Cost of all ribbons together, in 8-bit colour steps.
+    fn cost(&self) -> f64 {
+        match &self.laid {
+            Laid::Plane(ribbons) => ribbons.iter().map(|r| r.cost).sum(),
+            Laid::Space(ribbons) => ribbons.iter().map(|r| r.cost).sum(),
+        }
+    }
+
+    pub(crate) fn exemplars(&self) -> &[Exemplar] {
+        self.ready.engine.exemplars()
+    }
+
+    /// What each curve is called.
+    fn names(&self) -> Vec<&str> {
+        match &*self.track {
+            Track::Plane { request, .. } => request.curves.iter().map(|(name, _)| name.as_str()).collect(),
+            Track::Space { request } => request.curves.iter().map(|(name, _)| name.as_str()).collect(),
+        }
+    }
+
+    /// Largest side of what is shown.
+    fn extent(&self) -> f64 {
+        let sides = match (&self.laid, &*self.track) {
+            (_, Track::Plane { page, .. }) => page.view.size().0.to_vec(),
+            (Laid::Space(ribbons), _) => {
+                let corners = ribbons.iter().flat_map(|r| &r.pieces).flat_map(|p| p.patch.corners);
+                Bounds::around(corners).size().0.to_vec()
+            }
+            (Laid::Plane(_), Track::Space { .. }) => Vec::new(),
+        };
+        sides.into_iter().fold(0.0, f64::max)
+    }
+
+    fn json(&self, recipe: Option<&str>) -> Result<String> {
+        match &self.laid {
+            Laid::Plane(ribbons) => self.json_of(ribbons, recipe),
+            Laid::Space(ribbons) => self.json_of(ribbons, recipe),
+        }
+    }
+
+    fn json_of<const D: usize>(&self, ribbons: &[Ribbon<D>], recipe: Option<&str>) -> Result<String> {
+        let lines = ribbons.iter().zip(self.names()).map(|(ribbon, name)| ribbon_json::Line {
+            name,
+            closed: ribbon.closed,
+            cost: ribbon.cost,
+            pieces: ribbon.pieces.iter().map(|p| (p.patch, p.shift.as_slice())).collect(),
+        });
+        let sizes = self.exemplars().iter().map(|e| [e.image.width, e.image.height]);
+        ribbon_json::write_ribbons(&ribbon_json::Document {
+            exemplars: self.ready.sources.iter().map(|s| s.name.as_str()).zip(sizes).collect(),
+            ribbons: lines.collect(),
+            page: match &*self.track {
+                Track::Plane { page, .. } => Some([page.view.min.0, page.view.size().0]),
+                Track::Space { .. } => None,
+            },
+            extent: self.extent(),
+            warnings: &self.warnings,
+            recipe,
+        })
+    }
+
+    /// A textured strip for each exemplar.
+    fn parts(&self, pictures: Pictures) -> Result<Vec<Part>> {
+        let mut parts = Vec::new();
+        for (exemplar, source) in self.exemplars().iter().zip(&self.ready.sources) {
+            let picture = match pictures {
+                Pictures::Held => png::write_image(&exemplar.image, PER_METRE, None)?,
+                Pictures::Left => Vec::new(),
+            };
+            parts.push(Part { name: source.name.clone(), picture, strip: Strip::default() });
+        }
+        match &self.laid {
+            // A drawing has its y axis downwards, a mesh upwards.
+            Laid::Plane(ribbons) => self.strips(ribbons, |p| [p[0], -p[1], 0.0], &mut parts),
+            Laid::Space(ribbons) => self.strips(ribbons, |p| p.0, &mut parts),
+        }
+        Ok(parts)
+    }
+
+    fn strips<const D: usize>(&self, ribbons: &[Ribbon<D>], at: fn(Vector<D>) -> [f64; 3], parts: &mut [Part]) {
+        for piece in ribbons.iter().flat_map(|r| &r.pieces) {
+            let source = piece.patch.source;
+            let (Some(exemplar), Some(part)) = (self.exemplars().get(source), parts.get_mut(source)) else { continue };
+            let (width, height) = (exemplar.image.width as f64, exemplar.image.height as f64);
+            let corner = |rung: &Rung<D>, k: usize| {
+                (at(rung.ends[k]), [rung.texture[k][0] / width, rung.texture[k][1] / height])
+            };
+            for pair in rungs(piece, height).windows(2) {
+                let [upper, lower] = [&pair[0], &pair[1]].map(|rung| [corner(rung, 0), corner(rung, 1)]);
+                part.strip.push(upper, lower);
+            }
+        }
+    }
+
+    /// The exemplars as areas, where they are drawings.
+    pub(crate) fn drawings(&self) -> Option<Vec<&[Area]>> {
+        self.ready.sources.iter().map(|s| s.areas.as_deref()).collect()
+    }
+
+    pub(crate) fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>) -> Result<String> {
+        let size = page.view.size();
+        let decimals = Decimals::for_extent(size[0].max(size[1]));
+        let drawings = self.drawings();
+        let mut pictures = Vec::new();
+        if drawings.is_none() {
+            for exemplar in self.exemplars() {
+                let data = encode(&png::write_image(&exemplar.image, PER_METRE, None)?);
+                pictures.push(Embedded { size: [exemplar.image.width, exemplar.image.height], data });
+            }
+        }
+        let look = |ribbon: &Ribbon<2>| match &drawings {
+            Some(drawings) => Look::Markup(markup(ribbon, drawings, decimals)),
+            None => Look::Cells(ribbon.pieces.iter().flat_map(|piece| self.cells(piece)).collect()),
+        };
+        let looks: Vec<_> = ribbons.iter().zip(self.names()).map(|(r, name)| (name.to_owned(), look(r))).collect();
+        Ok(write_ribbons(&RibbonSheet { page: *page, pictures: &pictures, ribbons: &looks, recipe }))
+    }
+
+    /// The facets of a piece, as SVG has them.
+    fn cells(&self, piece: &Piece<2>) -> impl Iterator<Item = Cell> {
+        let exemplar = self.exemplars().get(piece.patch.source);
+        let facets = exemplar.map(|exemplar| facets(piece, &exemplar.image)).unwrap_or_default();
+        facets.into_iter().map(|f| Cell { source: f.source, ring: f.ring, matrix: f.matrix })
+    }
+}
+
+/// The pieces of a snapshot as one ribbon: which curve each follows is known when they are all laid.
+fn unfinished<const D: usize>(snapshot: Snapshot<D>) -> Ribbon<D> {
+    let pieces = snapshot.patches.into_iter().map(|patch| Piece { patch, shift: Vec::new() }).collect();
+    Ribbon { pieces, closed: false, cost: 0.0 }
+}
+
+fn patches<const D: usize>(ribbons: &[Ribbon<D>]) -> Vec<Patch<D>> {
+    ribbons.iter().flat_map(|r| &r.pieces).map(|piece| piece.patch).collect()
+}
+
+impl Made for RibbonMade {
+    fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
+        let recipe = sheet.recipe;
+        let bytes = match (sheet.format, &self.laid, &*self.track) {
+            (Format::Json, ..) => self.json(recipe)?.into_bytes(),
+            (Format::Obj, ..) => {
+                obj_strip::write_strips(&self.parts(Pictures::Left)?, self.extent(), recipe).into_bytes()
+            }
+            (Format::Glb, ..) => gltf::write_glb(&self.parts(Pictures::Held)?, recipe)?,
+            (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page }) => {
+                self.picture((ribbons, request.avoid.as_ref()), page, sheet)?
+            }
+            (Format::Svg, Laid::Plane(ribbons), Track::Plane { page, .. }) => {
+                self.svg(ribbons, page, recipe)?.into_bytes()
+            }
+            _ => {
+                let space = matches!(self.laid, Laid::Space(_));
+                let (kind, advice) =
+                    if space { ("in space ", "json, obj or glb") } else { ("", "png, svg, json, obj or glb") };
+                let what = format!("a ribbon {kind}as {}", sheet.format.name());
+                return Err(Error::Unsupported { what, advice: format!("write {advice}") });
+            }
+        };
+        Ok(Encoded { bytes, warnings: Vec::new() })
+    }
+
+    fn summary(&self) -> Summary {
+        let ribbons = self.lengths().iter().filter(|n| **n > 0).count();
+        let summary = RibbonSummary { ribbons, pieces: self.pieces(), cost: self.cost() };
+        Summary { ribbons: Some(summary), ..Summary::default() }
+    }
+
+    fn geometry(&self) -> Geometry {
+        match &self.laid {
+            Laid::Plane(ribbons) => Geometry::Plane(Snapshot { patches: patches(ribbons), ..Snapshot::default() }),
+            Laid::Space(ribbons) => Geometry::Space(Snapshot { patches: patches(ribbons), ..Snapshot::default() }),
+        }
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    fn stopped(&self) -> StopReason {
+        self.stopped
+    }
+}
+
+/// A ribbon of drawings, as SVG.
+fn markup(ribbon: &Ribbon<2>, drawings: &[&[Area]], decimals: Decimals) -> String {
+    let outlines: Vec<Vec<_>> = drawings.iter().map(|areas| areas.iter().map(|a| &a.outline).collect()).collect();
+    let shown = shown_areas(ribbon, &outlines);
+    let filled = shown.iter().map(|s| {
+        let Area { colour, opacity, .. } = &drawings[s.source][s.area];
+        Filled { outline: &s.outline, tolerance: s.tolerance, colour, opacity: *opacity }
+    });
+    areas_markup(filled, decimals)
+}
+
+/// Whether a mesh holds its pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pictures {
+    Held,
+    Left,
+}

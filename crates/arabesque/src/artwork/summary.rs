@@ -1,0 +1,59 @@
+//! How much of what there is in an artwork.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Exemplar, Outcome};
+use serde::Serialize;
+
+/// How much of what there is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Summary {
+    /// Number of elements.
+    pub elements: usize,
+    /// How many of each class.
+    pub classes: BTreeMap<String, usize>,
+    /// Number of strokes.
+    pub curves: usize,
+    /// How many of each style.
+    pub styles: BTreeMap<String, usize>,
+    /// Of ribbons alone.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub ribbons: Option<RibbonSummary>,
+    /// The last mean energy, in squared mean spacings, where the method has one.
+    pub energy: Option<f64>,
+}
+
+/// What ribbons are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RibbonSummary {
+    /// Ribbons that have a piece.
+    pub ribbons: usize,
+    /// Pieces of all of them.
+    pub pieces: usize,
+    /// Their cost together, in 8-bit colour steps.
+    pub cost: f64,
+}
+
+impl Summary {
+    /// Of elements and strokes.
+    pub(crate) fn of<const D: usize>(exemplar: &Exemplar<D>, outcome: &Outcome<D>) -> Self {
+        let classes = outcome.placements.iter().map(|p| &exemplar.classes[exemplar.elements[p.source].class].name);
+        let styles = outcome.curves.iter().map(|c| &exemplar.styles[exemplar.curves[c.source].style].name);
+        Self {
+            elements: outcome.placements.len(),
+            classes: counts(classes),
+            curves: outcome.curves.len(),
+            styles: counts(styles),
+            ribbons: None,
+            energy: outcome.energy.last().map(|e| e.energy),
+        }
+    }
+}
+
+fn counts<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for name in names {
+        *counts.entry(name.clone()).or_insert(0) += 1;
+    }
+    counts
+}

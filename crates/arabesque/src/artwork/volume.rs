@@ -1,0 +1,92 @@
+//! Points and curves in space as files.
+
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, EnergyPoint, Error, Outcome, Result, Snapshot, StopReason, Warning};
+use arabesque_io::{csv, json, obj};
+
+use crate::{
+    Encoded, Format, Geometry, Summary,
+    artwork::plane::{snapshot, unfinished},
+    method::{Made, Sheet},
+    prepare::{Volume, spacing},
+};
+
+/// How far a written polyline may lie from its curve, in mean spacings.
+const CHORD: f64 = 0.005;
+
+/// Points and curves in a box.
+#[derive(Debug)]
+pub(crate) struct VolumeMade {
+    pub(crate) volume: Arc<Volume>,
+    /// The box.
+    pub(crate) frame: Bounds<3>,
+    pub(crate) outcome: Outcome<3>,
+}
+
+impl VolumeMade {
+    /// What a run has so far.
+    pub(crate) fn of_snapshot(volume: &Arc<Volume>, frame: Bounds<3>, snapshot: Snapshot<3>) -> Self {
+        Self { volume: Arc::clone(volume), frame, outcome: unfinished(snapshot) }
+    }
+}
+
+impl Made for VolumeMade {
+    fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
+        let (exemplar, outcome, frame) = (&self.volume.exemplar, &self.outcome, self.frame);
+        let (points, curves) = (outcome.placements.len(), outcome.curves.len());
+        let (text, warnings) = match sheet.format {
+            Format::Obj => {
+                let page = obj::Sheet { frame, tolerance: CHORD * spacing(exemplar), recipe: sheet.recipe };
+                let warnings = left_out([points, curves], ["points", "curves"])?;
+                (obj::write_curves(exemplar, &outcome.curves, &page), warnings)
+            }
+            Format::Csv => {
+                let extent = frame.size().0.into_iter().fold(0.0, f64::max);
+                let warnings = left_out([curves, points], ["curves", "points"])?;
+                (csv::write_points(exemplar, &outcome.placements, extent, sheet.recipe), warnings)
+            }
+            Format::Json => {
+                let page = json::Frame { view: frame, unit: None, recipe: sheet.recipe };
+                (json::write_json(exemplar, outcome, &page)?, Vec::new())
+            }
+            Format::Svg | Format::Png | Format::Glb | Format::Toml => {
+                let what = format!("a result in space as {}", sheet.format.name());
+                let advice = "write obj (curves), csv (points) or json (both)";
+                return Err(Error::Unsupported { what, advice: advice.into() });
+            }
+        };
+        Ok(Encoded { bytes: text.into_bytes(), warnings })
+    }
+
+    fn summary(&self) -> Summary {
+        Summary::of(&self.volume.exemplar, &self.outcome)
+    }
+
+    fn geometry(&self) -> Geometry {
+        Geometry::Space(snapshot(&self.outcome))
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.outcome.warnings
+    }
+
+    fn energy(&self) -> &[EnergyPoint] {
+        &self.outcome.energy
+    }
+
+    fn stopped(&self) -> StopReason {
+        self.outcome.stopped
+    }
+}
+
+/// Tells that a format holds only the second of two kinds; an error where there is nothing of it.
+fn left_out([lost, held]: [usize; 2], [what, kept]: [&str; 2]) -> Result<Vec<Warning>> {
+    let message = format!("{lost} {what} in a file of {kept}");
+    let advice = "write json, which holds both, or csv for points and obj for curves";
+    match (lost, held) {
+        (0, _) => Ok(Vec::new()),
+        (_, 0) => Err(Error::Unsupported { what: message, advice: advice.into() }),
+        _ => Ok(vec![Warning::new(format!("{message} cannot be written: left out"), advice)]),
+    }
+}

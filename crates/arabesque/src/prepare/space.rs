@@ -1,0 +1,186 @@
+//! Boxes in space: networks of curves and clouds of points.
+
+use std::sync::Arc;
+
+use arabesque_core::{
+    Border, Bounds, Domain, Error, Exemplar, Limits, Request as EngineRequest, Result, StopReason, Watch,
+};
+use arabesque_patterns::Prepared as Engine;
+
+use crate::{
+    Artwork, Format, Input, Job, LoadedExemplar, Space,
+    artwork::VolumeMade,
+    method::{Method, Ready},
+    prepare::{Preparation, Session, Show, fields::constant_factor, plane::understood, spacing},
+};
+
+/// An exemplar in space, analysed.
+#[derive(Debug)]
+pub(crate) struct Volume {
+    pub(crate) exemplar: Exemplar<3>,
+    engine: Engine<3>,
+}
+
+impl Method for Space {
+    /// OBJ for curves and CSV for points.
+    fn usual_format(&self, exemplar: &Input) -> Format {
+        let is_points = Format::of_path(&exemplar.path).ok().flatten() == Some(Format::Csv);
+        if is_points { Format::Csv } else { Format::Obj }
+    }
+
+    fn fixed(&self) -> Job {
+        Job::Space(Self { method: self.method, params: self.params.clone(), ..Self::new(crate::Cuboid([1.0; 3])) })
+    }
+
+    fn prepare(&self, preparation: &mut Preparation<'_>) -> Result<Arc<dyn Ready>> {
+        let params = self.params.engine_params()?;
+        let bytes = preparation.files.read(&preparation.exemplar)?;
+        let limits = preparation.files.limits();
+        let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, self.method, &limits)? {
+            LoadedExemplar::Space(exemplar, warnings) => {
+                preparation.warnings.extend(warnings);
+                exemplar
+            }
+            LoadedExemplar::Drawing(_) | LoadedExemplar::Points(_) => {
+                return Err(Error::input(
+                    preparation.exemplar.name(),
+                    "an exemplar of the plane, where a box in space is to be filled",
+                    "give curves as OBJ or points as CSV with a column z, or fill a page with --size",
+                ));
+            }
+        };
+        preparation.exemplar = preparation.exemplar.embedding(&bytes);
+        let engine = Engine::new(&exemplar, &params)?;
+        Ok(Arc::new(Volume { exemplar, engine }))
+    }
+}
+
+impl Volume {
+    fn resolve(&self, session: &Session<'_>) -> Result<EngineRequest<3>> {
+        let Job::Space(space) = &session.job else {
+            return Err(Error::parameter("request", session.job.name(), "a request for a box in space"));
+        };
+        if space.border == Some(Border::Turn) {
+            let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
+            return Err(Error::parameter("border", "turn", expected));
+        }
+        let bounds = space.cuboid.bounds();
+        check_volume(&self.exemplar, &bounds, &session.limits())?;
+        let mut request = EngineRequest::new(Domain::Box(bounds));
+        request.border = space.border.unwrap_or(Border::Clip);
+        request.fields.scale = constant_factor("scale", space.scale.as_ref())?;
+        request.fields.density = constant_factor("density", space.density.as_ref())?;
+        request.seed = session.seed;
+        request.limits = session.limits();
+        Ok(request)
+    }
+}
+
+impl Ready for Volume {
+    fn understood(&self) -> String {
+        understood(&self.exemplar)
+    }
+
+    fn run(self: Arc<Self>, session: Session<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        let request = self.resolve(&session)?;
+        let frame = request.domain.bounds();
+        let origin = session.origin();
+        let make = |snapshot| VolumeMade::of_snapshot(&self, frame, snapshot);
+        let mut outcome = self.engine.run(&request, &mut Show { watch, origin: &origin, make })?;
+        if outcome.placements.is_empty() && outcome.curves.is_empty() {
+            return Err(match outcome.stopped {
+                StopReason::Stopped => Error::no_result("stopped before anything was placed", "give it more time"),
+                StopReason::Finished => Error::no_result("nothing fits the box", "make it larger"),
+            });
+        }
+        outcome.warnings.splice(0..0, session.warnings);
+        Ok(Artwork::new(origin, VolumeMade { volume: self, frame, outcome }))
+    }
+}
+
+/// Refuses a box that is too large or too small for the pattern.
+fn check_volume(exemplar: &Exemplar<3>, bounds: &Bounds<3>, limits: &Limits) -> Result<()> {
+    let spacing = spacing(exemplar);
+    let expected = bounds.measure() / spacing.powi(3);
+    if expected.is_nan() || expected > limits.output_elements as f64 {
+        return Err(Error::Limit {
+            what: "size of the box".into(),
+            found: format!("room for about {expected:.0} elements or cells"),
+            limit: limits.output_elements.to_string(),
+            advice: "make it smaller; its sides are in the units of the exemplar".into(),
+        });
+    }
+    if expected < 0.5 {
+        return Err(Error::no_result(
+            format!("the box has no room for anything: the exemplar has a spacing of {spacing:.4}"),
+            "make it larger; its sides are in the units of the exemplar",
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::Unobserved;
+
+    use super::*;
+    use crate::{FieldSource, OutputOptions, Recipe, Resources, recipe_in};
+
+    /// A cubic lattice of points of two classes.
+    fn lattice() -> String {
+        let rows = (0..125).map(|k| {
+            let (x, y, z) = (k % 5, k / 5 % 5, k / 25);
+            format!("{x},{y},{z},{}\n", ["salt", "chlorine"][(x + y + z) % 2])
+        });
+        format!("x,y,z,class\n{}", rows.collect::<String>())
+    }
+
+    fn recipe(name: &str, text: &str, cuboid: &str) -> Recipe {
+        Recipe::new(Input::file(name).embedding(text.as_bytes()), Space::new(cuboid.parse().unwrap()))
+    }
+
+    fn run(recipe: &Recipe) -> Result<Artwork> {
+        let prepared = recipe.prepare(&Resources::default())?;
+        prepared.run(&prepared.request(), &mut Unobserved)
+    }
+
+    #[test]
+    fn points_fill_a_box_and_the_recipe_repeats_it() {
+        let recipe = Recipe { seed: 3, ..recipe("salt.csv", &lattice(), "6x6x6") };
+        let artwork = run(&recipe).unwrap();
+        let count = artwork.summary().elements;
+        assert!((100..400).contains(&count), "{count}");
+        let output = OutputOptions::default();
+        let bytes = artwork.encode(&output).unwrap().bytes;
+        assert!(bytes.starts_with(b"x,y,z,class\n"));
+        let again = recipe_in("salt-out.csv", &bytes).unwrap();
+        assert!(matches!(&again.job, Job::Space(space) if space.cuboid.to_string() == "6x6x6"));
+        assert_eq!(again.seed, 3);
+        assert_eq!(run(&again).unwrap().encode(&output).unwrap().bytes, bytes);
+    }
+
+    #[test]
+    fn what_makes_no_sense_in_space_is_refused() {
+        let with = |change: fn(&mut Space)| {
+            let mut space = Space::new("6x6x6".parse().unwrap());
+            change(&mut space);
+            run(&Recipe::new(Input::file("salt.csv").embedding(lattice().as_bytes()), space)).unwrap_err().to_string()
+        };
+        assert!(with(|s| s.scale = Some(FieldSource::Constant(-1.0))).contains("a factor between"));
+        assert!(with(|s| s.density = Some(FieldSource::parse("a.png").unwrap())).contains("from a picture, in space"));
+        assert!(with(|s| s.border = Some(Border::Turn)).contains("no line along the border"));
+        assert!(with(|s| s.cuboid = "1e8x1e8x1e8".parse().unwrap()).contains("over the limit"));
+        assert!(with(|s| s.cuboid = "0.1x0.1x0.1".parse().unwrap()).contains("no room"));
+        let flat = run(&recipe("flat.csv", "x,y\n0,0\n1,0\n0,1\n", "6x6x6")).unwrap_err();
+        assert!(flat.to_string().contains("of the plane"));
+    }
+
+    #[test]
+    fn points_are_not_curves() {
+        let artwork = run(&recipe("salt.csv", &lattice(), "3x3x3")).unwrap();
+        for format in [Format::Obj, Format::Svg] {
+            let output = OutputOptions { format: Some(format), ..OutputOptions::default() };
+            assert!(matches!(artwork.encode(&output), Err(Error::Unsupported { .. })));
+        }
+    }
+}

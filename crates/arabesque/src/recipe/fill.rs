@@ -1,0 +1,86 @@
+//! Filling a part of the plane.
+
+use arabesque_core::{Border, Error, Result};
+use arabesque_io::svg;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::recipe::{FieldSource, Input, Parameters, Size, parameters};
+
+/// A page, a shape or a seamless tile that is filled. One of `size`, `tile` and `domain` may be given; with none of them the layer
+/// Domain of the exemplar is filled.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fill {
+    /// Width and height of the page, such as `800x600` or `210mmx297mm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<Size>,
+    /// Width and height of a seamless tile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tile: Option<Size>,
+    /// What happens at the border of the domain. Default: clip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub border: Option<Border>,
+    /// What open strokes are taken for. Default: auto.
+    #[serde(default)]
+    pub method: Method,
+    /// A file with the shape to fill.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub domain: Option<Input>,
+    /// Elements and strokes that stay where they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<Input>,
+    /// How the pattern is turned: degrees from x towards y (clockwise on the page), a picture, or strokes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orient: Option<FieldSource>,
+    /// Size of the pattern relative to the exemplar, elements and gaps alike: a number, or a picture. Default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<FieldSource>,
+    /// Elements per area relative to the exemplar: a number, or a picture. Default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<FieldSource>,
+    /// Shapes that stay empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub avoid: Vec<Input>,
+    /// Parameters of the engine.
+    #[serde(default, skip_serializing_if = "Parameters::is_empty")]
+    #[schemars(schema_with = "parameters::of_patterns")]
+    pub params: Parameters,
+}
+
+impl Fill {
+    /// A page of this size, with everything else at its default.
+    pub fn page(size: Size) -> Self {
+        Self { size: Some(size), ..Self::default() }
+    }
+}
+
+/// What the exemplar is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// The exemplar decides: filled shapes and groups are elements, open strokes and the net that they belong to are curves.
+    #[default]
+    Auto,
+    /// Every connected piece is an element.
+    Elements,
+    /// Every stroke without a fill is a curve; what is filled is an element.
+    Curves,
+    /// Repetitive structures; not yet handled.
+    Structures,
+}
+
+impl Method {
+    /// How a drawing is read for this method.
+    pub(crate) fn of_drawings(self) -> Result<svg::Method> {
+        match self {
+            Self::Auto => Ok(svg::Method::Auto),
+            Self::Elements => Ok(svg::Method::Elements),
+            Self::Curves => Ok(svg::Method::Curves),
+            Self::Structures => {
+                let expected = "auto, elements or curves; structures are not handled yet";
+                Err(Error::parameter("method", "structures", expected))
+            }
+        }
+    }
+}

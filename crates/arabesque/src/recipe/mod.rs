@@ -1,0 +1,277 @@
+//! Recipes: a run, described completely.
+//!
+//! A recipe is a TOML document. Every file that arabesque writes carries one, with small inputs inside it, so that the run can be
+//! repeated from the result alone. What to read, which seed and what to write are the same for all methods; the [`Job`] says what is to
+//! be made, and owns every option that only this kind of job has.
+
+mod embedded;
+mod field;
+mod fill;
+mod format;
+mod input;
+mod job;
+mod legacy;
+mod output;
+mod parameters;
+mod redo;
+mod region;
+mod ribbon;
+mod size;
+mod space;
+
+pub use embedded::recipe_in;
+pub use field::{FieldFile, FieldSource};
+pub use fill::{Fill, Method};
+pub use format::Format;
+pub use input::{EMBEDDED_BYTES, Encoding, Input};
+pub use job::Job;
+pub use output::OutputOptions;
+pub use parameters::Parameters;
+pub use redo::Redo;
+pub use region::Region;
+pub use ribbon::{ClosingRule, Ribbon, WidthSource};
+pub use size::{Cuboid, Size};
+pub use space::Space;
+
+pub(crate) use input::encode;
+pub(crate) use size::{pixels_per_user, unit_name};
+
+use arabesque_core::{Error, Result};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Serialize};
+
+use crate::nearest;
+use legacy::FlatRecipe;
+
+/// A run, described completely: what to read, what to make of it, and what to write.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Document", into = "Document")]
+pub struct Recipe {
+    /// Version of arabesque that the recipe was written by.
+    pub arabesque: String,
+    /// Seed of all random choices. Default: 0.
+    pub seed: u64,
+    /// The exemplar.
+    pub exemplar: Input,
+    /// What is to be made.
+    pub job: Job,
+    /// What to write.
+    pub output: OutputOptions,
+}
+
+/// A recipe as its TOML has it: one table for each kind of job, of which at most one is there.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "Recipe")]
+struct Document {
+    /// Version of arabesque that the recipe was written by.
+    #[serde(default = "version")]
+    arabesque: String,
+    /// Seed of all random choices. Default: 0.
+    #[serde(default)]
+    seed: u64,
+    /// The exemplar.
+    exemplar: Input,
+    /// Fill a part of the plane. One of `fill`, `redo`, `space` and `ribbon` may be there; with none of them the
+    /// layer Domain of the exemplar is filled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fill: Option<Fill>,
+    /// Fill a region of the exemplar's own file again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    redo: Option<Redo>,
+    /// Fill a box in space.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    space: Option<Space>,
+    /// Lay the pattern of a picture along curves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ribbon: Option<Ribbon>,
+    /// What to write.
+    #[serde(default)]
+    output: OutputOptions,
+}
+
+impl TryFrom<Document> for Recipe {
+    type Error = String;
+
+    fn try_from(document: Document) -> std::result::Result<Self, String> {
+        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, output } = document;
+        let mut jobs = [fill.map(Job::Fill), redo.map(Job::Redo), space.map(Job::Space), ribbon.map(Job::Ribbon)]
+            .into_iter()
+            .flatten();
+        match (jobs.next(), jobs.next()) {
+            (Some(job), None) => Ok(Self { arabesque, seed, exemplar, job, output }),
+            (None, _) => Ok(Self { arabesque, seed, exemplar, job: Job::Fill(Fill::default()), output }),
+            (Some(a), Some(b)) => Err(format!("two jobs, {} and {}; expected one", a.name(), b.name())),
+        }
+    }
+}
+
+impl From<Recipe> for Document {
+    fn from(recipe: Recipe) -> Self {
+        let Recipe { arabesque, seed, exemplar, job, output } = recipe;
+        let (mut fill, mut redo, mut space, mut ribbon) = (None, None, None, None);
+        match job {
+            Job::Fill(job) => fill = Some(job),
+            Job::Redo(job) => redo = Some(job),
+            Job::Space(job) => space = Some(job),
+            Job::Ribbon(job) => ribbon = Some(job),
+        }
+        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, output }
+    }
+}
+
+impl JsonSchema for Recipe {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Recipe".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Document::json_schema(generator)
+    }
+}
+
+fn version() -> String {
+    env!("CARGO_PKG_VERSION").to_owned()
+}
+
+impl Recipe {
+    /// A recipe for `exemplar` with everything but the job at its default.
+    pub fn new(exemplar: Input, job: impl Into<Job>) -> Self {
+        Self { arabesque: version(), seed: 0, exemplar, job: job.into(), output: OutputOptions::default() }
+    }
+
+    /// Reads a recipe from TOML, in the present form or in the flat one of version 0.1.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the line: not TOML, a missing or unknown key (the nearest known one is named), a value of the wrong kind.
+    pub fn from_toml(name: &str, text: &str) -> Result<Self> {
+        if FlatRecipe::is_one(text) {
+            return toml::from_str::<FlatRecipe>(text).map_err(|e| refused(name, text, &e))?.into_recipe();
+        }
+        toml::from_str(text).map_err(|e| refused(name, text, &e))
+    }
+
+    /// The recipe as TOML.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a value has no form in TOML, such as a seed beyond 2^63.
+    pub fn to_toml(&self) -> Result<String> {
+        toml::to_string_pretty(self)
+            .map_err(|e| Error::input("recipe", e.to_string(), "use a seed below 9223372036854775808"))
+    }
+
+    /// The JSON schema of recipes.
+    pub fn schema() -> String {
+        let schema = schemars::schema_for!(Recipe);
+        serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
+    }
+
+    /// The file format where nobody says which.
+    pub fn usual_format(&self) -> Format {
+        self.job.method().usual_format(&self.exemplar)
+    }
+}
+
+/// What the parser says of a recipe, with the line and the nearest known key.
+fn refused(name: &str, text: &str, error: &toml::de::Error) -> Error {
+    let line = error.span().and_then(|span| text.get(..span.start)).map(|before| before.matches('\n').count() + 1);
+    let place = line.map_or_else(|| name.to_owned(), |n| format!("{name}: line {n}"));
+    let message = error.message().replace('\n', " ");
+    let advice = meant(&message).map_or_else(
+        || "see `arabesque fill --help` for what a recipe can say".to_owned(),
+        |known| format!("did you mean `{known}`?"),
+    );
+    Error::input(place, message, advice)
+}
+
+/// The known key nearest to the unknown one that a message of the parser names first.
+fn meant(message: &str) -> Option<&str> {
+    if !message.contains("unknown") {
+        return None;
+    }
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    let unknown = quoted.next()?;
+    nearest(unknown, quoted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_recipe_is_enough() {
+        let recipe = Recipe::from_toml(
+            "r.toml",
+            "exemplar = \"leaves.svg\"\n[fill]\nsize = \"210mmx297mm\"\navoid = [\"a.svg#b\"]\nscale = 2\norient = \"flow.svg\"\n\
+             params = { levels = 2, matching = \"hard\", preset = \"tu2020\" }\n",
+        )
+        .unwrap();
+        assert_eq!(recipe.exemplar.path, "leaves.svg");
+        let Job::Fill(fill) = recipe.job else { panic!("{:?}", recipe.job) };
+        assert_eq!(fill.scale, Some(FieldSource::Constant(2.0)));
+        assert_eq!(fill.avoid, [Input::shape("a.svg#b")]);
+        assert_eq!((fill.params.preset.as_deref(), &*fill.params.set["levels"]), (Some("tu2020"), "2"));
+        assert!(matches!(fill.orient, Some(FieldSource::File(f)) if f.file.path == "flow.svg"));
+    }
+
+    #[test]
+    fn recipes_survive_being_written() {
+        let exemplar = Input::file("a.svg").embedding(b"<svg>\n'''\"\"\"]]>\\ \x09</svg>\n");
+        let mut fill = Fill { tile: Some("400x400".parse().unwrap()), ..Fill::default() };
+        fill.orient = Some(FieldSource::Constant(30.0));
+        fill.density = Some(FieldSource::parse("map.png@0.1..0.9").unwrap());
+        fill.avoid = vec![Input::shape("logo.svg#mark")];
+        fill.params.set.insert("search".into(), "exhaustive".into());
+        let mut recipe = Recipe::new(exemplar, fill);
+        recipe.output = OutputOptions { expand: true, dpi: Some(300.0), ..OutputOptions::default() };
+        let text = recipe.to_toml().unwrap();
+        assert_eq!(Recipe::from_toml("again", &text).unwrap(), recipe, "{text}");
+        let mut ribbon = Ribbon::new(Input::shape("c.svg#wave"));
+        ribbon.avoid = vec![Input::file("mask.png")];
+        for job in [
+            Job::from(Redo::of(Region::Own("hole".into()))),
+            Job::from(Space::new("5x5x5".parse().unwrap())),
+            Job::from(ribbon),
+        ] {
+            let recipe = Recipe::new(Input::file("a"), job);
+            let text = recipe.to_toml().unwrap();
+            assert_eq!(Recipe::from_toml("again", &text).unwrap(), recipe, "{text}");
+        }
+    }
+
+    #[test]
+    fn unknown_keys_are_refused_with_the_nearest() {
+        for (text, line, near) in [
+            ("sede = 1\nexemplar = \"a\"\n[fill]\n", "line 1", "`seed`"),
+            ("exemplar = \"a\"\n[fill]\n[output]\nexpend = true\n", "line 4", "`expand`"),
+            ("exemplar = { pth = \"a\" }\n[fill]\n", "line 1", "`path`"),
+            ("exemplar = \"a\"\n[fill]\nborder = \"clop\"\n", "line 3", "`clip`"),
+            ("exemplar = \"a\"\n[ribbon]\nalong = \"b\"\nwidht = 3\n", "line 4", "`width`"),
+            ("exemplar = \"a\"\n[ribbon]\nalong = \"b\"\ntile = \"3x3\"\n", "line 4", "tile"),
+        ] {
+            let message = Recipe::from_toml("r.toml", text).unwrap_err().to_string();
+            assert!(message.contains(line) && message.contains(near), "{message}");
+        }
+        assert!(Recipe::from_toml("r.toml", "seed = 1\n[fill]\n").unwrap_err().to_string().contains("exemplar"));
+        assert!(Recipe::from_toml("r.toml", "seed = ").is_err());
+    }
+
+    #[test]
+    fn a_recipe_has_one_job() {
+        let none = Recipe::from_toml("r.toml", "exemplar = \"a\"\n").unwrap();
+        assert_eq!(none.job, Job::Fill(Fill::default()));
+        let mistyped = Recipe::from_toml("r.toml", "exemplar = \"a\"\n[fil]\n").unwrap_err().to_string();
+        assert!(mistyped.contains("`fill`"), "{mistyped}");
+        let two = "exemplar = \"a\"\n[fill]\n[space]\nbox = \"1x1x1\"\n";
+        let two = Recipe::from_toml("r.toml", two).unwrap_err().to_string();
+        assert!(two.contains("two jobs, fill and space"), "{two}");
+    }
+
+    #[test]
+    fn the_schema_names_every_key() {
+        let schema = Recipe::schema();
+        for key in ["exemplar", "fill", "tile", "redo", "box", "ribbon", "pixels_per_unit", "range", "hash", "matching"] {
+            assert!(schema.contains(&format!("\"{key}\"")), "{key}");
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! What to write.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::recipe::Format;
+
+/// What to write.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputOptions {
+    /// Where to write it, when the command line does not say. Not kept in results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
+    /// File format. Default: by the extension of the path, else SVG.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub format: Option<Format>,
+    /// SVG: write every element out in place instead of linking to it. Default: false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub expand: bool,
+    /// PNG: pixels per inch. Default: 96.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dpi: Option<f64>,
+    /// PNG: pixels per user unit, instead of `dpi`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels_per_unit: Option<f64>,
+    /// Leave the recipe out of the file. Default: false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub bare: bool,
+}

@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Image, Vector};
 
 use crate::{
-    piece::Piece,
+    pieces::piece::Piece,
     pieces::rungs::{Rung, rungs},
 };
 

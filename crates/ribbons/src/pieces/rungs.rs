@@ -2,7 +2,7 @@
 
 use arabesque_core::Vector;
 
-use crate::piece::Piece;
+use crate::pieces::piece::Piece;
 
 /// How far a cell may be from the true bending, in exemplar pixels.
 const TOLERANCE: f64 = 0.4;

@@ -2,7 +2,7 @@
 
 use arabesque_core::{FillRule, Outline, Ring, Vector};
 
-use crate::piece::{Piece, Ribbon};
+use crate::pieces::piece::{Piece, Ribbon};
 
 /// How far the cut areas reach over the edges of their pieces, in exemplar pixels, so that what goes on is joined.
 const REACH: f64 = 0.3;

@@ -5,17 +5,17 @@ use std::sync::Arc;
 use arabesque_core::{Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
 
 use crate::{
-    cage::Cage,
-    columns::Columns,
-    demands::Plan,
-    mask::{Mask, forbidden},
+    constraints::demands::Plan,
+    constraints::mask::{Mask, forbidden},
+    constraints::valid::{Demands, Grade, Position},
+    exemplar::columns::Columns,
+    exemplar::strip::{self, Exemplar, Strip},
+    geometry::cage::Cage,
     params::Params,
-    piece::{Piece, Ribbon},
-    reuse::Reuse,
-    solve::{Course, Kept, Solution},
-    stitch,
-    strip::{self, Exemplar, Strip},
-    valid::{Demands, Grade, Position},
+    pieces::piece::{Piece, Ribbon},
+    pieces::stitch,
+    search::reuse::Reuse,
+    search::solve::{Course, Kept, Solution},
 };
 
 /// Curves to lay a pattern along, and what to mind.
@@ -153,7 +153,7 @@ impl Prepared {
     fn lay<const D: usize>(
         &self,
         cages: &[Cage<D>],
-        free: Vec<Vec<Vec<crate::valid::Offset>>>,
+        free: Vec<Vec<Vec<crate::constraints::valid::Offset>>>,
         request: &Request<D>,
         before: &Memory,
         watch: &mut dyn Watch<Snapshot<D>>,
@@ -207,7 +207,7 @@ impl Prepared {
         demands: &[Demands],
         (name, seed): (&str, u64),
         rows: &[Kept],
-        watch: &mut crate::solve::Watch<'_>,
+        watch: &mut crate::search::solve::Watch<'_>,
     ) -> Result<Solution> {
         let reuse = Reuse::new(&self.params, seed, cage.len(), &cage.forms[0], &self.strip);
         let places: Vec<String> = (0..cage.len()).map(|k| place(cage, k)).collect();

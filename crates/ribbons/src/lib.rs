@@ -35,28 +35,23 @@
 //!
 //! Not handled: stochastic backgrounds.
 
-mod bits;
-mod cage;
-mod cluster;
-mod columns;
-mod demands;
+mod constraints;
 mod engine;
-mod mask;
+mod exemplar;
+mod geometry;
 mod params;
-mod piece;
-mod render;
-mod reuse;
-mod row;
-mod solve;
-mod space;
-mod stitch;
-mod strip;
-mod valid;
+mod pieces;
+mod search;
 
-pub use cage::PIECES;
+pub use constraints::mask::Mask;
 pub use engine::{Memory, Outcome, Prepared, Request};
-pub use mask::Mask;
+pub use exemplar::strip::{Exemplar, PIXELS};
+pub use geometry::cage::PIECES;
 pub use params::{Closing, Params, Search, Width};
-pub use piece::{Piece, Ribbon};
-pub use render::{Canvas, render};
-pub use strip::{Exemplar, PIXELS};
+pub use pieces::piece::{Piece, Ribbon};
+pub use pieces::render::{Canvas, render};
+pub use pieces::{
+    facets::{Facet, facets},
+    rungs::{Rung, rungs},
+    vector::{ShownArea, shown_areas},
+};

@@ -5,9 +5,9 @@ use std::ops::Range;
 use arabesque_core::Vector;
 
 use crate::{
-    bits::{Bits, ones},
-    cage::Form,
-    strip::Strip,
+    constraints::bits::{Bits, ones},
+    exemplar::strip::Strip,
+    geometry::cage::Form,
 };
 
 /// Top left corner of a piece in the strip: in the middle of column `x`, at the upper side of row `y`.
@@ -163,7 +163,7 @@ fn pixels(from: Vector<2>, to: Vector<2>, lower: f64) -> Vec<Offset> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strip::Exemplar;
+    use crate::exemplar::strip::Exemplar;
     use arabesque_core::Image;
 
     /// A bar of ink in rows 8 to 11 of 20, 40 columns.

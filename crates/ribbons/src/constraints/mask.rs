@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Vector};
 use rayon::prelude::*;
 
-use crate::{cage::Cage, valid::Offset};
+use crate::{constraints::valid::Offset, geometry::cage::Cage};
 
 /// Depth in pixels from which a point counts as inside another piece: neighbours share their edges.
 const INSIDE: f64 = 0.5;

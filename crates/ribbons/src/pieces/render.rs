@@ -4,10 +4,10 @@ use arabesque_core::{Bounds, Image, Vector};
 use rayon::prelude::*;
 
 use crate::{
-    cage::side,
-    mask::Mask,
-    piece::{Piece, Ribbon},
-    strip::{Exemplar, Strip},
+    constraints::mask::Mask,
+    exemplar::strip::{Exemplar, Strip},
+    geometry::cage::side,
+    pieces::piece::{Piece, Ribbon},
 };
 
 /// Half of the width, in exemplar pixels, over which a piece passes into the next.

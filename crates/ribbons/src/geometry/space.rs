@@ -3,7 +3,7 @@
 use arabesque_core::{Path, Result, Vector};
 
 use crate::{
-    cage::{Cage, Form, Line, Rung},
+    geometry::cage::{Cage, Form, Line, Rung},
     params::Params,
 };
 

@@ -9,10 +9,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::{
-    cluster::{Node, Tree},
-    columns::{Bundle, Columns, LANES, Lanes, Summary, TRUST, block_bounds, column_cost, column_cost_within},
-    reuse::{Reuse, Trail},
-    valid::Position,
+    constraints::valid::Position,
+    exemplar::cluster::{Node, Tree},
+    exemplar::columns::{Bundle, Columns, LANES, Lanes, Summary, TRUST, block_bounds, column_cost, column_cost_within},
+    search::reuse::{Reuse, Trail},
 };
 
 /// No earlier position.

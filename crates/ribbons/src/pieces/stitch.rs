@@ -1,6 +1,6 @@
 //! Bending the right side of a piece so that it meets the next one [Zhou 2013 §3.2].
 
-use crate::columns::{Columns, column_norm};
+use crate::exemplar::columns::{Columns, column_norm};
 
 /// P: cost of an opaque sample that is skipped, in 8-bit colour steps [Zhou 2013 eq. 3].
 const SKIPPED: f64 = 32.0;

@@ -1,6 +1,6 @@
 //! Columns in boxes of similar ones, so that a whole box can be ruled out at once.
 
-use crate::columns::{BLOCKS, CHANNELS, SUMMARY, Summary};
+use crate::exemplar::columns::{BLOCKS, CHANNELS, SUMMARY, Summary};
 
 /// A box of columns in the space of summaries.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@
 
 use arabesque_core::{Stage, Stream};
 
-use crate::{cage::Form, params::Params, strip::Strip, valid::Position};
+use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::Params};
 
 /// Most pieces that a path remembers.
 const MEMORY: usize = 64;

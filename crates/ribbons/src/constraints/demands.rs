@@ -6,11 +6,11 @@ use arabesque_core::{Error, Result};
 use rayon::prelude::*;
 
 use crate::{
-    cage::Cage,
+    constraints::valid::{Demands, Grade, Offset, positions},
     engine::Request,
+    exemplar::strip::Strip,
+    geometry::cage::Cage,
     params::Params,
-    strip::Strip,
-    valid::{Demands, Grade, Offset, positions},
 };
 
 /// Half of the length of a transition, in heights of the exemplar.

@@ -3,7 +3,7 @@
 use arabesque_core::Vector;
 use rayon::prelude::*;
 
-use crate::{cage::Form, strip::Strip, valid::Position};
+use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form};
 
 /// Cost of an opaque pixel beside a transparent one, in 8-bit colour steps [Zhou 2013, "comparing pixels"].
 pub(crate) const GAMMA: f32 = 1024.0;

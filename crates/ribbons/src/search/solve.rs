@@ -5,13 +5,13 @@ use std::sync::Arc;
 use arabesque_core::{Error, Result};
 
 use crate::{
-    cage::Form,
-    columns::Columns,
+    constraints::valid::{Demands, Grade, Position, positions},
+    exemplar::columns::Columns,
+    exemplar::strip::Strip,
+    geometry::cage::Form,
     params::{Closing, Params, Search},
-    reuse::{Reuse, Trail},
-    row::{NONE, Row, Step},
-    strip::Strip,
-    valid::{Demands, Grade, Position, positions},
+    search::reuse::{Reuse, Trail},
+    search::row::{NONE, Row, Step},
 };
 
 /// One curve, ready to be searched.

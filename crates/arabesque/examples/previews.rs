@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use arabesque::{Input, Progress, Recipe, Snapshot, in_pool};
+use arabesque::{Artwork, Fill, Input, Progress, Recipe, Resources, in_pool};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -25,13 +25,13 @@ struct Watch {
     shown: Vec<(Duration, Duration)>,
 }
 
-impl arabesque::Watch<Snapshot<2>> for Watch {
-    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Snapshot<2>) -> ControlFlow<()> {
+impl arabesque::Watch<Artwork> for Watch {
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Artwork) -> ControlFlow<()> {
         let now = self.started.elapsed();
         self.offers.push((now, progress.clone()));
         if self.shown.last().is_none_or(|(last, _)| now >= *last + PAUSE) {
-            let built = preview();
-            if !built.placements.is_empty() || !built.curves.is_empty() {
+            let built = preview().summary();
+            if built.elements > 0 || built.curves > 0 {
                 let ready = self.started.elapsed();
                 self.shown.push((ready, ready - now));
             }
@@ -45,14 +45,13 @@ fn main() -> Result<()> {
     let exemplar = arguments.next().unwrap_or_else(|| "examples/quatrefoil.svg".into());
     let size = arguments.next().unwrap_or_else(|| "480x360".into());
     let threads = arguments.next().map(|n| n.parse()).transpose()?;
-    let mut recipe = Recipe::new(Input::file(&exemplar));
-    recipe.size = Some(size.clone());
+    let recipe = Recipe { seed: 1, ..Recipe::new(Input::file(&exemplar), Fill::page(size.parse()?)) };
     let started = Instant::now();
     in_pool(threads, || -> arabesque::Result<()> {
-        let prepared = recipe.prepare(None)?;
+        let prepared = recipe.prepare(&Resources::default())?;
         let ready = started.elapsed();
         let mut watch = Watch { started: Instant::now(), offers: Vec::new(), shown: Vec::new() };
-        prepared.run(1, &mut watch)?;
+        prepared.run(&prepared.request(), &mut watch)?;
         let total = watch.started.elapsed();
         println!("{exemplar}, {size}: prepared in {} ms, run in {} ms", ready.as_millis(), total.as_millis());
         report(&watch, total);

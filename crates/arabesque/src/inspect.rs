@@ -181,8 +181,7 @@ impl Report {
     /// # Errors
     /// [`Error::Unsupported`] for points in space, and for formats other than SVG and PNG.
     pub fn picture(&self, format: Format, limits: &Limits) -> Result<Vec<u8>> {
-        let unsupported =
-            |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture out".into() };
+        let unsupported = |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture out".into() };
         let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of what lies in space"))?;
         let svg = write_survey(drawing);
         match format {

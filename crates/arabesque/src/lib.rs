@@ -75,5 +75,6 @@ pub use pool::in_pool;
 pub use prepare::{LoadedExemplar, Prepared, Request, Resources};
 pub use recipe::{
     ClosingRule, Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
-    OutputOptions, Parameters, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, recipe_in,
+    OutputOptions, Parameters, RIBBON_OPTIONS, Recipe, Redo, Region, Ribbon, RibbonOption, Size, Space, WidthSource,
+    recipe_in,
 };

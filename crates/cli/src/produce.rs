@@ -1,10 +1,10 @@
 //! From a recipe to files: what `fill` and `run` have in common.
 
-use std::{collections::BTreeMap, path::Path, process::ExitCode, time::Duration};
+use std::{path::Path, process::ExitCode, time::Duration};
 
 use arabesque::{
-    Encoded, EnergyPoint, Format, Outcome, OutputOptions, Prepared, Recipe, RibbonArtwork, RibbonPrepared,
-    SpacePrepared, StopReason, Warning, in_pool, io::file,
+    Artwork, EnergyPoint, Format, OutputOptions, Prepared, Recipe, Resources, StopReason, Summary, Warning, in_pool,
+    io::file,
 };
 use clap::Args;
 
@@ -14,7 +14,7 @@ use crate::{
     failure::{Failure, INTERRUPTED},
     progress::Watch,
     say::{self, Level},
-    summary::{self, Message, Output, Ribbons, Summary},
+    summary::{self, Output, Outputs},
 };
 
 /// Options of everything that runs.
@@ -129,173 +129,73 @@ fn variation(path: &str, number: u64) -> String {
 
 fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &RunOptions) -> Result<ExitCode, Failure> {
     let level = options.talk.level();
-    let ready = Ready::new(recipe, base)?;
+    let prepared = recipe.prepare(&base.map_or_else(Resources::default, Resources::beside))?;
     if level == Level::Verbose {
-        say::note(&ready.exemplar());
+        say::note(&prepared.understood());
     }
+    let run = Run { prepared: &prepared, output: &recipe.output, level, time_limit: options.time_limit };
     let mut outputs = Vec::new();
     for plan in &plans {
-        outputs.push(make(&ready, plan, &recipe.output, (level, options.time_limit))?);
+        outputs.push(run.make(plan)?);
         if is_interrupted() {
             break;
         }
     }
     if options.talk.json {
-        summary::print(&Summary { version: env!("CARGO_PKG_VERSION"), outputs })?;
+        summary::print(&Outputs { version: env!("CARGO_PKG_VERSION"), outputs })?;
     }
     Ok(if is_interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
-/// A prepared run, in the plane, in space, or along curves.
-enum Ready {
-    Plane(Box<Prepared>),
-    Space(Box<SpacePrepared>),
-    Ribbon(Box<RibbonPrepared>),
+/// What all files of a command have in common.
+struct Run<'a> {
+    prepared: &'a Prepared,
+    output: &'a OutputOptions,
+    level: Level,
+    time_limit: Option<Duration>,
 }
 
-impl Ready {
-    fn new(recipe: &Recipe, base: Option<&Path>) -> Result<Self, Failure> {
-        Ok(if recipe.is_ribbon() {
-            Self::Ribbon(Box::new(recipe.prepare_ribbon(base)?))
-        } else if recipe.is_space() {
-            Self::Space(Box::new(recipe.prepare_space(base)?))
-        } else {
-            Self::Plane(Box::new(recipe.prepare(base)?))
-        })
+impl Run<'_> {
+    /// Makes one file and writes it.
+    fn make(&self, plan: &Plan) -> Result<Output, Failure> {
+        let mut watch = Watch::new(self.level, Deadline::after(self.time_limit));
+        let ran = self.run(plan.seed, &mut watch);
+        watch.finish();
+        let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };
+        let (artwork, bytes, warnings) = ran.map_err(|e| interrupted(e.into()))?;
+        plan.target.write(&bytes).map_err(Failure::writing)?;
+        let made = self.describe(&artwork, plan, warnings, watch.elapsed());
+        tell(&made, artwork.energy(), self.level);
+        Ok(made)
     }
 
-    /// What was understood of the exemplar, in words.
-    fn exemplar(&self) -> String {
-        let ((elements, classes), (curves, styles)) = match self {
-            Self::Plane(p) => (p.exemplar_size(), p.exemplar_curves()),
-            Self::Space(p) => (p.exemplar_size(), p.exemplar_curves()),
-            Self::Ribbon(p) => {
-                let sizes: Vec<_> = p.exemplar_sizes().iter().map(|(w, h)| format!("{w} x {h} pixels")).collect();
-                return format!("exemplar: {}, along {}", sizes.join(", then "), many(p.curves(), "curve"));
-            }
-        };
-        let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
-        format!("exemplar: {elements} elements in {classes} classes{of_curves}")
+    /// An artwork, its file, and what the user should know of both.
+    fn run(&self, seed: u64, watch: &mut Watch) -> arabesque::Result<(Artwork, Vec<u8>, Vec<Warning>)> {
+        let artwork = self.prepared.run(&self.prepared.request().with_seed(seed), watch)?;
+        watch.finish();
+        let encoded = artwork.encode(self.output)?;
+        let warnings = artwork.warnings().iter().cloned().chain(encoded.warnings).collect();
+        Ok((artwork, encoded.bytes, warnings))
     }
 
-    fn run(&self, seed: u64, output: &OutputOptions, watch: &mut Watch) -> Result<Ran, arabesque::Error> {
-        match self {
-            Self::Plane(prepared) => {
-                let artwork = prepared.run(seed, watch)?;
-                watch.finish();
-                Ok(Ran::new(&artwork.outcome, artwork.classes(), artwork.styles(), artwork.encode(output)?))
-            }
-            Self::Space(prepared) => {
-                let artwork = prepared.run(seed, watch)?;
-                watch.finish();
-                Ok(Ran::new(&artwork.outcome, artwork.classes(), artwork.styles(), artwork.encode(output)?))
-            }
-            Self::Ribbon(prepared) => {
-                let artwork = prepared.run(seed, watch)?;
-                watch.finish();
-                Ok(Ran::ribbon(&artwork, artwork.encode(output)?))
-            }
+    fn describe(&self, artwork: &Artwork, plan: &Plan, warnings: Vec<Warning>, elapsed: Duration) -> Output {
+        Output {
+            path: plan.path.clone(),
+            format: self.output.format.unwrap_or(Format::Svg).name(),
+            seed: plan.seed,
+            made: artwork.summary(),
+            stopped: match artwork.stopped() {
+                StopReason::Finished => "finished",
+                StopReason::Stopped if is_interrupted() => "interrupted",
+                StopReason::Stopped => "time limit",
+            },
+            seconds: elapsed.as_secs_f64(),
+            warnings,
         }
     }
 }
 
-/// A finished run and its file.
-struct Ran {
-    bytes: Vec<u8>,
-    elements: usize,
-    classes: BTreeMap<String, usize>,
-    curves: usize,
-    styles: BTreeMap<String, usize>,
-    /// Ribbons, their pieces and their cost.
-    ribbons: Option<Ribbons>,
-    energy: Vec<EnergyPoint>,
-    stopped: StopReason,
-    warnings: Vec<Warning>,
-}
-
-impl Ran {
-    fn new<'a, const D: usize>(
-        outcome: &Outcome<D>,
-        classes: impl Iterator<Item = &'a str>,
-        styles: impl Iterator<Item = &'a str>,
-        encoded: Encoded,
-    ) -> Self {
-        Self {
-            bytes: encoded.bytes,
-            elements: outcome.placements.len(),
-            classes: counts(classes),
-            curves: outcome.curves.len(),
-            styles: counts(styles),
-            ribbons: None,
-            energy: outcome.energy.clone(),
-            stopped: outcome.stopped,
-            warnings: outcome.warnings.iter().cloned().chain(encoded.warnings).collect(),
-        }
-    }
-
-    fn ribbon(artwork: &RibbonArtwork<'_>, encoded: Encoded) -> Self {
-        Self {
-            bytes: encoded.bytes,
-            elements: 0,
-            classes: BTreeMap::new(),
-            curves: 0,
-            styles: BTreeMap::new(),
-            ribbons: Some(Ribbons { ribbons: artwork.ribbons(), pieces: artwork.pieces(), cost: artwork.cost() }),
-            energy: Vec::new(),
-            stopped: artwork.stopped,
-            warnings: artwork.warnings.iter().cloned().chain(encoded.warnings).collect(),
-        }
-    }
-}
-
-fn counts<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
-    for name in names {
-        *counts.entry(name.to_owned()).or_insert(0) += 1;
-    }
-    counts
-}
-
-fn make(
-    ready: &Ready,
-    plan: &Plan,
-    output: &OutputOptions,
-    (level, time_limit): (Level, Option<Duration>),
-) -> Result<Output, Failure> {
-    let mut watch = Watch::new(level, Deadline::after(time_limit));
-    let ran = ready.run(plan.seed, output, &mut watch);
-    watch.finish();
-    let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };
-    let ran = ran.map_err(|e| interrupted(e.into()))?;
-    plan.target.write(&ran.bytes).map_err(Failure::writing)?;
-    let (energy, warnings) = (ran.energy.clone(), ran.warnings.clone());
-    let made = describe(ran, plan, output, watch.elapsed());
-    tell(&made, &energy, &warnings, level);
-    Ok(made)
-}
-
-fn describe(ran: Ran, plan: &Plan, output: &OutputOptions, elapsed: Duration) -> Output {
-    Output {
-        path: plan.path.clone(),
-        format: output.format.unwrap_or(Format::Svg).name(),
-        seed: plan.seed,
-        elements: ran.elements,
-        classes: ran.classes,
-        curves: ran.curves,
-        styles: ran.styles,
-        ribbons: ran.ribbons,
-        energy: ran.energy.last().map(|e| e.energy),
-        stopped: match ran.stopped {
-            StopReason::Finished => "finished",
-            StopReason::Stopped if is_interrupted() => "interrupted",
-            StopReason::Stopped => "time limit",
-        },
-        seconds: elapsed.as_secs_f64(),
-        warnings: ran.warnings.iter().map(Message::from).collect(),
-    }
-}
-
-fn tell(made: &Output, energy: &[EnergyPoint], warnings: &[Warning], level: Level) {
+fn tell(made: &Output, energy: &[EnergyPoint], level: Level) {
     if level == Level::Quiet {
         return;
     }
@@ -305,15 +205,15 @@ fn tell(made: &Output, energy: &[EnergyPoint], warnings: &[Warning], level: Leve
             say::note(&format!("level {l}, iteration {i}: energy {:.5}, {} elements", e.energy, e.elements));
         }
     }
-    warnings.iter().for_each(say::warning);
+    made.warnings.iter().for_each(say::warning);
     let stopped =
         if made.stopped == "finished" { String::new() } else { format!(", stopped early ({})", made.stopped) };
     let name = if made.path == file::STANDARD { "standard output" } else { &made.path };
-    say::note(&format!("{name}: {} in {:.2} s{stopped}", counted(made), made.seconds));
+    say::note(&format!("{name}: {} in {:.2} s{stopped}", counted(&made.made), made.seconds));
 }
 
 /// What was made, in words.
-fn counted(made: &Output) -> String {
+fn counted(made: &Summary) -> String {
     if let Some(r) = &made.ribbons {
         return format!("{} in {}", many(r.pieces, "piece"), many(r.ribbons, "ribbon"));
     }

@@ -1,15 +1,15 @@
 //! The machine-readable summary of `--json`.
 
-use std::{collections::BTreeMap, io::Write};
+use std::io::Write;
 
-use arabesque::Warning;
+use arabesque::{Summary, Warning};
 use serde::Serialize;
 
 use crate::failure::Failure;
 
 /// What a command made.
 #[derive(Debug, Serialize)]
-pub(crate) struct Summary {
+pub(crate) struct Outputs {
     pub(crate) version: &'static str,
     pub(crate) outputs: Vec<Output>,
 }
@@ -20,40 +20,12 @@ pub(crate) struct Output {
     pub(crate) path: String,
     pub(crate) format: &'static str,
     pub(crate) seed: u64,
-    pub(crate) elements: usize,
-    pub(crate) classes: BTreeMap<String, usize>,
-    pub(crate) curves: usize,
-    pub(crate) styles: BTreeMap<String, usize>,
-    /// Of a ribbon alone.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub(crate) ribbons: Option<Ribbons>,
-    pub(crate) energy: Option<f64>,
+    #[serde(flatten)]
+    pub(crate) made: Summary,
     /// `finished`, `interrupted` or `time limit`.
     pub(crate) stopped: &'static str,
     pub(crate) seconds: f64,
-    pub(crate) warnings: Vec<Message>,
-}
-
-/// What ribbons are made of.
-#[derive(Debug, Serialize)]
-pub(crate) struct Ribbons {
-    pub(crate) ribbons: usize,
-    pub(crate) pieces: usize,
-    /// In 8-bit colour steps.
-    pub(crate) cost: f64,
-}
-
-/// A warning.
-#[derive(Debug, Serialize)]
-pub(crate) struct Message {
-    message: String,
-    advice: String,
-}
-
-impl From<&Warning> for Message {
-    fn from(w: &Warning) -> Self {
-        Self { message: w.message.clone(), advice: w.advice.clone() }
-    }
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// Writes `value` to standard output as JSON.

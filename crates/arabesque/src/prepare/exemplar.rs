@@ -137,8 +137,8 @@ mod tests {
 
     #[test]
     fn later_methods_are_refused_by_name() {
-        let err =
-            LoadedExemplar::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Limits::default()).unwrap_err();
+        let err = LoadedExemplar::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Limits::default())
+            .unwrap_err();
         assert!(err.to_string().contains("structures are not handled yet"));
     }
 

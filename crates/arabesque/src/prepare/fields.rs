@@ -8,7 +8,10 @@ use arabesque_io::{
     svg::{self, Drawing},
 };
 
-use crate::{FieldSource, Input, prepare::{Files, place::options}};
+use crate::{
+    FieldSource, Input,
+    prepare::{Files, place::options},
+};
 
 /// Nodes along the longer side of a direction field that comes from strokes.
 const STROKE_NODES: usize = 128;

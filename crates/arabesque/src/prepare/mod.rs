@@ -15,9 +15,10 @@ pub use exemplar::LoadedExemplar;
 pub use resources::Resources;
 
 pub(crate) use exemplar::points_as_drawing;
+pub(crate) use place::Units;
 pub(crate) use plane::{Plane, PlaneRequest};
 pub(crate) use resources::Files;
-pub(crate) use ribbon::{RibbonReady, Source, Track};
+pub(crate) use ribbon::{RibbonReady, Track};
 pub(crate) use space::Volume;
 pub(crate) use spacing::{length, spacing};
 
@@ -135,15 +136,12 @@ impl Prepared {
     pub fn run(&self, request: &Request, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         let (asked, prepared) = (request.job.method().fixed(), self.0.recipe.job.method().fixed());
         if asked != prepared {
-            let expected = format!("a request for the {} that was prepared, with the same method and parameters", prepared.name());
+            let expected =
+                format!("a request for the {} that was prepared, with the same method and parameters", prepared.name());
             return Err(Error::parameter("request", asked.name(), expected));
         }
-        let session = Session {
-            prepared: self,
-            job: request.job.clone(),
-            seed: request.seed,
-            warnings: self.0.warnings.clone(),
-        };
+        let session =
+            Session { prepared: self, job: request.job.clone(), seed: request.seed, warnings: self.0.warnings.clone() };
         Arc::clone(&self.0.ready).run(session, watch)
     }
 
@@ -160,10 +158,6 @@ impl Prepared {
     /// What was understood of the exemplar, in words.
     pub fn understood(&self) -> String {
         self.0.ready.understood()
-    }
-
-    pub(crate) fn limits(&self) -> Limits {
-        self.0.files.limits()
     }
 }
 
@@ -202,11 +196,7 @@ pub(crate) struct Show<'a, F> {
 }
 
 impl<P, M: Made + 'static, F: Fn(P) -> M> Watch<P> for Show<'_, F> {
-    fn step(
-        &mut self,
-        progress: &arabesque_core::Progress,
-        preview: &dyn Fn() -> P,
-    ) -> std::ops::ControlFlow<()> {
+    fn step(&mut self, progress: &arabesque_core::Progress, preview: &dyn Fn() -> P) -> std::ops::ControlFlow<()> {
         let (make, origin) = (&self.make, self.origin);
         self.watch.step(progress, &|| Artwork::new(Arc::clone(origin), make(preview())))
     }

@@ -88,8 +88,11 @@ impl HostFile<'_> {
     /// The part that serves as the example, and the region with everything that stays.
     fn split(&self, redo: &Redo, warnings: &mut Vec<Warning>) -> Result<(Drawing, RegionOfFile)> {
         let target = &redo.region;
-        let mut options =
-            ReadOptions { limits: self.files.limits(), method: redo.method.of_drawings()?, ..ReadOptions::new(&*self.name) };
+        let mut options = ReadOptions {
+            limits: self.files.limits(),
+            method: redo.method.of_drawings()?,
+            ..ReadOptions::new(&*self.name)
+        };
         for region in [Some(target), redo.from.as_ref()].into_iter().flatten() {
             if let Region::Own(id) = region {
                 options.without.push(id.clone());

@@ -73,7 +73,8 @@ impl Method for Ribbon {
     fn prepare(&self, preparation: &mut Preparation<'_>) -> Result<Arc<dyn Ready>> {
         let mut params = self.engine_params()?;
         let mut ribbon = self.clone();
-        let mut loading = Loading { ribbon: &mut ribbon, files: preparation.files, warnings: &mut preparation.warnings };
+        let mut loading =
+            Loading { ribbon: &mut ribbon, files: preparation.files, warnings: &mut preparation.warnings };
         let (exemplars, sources, finer) = loading.exemplars(&mut preparation.exemplar, &mut params)?;
         preparation.warnings.extend(width_warning(&params, &exemplars));
         let names: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();

@@ -13,8 +13,24 @@ use crate::recipe::{
 
 /// Keys that stand at the top of a flat recipe, and nowhere near the top of one of today.
 const FLAT_KEYS: &[&str] = &[
-    "size", "tile", "box", "border", "method", "preset", "radius", "levels", "iterations", "domain", "keep", "from",
-    "to", "orient", "scale", "density", "avoid", "set",
+    "size",
+    "tile",
+    "box",
+    "border",
+    "method",
+    "preset",
+    "radius",
+    "levels",
+    "iterations",
+    "domain",
+    "keep",
+    "from",
+    "to",
+    "orient",
+    "scale",
+    "density",
+    "avoid",
+    "set",
 ];
 
 /// A recipe of version 0.1.
@@ -197,8 +213,20 @@ impl FlatRecipe {
 
     fn ribbon(&mut self) -> Result<Job> {
         let foreign = [
-            "tile", "box", "domain", "border", "keep", "redo", "from and to", "orient", "density", "radius", "levels",
-            "iterations", "preset", "method",
+            "tile",
+            "box",
+            "domain",
+            "border",
+            "keep",
+            "redo",
+            "from and to",
+            "orient",
+            "density",
+            "radius",
+            "levels",
+            "iterations",
+            "preset",
+            "method",
         ];
         self.refuse(&foreign, "ribbon")?;
         let Some(flat) = self.ribbon.take() else { return Ok(self.fill()) };
@@ -249,7 +277,8 @@ mod tests {
         assert!(matches!(copy.job, Job::Redo(r) if r.from == Some(Region::Own("a".into()))));
         let space = read("exemplar = \"a.csv\"\nbox = \"1x2x3\"\npreset = \"ma2011\"\n").unwrap();
         assert!(matches!(space.job, Job::Space(s) if s.params.preset.as_deref() == Some("ma2011")));
-        let ribbon = "exemplar = \"a.png\"\nsize = \"9x9\"\nscale = 0.5\n[set]\nvariety = 2\n[ribbon]\nalong = \"c.svg\"\n";
+        let ribbon =
+            "exemplar = \"a.png\"\nsize = \"9x9\"\nscale = 0.5\n[set]\nvariety = 2\n[ribbon]\nalong = \"c.svg\"\n";
         let Job::Ribbon(ribbon) = read(ribbon).unwrap().job else { panic!() };
         assert_eq!((ribbon.scale, ribbon.stitch, &*ribbon.params["variety"]), (Some(0.5), true, "2"));
     }

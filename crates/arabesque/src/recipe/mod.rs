@@ -29,7 +29,7 @@ pub use output::OutputOptions;
 pub use parameters::Parameters;
 pub use redo::Redo;
 pub use region::Region;
-pub use ribbon::{ClosingRule, Ribbon, WidthSource};
+pub use ribbon::{ClosingRule, RIBBON_OPTIONS, Ribbon, RibbonOption, WidthSource};
 pub use size::{Cuboid, Size};
 pub use space::Space;
 
@@ -270,7 +270,8 @@ mod tests {
     #[test]
     fn the_schema_names_every_key() {
         let schema = Recipe::schema();
-        for key in ["exemplar", "fill", "tile", "redo", "box", "ribbon", "pixels_per_unit", "range", "hash", "matching"] {
+        for key in ["exemplar", "fill", "tile", "redo", "box", "ribbon", "pixels_per_unit", "range", "hash", "matching"]
+        {
             assert!(schema.contains(&format!("\"{key}\"")), "{key}");
         }
     }

@@ -7,7 +7,10 @@ use arabesque_ribbons::{Closing, Params, Search, Width};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{nearest, recipe::{Input, Size, parameters}};
+use crate::{
+    nearest,
+    recipe::{Input, Size, parameters},
+};
 
 /// The pattern of a picture along curves. The exemplar of the recipe is the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -163,7 +166,6 @@ pub const RIBBON_OPTIONS: &[RibbonOption] = &[
         },
     },
 ];
-
 
 fn set(params: &mut Params, name: &str, value: &str) -> Result<()> {
     let Some(option) = RIBBON_OPTIONS.iter().find(|o| o.name == name) else {

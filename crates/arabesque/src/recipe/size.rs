@@ -197,11 +197,7 @@ mod tests {
 
     #[test]
     fn millimetres_on_a_pixel_page() {
-        let page = Page {
-            view: Bounds::new(Vector::ZERO, Vector::xy(1.0, 1.0)),
-            unit: Unit::Px,
-            unit_per_user: 1.0,
-        };
+        let page = Page { view: Bounds::new(Vector::ZERO, Vector::xy(1.0, 1.0)), unit: Unit::Px, unit_per_user: 1.0 };
         let (sides, out) = "25.4mmx50.8mm".parse::<Size>().unwrap().on(&page);
         assert!((sides[0] - 96.0).abs() < 1e-9 && (sides[1] - 192.0).abs() < 1e-9);
         assert_eq!(out.unit, Unit::Mm);

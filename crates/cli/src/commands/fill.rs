@@ -1,8 +1,11 @@
 //! `arabesque fill`: a page, a shape, a seamless tile or a box from an exemplar.
 
-use std::process::ExitCode;
+use std::{collections::BTreeMap, process::ExitCode};
 
-use arabesque::{BorderRule, FieldSource, Input, Method, Recipe, Region, patterns::Params};
+use arabesque::{
+    Border, Cuboid, Error, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo, Region, Space,
+    patterns::Params,
+};
 use clap::{Args, ValueEnum};
 
 use crate::{
@@ -67,7 +70,7 @@ struct Place {
     /// What happens to elements and strokes at the border
     /// [default: clip; with --redo and --to, where all are elements, cross]
     #[arg(long, value_enum)]
-    border: Option<Border>,
+    border: Option<BorderName>,
 }
 
 #[derive(Args, Debug)]
@@ -99,7 +102,7 @@ struct Engine {
     /// Levels of the hierarchy [default: as the preset has it]
     #[arg(long, value_name = "N")]
     levels: Option<usize>,
-    /// Iterations a level [default: as the preset has it]
+    /// Iterations per level [default: as the preset has it]
     #[arg(long, value_name = "N")]
     iterations: Option<usize>,
     /// Set one parameter by its name (listed under --help); may be given several times
@@ -113,16 +116,16 @@ struct Writing {
     /// SVG: write every element out in place, flattened, for cutters and plotters
     #[arg(long)]
     expand: bool,
-    /// PNG: pixels an inch [default: 96]
+    /// PNG: pixels per inch [default: 96]
     #[arg(long, value_name = "N", conflicts_with = "pixels_per_unit")]
     dpi: Option<f64>,
-    /// PNG: pixels a user unit of the page
+    /// PNG: pixels per user unit of the page
     #[arg(long, value_name = "N")]
     pixels_per_unit: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Border {
+enum BorderName {
     /// Elements lie wholly inside
     Inside,
     /// Elements with their centre inside stay whole and may reach over the border
@@ -171,37 +174,81 @@ fn parameters() -> String {
     format!("Parameters for --set, by name:\n{list}\nPresets: {}", Params::PRESETS.join(", "))
 }
 
+impl From<BorderName> for Border {
+    fn from(name: BorderName) -> Self {
+        match name {
+            BorderName::Inside => Self::Inside,
+            BorderName::Cross => Self::Cross,
+            BorderName::Clip => Self::Clip,
+            BorderName::Turn => Self::Turn,
+        }
+    }
+}
+
+impl Engine {
+    /// What is set by name; the shortcuts count more than `--set`.
+    fn parameters(self) -> Parameters {
+        let mut set: BTreeMap<String, String> = self.set.into_iter().collect();
+        let shortcuts = [
+            ("radius", self.radius.map(|v| v.to_string())),
+            ("levels", self.levels.map(|v| v.to_string())),
+            ("iterations", self.iterations.map(|v| v.to_string())),
+        ];
+        set.extend(shortcuts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
+        Parameters { preset: Some(self.preset).filter(|name| name != "default"), set }
+    }
+}
+
 impl Fill {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
-        let mut recipe = Recipe::new(Input::file(self.exemplar));
-        recipe.seed = self.seed;
-        recipe.size = self.place.size;
-        recipe.tile = self.place.tile;
-        recipe.cuboid = self.place.cuboid;
-        recipe.domain = self.place.domain.as_deref().map(Input::shape);
-        recipe.avoid = self.place.avoid.iter().map(|text| Input::shape(text)).collect();
-        recipe.keep = self.place.keep.map(Input::file);
-        recipe.redo = self.place.redo;
-        recipe.from = self.place.from;
-        recipe.to = self.place.to;
-        recipe.border = self.place.border.map(|border| match border {
-            Border::Inside => BorderRule::Inside,
-            Border::Cross => BorderRule::Cross,
-            Border::Clip => BorderRule::Clip,
-            Border::Turn => BorderRule::Turn,
-        });
-        recipe.orient = self.fields.orient;
-        recipe.scale = self.fields.scale;
-        recipe.density = self.fields.density;
-        recipe.method = self.engine.method.into();
-        recipe.preset = self.engine.preset;
-        recipe.radius = self.engine.radius;
-        recipe.levels = self.engine.levels;
-        recipe.iterations = self.engine.iterations;
-        recipe.set = self.engine.set.into_iter().collect();
+        let exemplar = Input::file(&self.exemplar);
+        let (seed, run, path) = (self.seed, self.run, self.output);
+        let mut recipe = Recipe::new(exemplar, job(self.place, self.fields, self.engine)?);
+        recipe.seed = seed;
         recipe.output.expand = self.writing.expand;
         recipe.output.dpi = self.writing.dpi;
         recipe.output.pixels_per_unit = self.writing.pixels_per_unit;
-        produce(recipe, None, &self.output, &self.run)
+        produce(recipe, None, &path, &run)
     }
+}
+
+/// The job that the options mean.
+fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
+    let avoid = place.avoid.iter().map(|text| Input::shape(text)).collect();
+    let (method, border) = (engine.method.into(), place.border.map(Border::from));
+    let Fields { orient, scale, density } = fields;
+    if let Some(cuboid) = place.cuboid {
+        let plane_only =
+            [("keep", place.keep.is_some()), ("orient", orient.is_some()), ("avoid", !place.avoid.is_empty())];
+        if let Some((name, _)) = plane_only.into_iter().find(|(_, is_given)| *is_given) {
+            let advice = "leave it out, or leave the box out";
+            return Err(Error::Unsupported { what: format!("{name} together with box"), advice: advice.into() });
+        }
+        let params = engine.parameters();
+        let cuboid: Cuboid = cuboid.parse()?;
+        return Ok(Job::from(Space { method, border, scale, density, params, ..Space::new(cuboid) }));
+    }
+    if let Some(region) = place.redo.or(place.to) {
+        if place.keep.is_some() {
+            let name = if place.from.is_some() { "to" } else { "redo" };
+            let expected = "the region alone: the page and what stays are those of the file";
+            return Err(Error::parameter(name, "given with size, tile, domain or keep", expected));
+        }
+        let (from, params) = (place.from, engine.parameters());
+        return Ok(Job::from(Redo { border, method, from, orient, scale, density, avoid, params, ..Redo::of(region) }));
+    }
+    let size = |text: Option<String>| text.map(|text| text.parse()).transpose();
+    Ok(Job::from(FillJob {
+        size: size(place.size)?,
+        tile: size(place.tile)?,
+        border,
+        method,
+        domain: place.domain.as_deref().map(Input::shape),
+        keep: place.keep.map(Input::file),
+        orient,
+        scale,
+        density,
+        avoid,
+        params: engine.parameters(),
+    }))
 }

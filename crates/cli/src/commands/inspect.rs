@@ -2,7 +2,7 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{Format, Input, Report, inspect, io::file};
+use arabesque::{Format, Input, Report, Resources, inspect, io::file};
 use clap::Args;
 
 use super::fill::MethodName;
@@ -41,9 +41,10 @@ impl Inspect {
 
     fn inspect(&self) -> Result<ExitCode, Failure> {
         let target = self.output.as_deref().map(target).transpose()?;
-        let report = inspect(&Input::file(&self.file), self.method.into())?;
+        let resources = Resources::default();
+        let report = inspect(&Input::file(&self.file), self.method.into(), &resources)?;
         if let Some((target, format)) = target {
-            target.write(&report.picture(format)?).map_err(Failure::writing)?;
+            target.write(&report.picture(format, &resources.limits)?).map_err(Failure::writing)?;
         }
         if self.talk.json {
             summary::print(&report)?;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use arabesque::{ClosingRule, FieldSource, Input, RIBBON_OPTIONS, Recipe, RibbonRecipe, WidthSource};
+use arabesque::{ClosingRule, Input, Recipe, Ribbon as RibbonJob, WidthSource};
 use clap::{Args, ValueEnum};
 
 use crate::{
@@ -44,7 +44,7 @@ struct Shape {
     /// [default: as wide as the exemplar is high]
     #[arg(long, value_name = "B")]
     width: Option<String>,
-    /// Length of a piece in user units [default: a quarter of the height of the exemplar]
+    /// Length of a piece in user units [default: a tenth of the height of the exemplar]
     #[arg(long, value_name = "D")]
     step: Option<f64>,
     /// User units a pixel of the exemplar, or a unit of an SVG exemplar [default: 1]
@@ -134,7 +134,7 @@ fn range(text: &str) -> Result<[usize; 2], String> {
 /// The parameters that `--set` knows, for the long help.
 fn parameters() -> String {
     let list: String =
-        RIBBON_OPTIONS.iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
+        arabesque::RIBBON_OPTIONS.iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
     format!("Parameters for --set, by name:\n{list}")
 }
 
@@ -142,35 +142,34 @@ impl Ribbon {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
         let mut exemplars = self.exemplars.into_iter().map(Input::file);
         let first = exemplars.next().ok_or_else(|| Failure::usage("name an exemplar"))?;
-        let mut recipe = Recipe::new(first);
-        let mut ribbon = RibbonRecipe::new(Input::shape(&self.along));
+        let mut ribbon = RibbonJob::new(Input::shape(&self.along));
         ribbon.then = exemplars.collect();
         ribbon.width = self.shape.width.map(|text| text.parse().map_or(WidthSource::Text(text), WidthSource::Constant));
         ribbon.step = self.shape.step;
+        ribbon.scale = self.shape.scale;
         ribbon.stitch = !self.shape.no_stitch;
         ribbon.closing = self.shape.closing.map(|closing| match closing {
             Closing::Quick => ClosingRule::Quick,
             Closing::Exact => ClosingRule::Exact,
         });
+        ribbon.avoid = self.shape.avoid.iter().map(|text| Input::shape(text)).collect();
         ribbon.first = self.pattern.first;
         ribbon.start = self.pattern.start;
         ribbon.end = self.pattern.end;
         ribbon.changes = self.pattern.changes;
         ribbon.relax = self.pattern.relax;
-        recipe.ribbon = Some(ribbon);
-        recipe.seed = self.seed;
-        recipe.scale = self.shape.scale.map(FieldSource::Constant);
-        recipe.avoid = self.shape.avoid.iter().map(|text| Input::shape(text)).collect();
-        recipe.size = self.canvas.on_canvas;
+        ribbon.size = self.canvas.on_canvas.map(|text| text.parse()).transpose()?;
         let strengths = [
             ("repetition", self.pattern.repetition),
             ("window", self.pattern.window),
             ("variety", self.pattern.variety),
             ("centring", self.pattern.centring),
         ];
-        recipe.set = self.pattern.set.into_iter().collect();
-        recipe.set.extend(strengths.into_iter().filter_map(|(name, v)| Some((name.to_owned(), v?.to_string()))));
-        recipe.set.extend(self.pattern.coarse.map(|n| ("coarse".to_owned(), n.to_string())));
+        ribbon.params = self.pattern.set.into_iter().collect();
+        ribbon.params.extend(strengths.into_iter().filter_map(|(name, v)| Some((name.to_owned(), v?.to_string()))));
+        ribbon.params.extend(self.pattern.coarse.map(|n| ("coarse".to_owned(), n.to_string())));
+        let mut recipe = Recipe::new(first, ribbon);
+        recipe.seed = self.seed;
         recipe.output.pixels_per_unit = self.canvas.pixels_per_unit;
         recipe.output.dpi = self.canvas.dpi;
         produce(recipe, None, &self.output, &self.run)

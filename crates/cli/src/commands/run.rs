@@ -2,7 +2,7 @@
 
 use std::{io::IsTerminal, path::Path, process::ExitCode};
 
-use arabesque::{Input, Limits, io::file, recipe_in};
+use arabesque::{Input, Resources, io::file, recipe_in};
 use clap::Args;
 
 use crate::{
@@ -29,7 +29,7 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
         let input = Input::file(&self.file);
-        let bytes = input.read(None, &Limits::default())?;
+        let bytes = Resources::default().read(&input)?;
         let mut recipe = recipe_in(input.name(), &bytes)?;
         if let Some(seed) = self.seed {
             recipe.seed = seed;

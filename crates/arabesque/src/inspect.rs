@@ -9,9 +9,10 @@ use arabesque_io::{
 use serde::Serialize;
 
 use crate::{
-    Format, Input, LoadedExemplar, Method, Resources,
-    prepare::{length, points_as_drawing, spacing},
-    recipe::unit_name,
+    exemplar::{LoadedExemplar, points_as_drawing},
+    recipe::{Format, Input, Method, unit_name},
+    resources::Resources,
+    spacing::{length, spacing},
 };
 
 /// What was understood of an exemplar.

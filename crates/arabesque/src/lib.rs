@@ -54,11 +54,17 @@
 //! as [`io`].
 
 mod artwork;
+mod exemplar;
 mod inspect;
 mod method;
+mod plane;
 mod pool;
-mod prepare;
+mod prepared;
 mod recipe;
+mod resources;
+mod ribbon;
+mod space;
+mod spacing;
 
 pub use arabesque_core as core;
 pub use arabesque_io as io;
@@ -70,11 +76,13 @@ pub use arabesque_core::{
 };
 pub use arabesque_io::nearest::nearest;
 pub use artwork::{Artwork, Encoded, Geometry, RibbonSummary, Summary};
+pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, Report, StyleReport, inspect};
 pub use pool::in_pool;
-pub use prepare::{LoadedExemplar, Prepared, Request, Resources};
+pub use prepared::{Prepared, Request};
 pub use recipe::{
     ClosingRule, Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
     OutputOptions, Parameters, RIBBON_OPTIONS, Recipe, Redo, Region, Ribbon, RibbonOption, Size, Space, WidthSource,
     recipe_in,
 };
+pub use resources::Resources;

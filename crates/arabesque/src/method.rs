@@ -1,27 +1,37 @@
 //! What a method has to do to be reached through the one door: [`crate::Recipe`], [`crate::Prepared`], [`crate::Artwork`].
 //!
-//! A kind of job implements [`Method`], what it prepares implements [`Ready`], and what comes out of a run implements [`Made`].
-//! Everything else, from the bytes of files to the recipe in a result, is written once around them.
+//! Its part of [`crate::Recipe::prepare`] turns a [`Preparation`] into something [`Ready`], which turns a [`RunContext`] into an
+//! [`Artwork`] around what it [`Made`]. Everything else, from the bytes of files to the recipe in a result, is written once around them.
 
-use std::{fmt::Debug, sync::Arc};
+use std::{fmt::Debug, ops::ControlFlow, sync::Arc};
 
-use arabesque_core::{EnergyPoint, Limits, Result, StopReason, Warning, Watch};
+use arabesque_core::{Limits, Progress, Result, Warning, Watch};
 
 use crate::{
-    Artwork, Encoded, Format, Geometry, Input, Job, OutputOptions, Summary,
-    prepare::{Preparation, Session},
+    artwork::{Artwork, Made, Origin},
+    recipe::{Input, Job, OutputOptions, Recipe},
+    resources::Files,
 };
 
-/// A kind of job: what is to be made, with its options.
-pub(crate) trait Method: Debug {
-    /// The file format where nobody says which.
-    fn usual_format(&self, exemplar: &Input) -> Format;
+/// On the way from a recipe to something prepared.
+pub(crate) struct Preparation<'a> {
+    pub(crate) files: &'a Files,
+    pub(crate) exemplar: Input,
+    /// The job as results carry it: with small inputs inside it.
+    pub(crate) job: Job,
+    pub(crate) warnings: Vec<Warning>,
+}
 
-    /// The same job without what a request may change: two jobs that are equal in this can share what is prepared.
-    fn fixed(&self) -> Job;
-
-    /// Reads the exemplar and analyses it.
-    fn prepare(&self, preparation: &mut Preparation<'_>) -> Result<Arc<dyn Ready>>;
+/// On the way from a request to an artwork.
+pub(crate) struct RunContext<'a> {
+    pub(crate) files: &'a Files,
+    /// The recipe that was prepared.
+    pub(crate) recipe: &'a Recipe,
+    /// The job as the result carries it: with small inputs inside it.
+    pub(crate) job: Job,
+    pub(crate) seed: u64,
+    /// What was noticed, while preparing too.
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// An exemplar, read and analysed, ready for any number of runs.
@@ -29,40 +39,43 @@ pub(crate) trait Ready: Debug + Send + Sync {
     /// What was understood of the exemplar, in words.
     fn understood(&self) -> String;
 
-    /// Resolves the request of `session`, and runs it.
-    fn run(self: Arc<Self>, session: Session<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork>;
+    /// Resolves the request of `context`, and runs it.
+    fn run(self: Arc<Self>, context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork>;
 }
 
-/// What came out of a run, or is there so far.
-pub(crate) trait Made: Debug + Send + Sync {
-    /// Its file.
-    fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded>;
-
-    /// How much of what there is.
-    fn summary(&self) -> Summary;
-
-    /// The bare geometry.
-    fn geometry(&self) -> Geometry;
-
-    /// What the user should know.
-    fn warnings(&self) -> &[Warning];
-
-    /// Mean energy after each iteration, where the method has one.
-    fn energy(&self) -> &[EnergyPoint] {
-        &[]
+impl RunContext<'_> {
+    pub(crate) fn limits(&self) -> Limits {
+        self.files.limits()
     }
 
-    /// Why the run ended.
-    fn stopped(&self) -> StopReason;
+    /// What the recipe says of its output; the resolution counts where areas are avoided pixel by pixel.
+    pub(crate) fn output(&self) -> &OutputOptions {
+        &self.recipe.output
+    }
+
+    /// The name of the exemplar for messages.
+    pub(crate) fn exemplar_name(&self) -> &str {
+        self.recipe.exemplar.name()
+    }
+
+    /// Where an artwork of this context comes from; the job must be resolved by then.
+    pub(crate) fn origin(&self) -> Arc<Origin> {
+        let recipe = Recipe { job: self.job.clone(), seed: self.seed, ..self.recipe.clone() };
+        Arc::new(Origin { recipe, limits: self.limits() })
+    }
 }
 
-/// How something that was made is written.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sheet<'a> {
-    /// The format; never [`Format::Toml`], which holds the recipe alone.
-    pub(crate) format: Format,
-    pub(crate) output: &'a OutputOptions,
-    /// The recipe that the file carries.
-    pub(crate) recipe: Option<&'a str>,
-    pub(crate) limits: &'a Limits,
+/// Shows an engine's snapshots to whoever watches the run, as artworks.
+pub(crate) struct Show<'a, F> {
+    pub(crate) watch: &'a mut dyn Watch<Artwork>,
+    pub(crate) origin: &'a Arc<Origin>,
+    /// Makes something of a snapshot that can be written.
+    pub(crate) make: F,
+}
+
+impl<P, M: Made + 'static, F: Fn(P) -> M> Watch<P> for Show<'_, F> {
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> P) -> ControlFlow<()> {
+        let (make, origin) = (&self.make, self.origin);
+        self.watch.step(progress, &|| Artwork::new(Arc::clone(origin), make(preview())))
+    }
 }

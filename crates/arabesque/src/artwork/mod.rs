@@ -1,26 +1,18 @@
-//! Results, and the files they are written as.
+//! Results, whatever the method that made them.
 
-mod plane;
-mod ribbon;
-mod ribbon_picture;
+mod made;
 mod summary;
-mod volume;
 
+pub use made::{Encoded, Geometry};
 pub use summary::{RibbonSummary, Summary};
 
-pub(crate) use plane::PlaneMade;
-pub(crate) use ribbon::RibbonMade;
-pub(crate) use ribbon_picture::resolution_of_canvas;
-pub(crate) use volume::VolumeMade;
+pub(crate) use made::{Made, Sheet};
 
 use std::sync::Arc;
 
-use arabesque_core::{EnergyPoint, Limits, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{EnergyPoint, Limits, Result, StopReason, Warning};
 
-use crate::{
-    Format, OutputOptions, Recipe,
-    method::{Made, Sheet},
-};
+use crate::recipe::{Format, OutputOptions, Recipe};
 
 /// What a run made, or has made so far: a drawing, a file, numbers, bare geometry.
 ///
@@ -37,24 +29,6 @@ pub(crate) struct Origin {
     /// The recipe of this very artwork, with small inputs inside it.
     pub(crate) recipe: Recipe,
     pub(crate) limits: Limits,
-}
-
-/// A file, complete.
-#[derive(Clone, Debug)]
-pub struct Encoded {
-    /// Its bytes.
-    pub bytes: Vec<u8>,
-    /// What could not be written as asked.
-    pub warnings: Vec<Warning>,
-}
-
-/// Geometry without ink: placements, strokes and pieces of pictures, in the units of the page or of the exemplar.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Geometry {
-    /// In the plane; y points down.
-    Plane(Snapshot<2>),
-    /// In space.
-    Space(Snapshot<3>),
 }
 
 impl Artwork {
@@ -115,12 +89,5 @@ impl Artwork {
         }
         let recipe = (!output.bare).then_some(recipe.as_str());
         self.made.encode(&Sheet { format, output, recipe, limits: &self.origin.limits })
-    }
-}
-
-impl Encoded {
-    /// A text without warnings.
-    pub(crate) fn plain(text: String) -> Self {
-        Self { bytes: text.into_bytes(), warnings: Vec::new() }
     }
 }

@@ -6,7 +6,7 @@ use arabesque_core::{Error, Result};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::recipe::Input;
+use crate::recipe::input::Input;
 
 /// Where the values of a field come from.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,7 +5,12 @@ use arabesque_io::svg;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::recipe::{FieldSource, Input, Parameters, Size, parameters};
+use crate::recipe::{
+    field::FieldSource,
+    input::Input,
+    parameters::{self, Parameters},
+    size::Size,
+};
 
 /// A page, a shape or a seamless tile that is filled. One of `size`, `tile` and `domain` may be given; with none of them the layer
 /// Domain of the exemplar is filled.
@@ -52,6 +57,10 @@ impl Fill {
     /// A page of this size, with everything else at its default.
     pub fn page(size: Size) -> Self {
         Self { size: Some(size), ..Self::default() }
+    }
+
+    pub(super) fn prepared_part(&self) -> Self {
+        Self { method: self.method, params: self.params.clone(), ..Self::default() }
     }
 }
 

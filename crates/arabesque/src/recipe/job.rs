@@ -1,9 +1,6 @@
 //! What is to be made of an exemplar.
 
-use crate::{
-    method::Method,
-    recipe::{Fill, Redo, Ribbon, Space},
-};
+use crate::recipe::{fill::Fill, format::Format, input::Input, redo::Redo, ribbon::Ribbon, space::Space};
 
 /// What is to be made, one variant a kind of job; each owns the options that it has.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,13 +26,26 @@ impl Job {
         }
     }
 
-    /// What carries the job out.
-    pub(crate) fn method(&self) -> &dyn Method {
+    /// The file format where nobody says which: SVG for the plane, OBJ for curves and CSV for points in space, PNG for ribbons, GLB
+    /// for ribbons in space.
+    pub(crate) fn usual_format(&self, exemplar: &Input) -> Format {
+        let is = |input: &Input, format| Format::of_path(&input.path).ok().flatten() == Some(format);
         match self {
-            Self::Fill(job) => job,
-            Self::Redo(job) => job,
-            Self::Space(job) => job,
-            Self::Ribbon(job) => job,
+            Self::Fill(_) | Self::Redo(_) => Format::Svg,
+            Self::Space(_) if is(exemplar, Format::Csv) => Format::Csv,
+            Self::Space(_) => Format::Obj,
+            Self::Ribbon(ribbon) if is(&ribbon.along, Format::Obj) => Format::Glb,
+            Self::Ribbon(_) => Format::Png,
+        }
+    }
+
+    /// The same job without what a request may change: jobs that are equal in this can share what is prepared.
+    pub(crate) fn prepared_part(&self) -> Self {
+        match self {
+            Self::Fill(job) => Self::Fill(job.prepared_part()),
+            Self::Redo(job) => Self::Redo(job.prepared_part()),
+            Self::Space(job) => Self::Space(job.prepared_part()),
+            Self::Ribbon(job) => Self::Ribbon(job.prepared_part()),
         }
     }
 }

@@ -7,8 +7,18 @@ use arabesque_core::{Border, Error, Result};
 use serde::Deserialize;
 
 use crate::recipe::{
-    ClosingRule, FieldSource, Fill, Input, Job, Method, OutputOptions, Parameters, Recipe, Redo, Region, Ribbon, Size,
-    Space, WidthSource, parameters::plain_values,
+    field::FieldSource,
+    fill::{Fill, Method},
+    input::Input,
+    job::Job,
+    output::OutputOptions,
+    parameters::{Parameters, plain_values},
+    redo::Redo,
+    region::Region,
+    ribbon::{ClosingRule, Ribbon, WidthSource},
+    size::{Cuboid, Size},
+    space::Space,
+    version::version,
 };
 
 /// Keys that stand at the top of a flat recipe, and nowhere near the top of one of today.
@@ -37,14 +47,14 @@ const FLAT_KEYS: &[&str] = &[
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FlatRecipe {
-    #[serde(default = "super::version")]
+    #[serde(default = "version")]
     arabesque: String,
     #[serde(default)]
     seed: u64,
     size: Option<Size>,
     tile: Option<Size>,
     #[serde(rename = "box")]
-    cuboid: Option<crate::recipe::Cuboid>,
+    cuboid: Option<Cuboid>,
     border: Option<Border>,
     #[serde(default)]
     method: Method,
@@ -68,6 +78,14 @@ pub(super) struct FlatRecipe {
     ribbon: Option<FlatRibbon>,
     #[serde(default)]
     output: OutputOptions,
+}
+
+/// What recipes of all jobs have.
+pub(super) struct Head {
+    pub(super) arabesque: String,
+    pub(super) seed: u64,
+    pub(super) exemplar: Input,
+    pub(super) output: OutputOptions,
 }
 
 /// The table of ribbons, which had its canvas, scale and avoided areas at the top of the recipe.
@@ -98,11 +116,11 @@ impl FlatRecipe {
         has_region || table.keys().any(|key| FLAT_KEYS.contains(&key.as_str()))
     }
 
-    /// The same recipe in the form of today.
+    /// What all recipes have, and the job in the form of today.
     ///
     /// # Errors
     /// [`Error::Parameter`] or [`Error::Unsupported`] for options that do not go together, as version 0.1 had them.
-    pub(super) fn into_recipe(mut self) -> Result<Recipe> {
+    pub(super) fn into_job(mut self) -> Result<(Head, Job)> {
         let job = match (&self.ribbon, &self.cuboid) {
             (Some(_), _) => self.ribbon()?,
             (None, Some(_)) => self.space()?,
@@ -110,7 +128,7 @@ impl FlatRecipe {
             (None, None) => self.fill(),
         };
         let Self { arabesque, seed, exemplar, output, .. } = self;
-        Ok(Recipe { arabesque, seed, exemplar, job, output })
+        Ok((Head { arabesque, seed, exemplar, output }, job))
     }
 
     /// The keys that were given, of those that some job does not have.
@@ -261,6 +279,7 @@ impl FlatRecipe {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Recipe;
 
     fn read(text: &str) -> Result<Recipe> {
         Recipe::from_toml("r.toml", text)

@@ -18,6 +18,7 @@ mod region;
 mod ribbon;
 mod size;
 mod space;
+mod version;
 
 pub use embedded::recipe_in;
 pub use field::{FieldFile, FieldSource};
@@ -41,7 +42,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
 use crate::nearest;
-use legacy::FlatRecipe;
+use legacy::{FlatRecipe, Head};
+use version::version;
 
 /// A run, described completely: what to read, what to make of it, and what to write.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -130,10 +132,6 @@ impl JsonSchema for Recipe {
     }
 }
 
-fn version() -> String {
-    env!("CARGO_PKG_VERSION").to_owned()
-}
-
 impl Recipe {
     /// A recipe for `exemplar` with everything but the job at its default.
     pub fn new(exemplar: Input, job: impl Into<Job>) -> Self {
@@ -146,7 +144,9 @@ impl Recipe {
     /// [`Error::Input`] with the line: not TOML, a missing or unknown key (the nearest known one is named), a value of the wrong kind.
     pub fn from_toml(name: &str, text: &str) -> Result<Self> {
         if FlatRecipe::is_one(text) {
-            return toml::from_str::<FlatRecipe>(text).map_err(|e| refused(name, text, &e))?.into_recipe();
+            let (head, job) = toml::from_str::<FlatRecipe>(text).map_err(|e| refused(name, text, &e))?.into_job()?;
+            let Head { arabesque, seed, exemplar, output } = head;
+            return Ok(Self { arabesque, seed, exemplar, job, output });
         }
         toml::from_str(text).map_err(|e| refused(name, text, &e))
     }
@@ -168,7 +168,7 @@ impl Recipe {
 
     /// The file format where nobody says which.
     pub fn usual_format(&self) -> Format {
-        self.job.method().usual_format(&self.exemplar)
+        self.job.usual_format(&self.exemplar)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use arabesque_patterns::Params;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -21,6 +22,16 @@ impl Parameters {
     /// Whether everything is at its default.
     pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// The parameters of the engine for elements and curves.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Parameter`] for an unknown preset or name, or a value out of range.
+    pub fn engine_params(&self) -> arabesque_core::Result<Params> {
+        let mut params = Params::preset(self.preset.as_deref().unwrap_or("default"))?;
+        self.set.iter().try_for_each(|(name, value)| params.set(name, value))?;
+        Ok(params)
     }
 }
 

@@ -4,7 +4,13 @@ use arabesque_core::Border;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::recipe::{FieldSource, Input, Method, Parameters, Region, parameters};
+use crate::recipe::{
+    field::FieldSource,
+    fill::Method,
+    input::Input,
+    parameters::{self, Parameters},
+    region::Region,
+};
 
 /// A region of the exemplar's own file that is filled again; everything else of the file stays as it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -53,5 +59,10 @@ impl Redo {
             avoid: Vec::new(),
             params: Parameters::default(),
         }
+    }
+
+    pub(super) fn prepared_part(&self) -> Self {
+        let (from, params) = (self.from.clone(), self.params.clone());
+        Self { method: self.method, from, params, ..Self::of(self.region.clone()) }
     }
 }

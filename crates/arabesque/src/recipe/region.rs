@@ -9,7 +9,7 @@ use serde::{
     de::{MapAccess, Visitor, value::MapAccessDeserializer},
 };
 
-use crate::recipe::Input;
+use crate::recipe::input::Input;
 
 /// A region of the exemplar's file.
 #[derive(Clone, Debug, PartialEq)]

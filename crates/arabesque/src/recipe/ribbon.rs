@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     nearest,
-    recipe::{Input, Size, parameters},
+    recipe::{input::Input, parameters, size::Size},
 };
 
 /// The pattern of a picture along curves. The exemplar of the recipe is the picture.
@@ -195,6 +195,17 @@ impl Ribbon {
             relax: false,
             avoid: Vec::new(),
             params: BTreeMap::new(),
+        }
+    }
+
+    pub(super) fn prepared_part(&self) -> Self {
+        Self {
+            along: Input::default(),
+            changes: Vec::new(),
+            size: None,
+            first: None,
+            avoid: Vec::new(),
+            ..self.clone()
         }
     }
 

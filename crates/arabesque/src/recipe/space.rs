@@ -4,7 +4,12 @@ use arabesque_core::Border;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::recipe::{Cuboid, FieldSource, Method, Parameters, parameters};
+use crate::recipe::{
+    field::FieldSource,
+    fill::Method,
+    parameters::{self, Parameters},
+    size::Cuboid,
+};
 
 /// A box in space that is filled from an exemplar in space: curves (OBJ) or points (CSV with a column z).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -42,5 +47,9 @@ impl Space {
             density: None,
             params: Parameters::default(),
         }
+    }
+
+    pub(super) fn prepared_part(&self) -> Self {
+        Self { method: self.method, params: self.params.clone(), ..Self::new(Cuboid([1.0; 3])) }
     }
 }

@@ -9,8 +9,9 @@ use arabesque_io::{
 };
 
 use crate::{
-    FieldSource, Input,
-    prepare::{Files, place::options},
+    plane::place::options,
+    recipe::{FieldSource, Input},
+    resources::Files,
 };
 
 /// Nodes along the longer side of a direction field that comes from strokes.

@@ -1,35 +1,16 @@
 //! From a recipe to something that can be run as often as wanted: files are read, the exemplar is analysed.
 
-mod exemplar;
-mod fields;
-mod place;
-mod plane;
-mod redo;
-mod resources;
-mod ribbon;
-mod space;
-mod spacing;
-mod surroundings;
-
-pub use exemplar::LoadedExemplar;
-pub use resources::Resources;
-
-pub(crate) use exemplar::points_as_drawing;
-pub(crate) use place::Units;
-pub(crate) use plane::{Plane, PlaneRequest};
-pub(crate) use resources::Files;
-pub(crate) use ribbon::{RibbonReady, Track};
-pub(crate) use space::Volume;
-pub(crate) use spacing::{length, spacing};
-
 use std::sync::Arc;
 
-use arabesque_core::{Error, Limits, Result, Warning, Watch};
+use arabesque_core::{Error, Result, Warning, Watch};
 
 use crate::{
-    Artwork, Input, Job, OutputOptions, Recipe,
-    artwork::Origin,
-    method::{Made, Ready},
+    artwork::Artwork,
+    method::{Preparation, Ready, RunContext},
+    plane,
+    recipe::{Job, Recipe},
+    resources::{Files, Resources},
+    ribbon, space,
 };
 
 /// What one run is to make from what is prepared: everything but the exemplar and how it is analysed.
@@ -72,25 +53,6 @@ struct Inner {
     warnings: Vec<Warning>,
 }
 
-/// On the way from a recipe to something prepared.
-pub(crate) struct Preparation<'a> {
-    pub(crate) files: &'a Files,
-    pub(crate) exemplar: Input,
-    /// The job as results carry it: with small inputs inside it.
-    pub(crate) job: Job,
-    pub(crate) warnings: Vec<Warning>,
-}
-
-/// On the way from a request to an artwork.
-pub(crate) struct Session<'a> {
-    pub(crate) prepared: &'a Prepared,
-    /// The job as the result carries it: with small inputs inside it.
-    pub(crate) job: Job,
-    pub(crate) seed: u64,
-    /// What was noticed, while preparing too.
-    pub(crate) warnings: Vec<Warning>,
-}
-
 impl Recipe {
     /// Reads the exemplar and analyses it for the job of this recipe.
     ///
@@ -104,7 +66,12 @@ impl Recipe {
             job: self.job.clone(),
             warnings: version_warning(&self.arabesque).into_iter().collect(),
         };
-        let ready = self.job.method().prepare(&mut preparation)?;
+        let ready: Arc<dyn Ready> = match &self.job {
+            Job::Fill(job) => Arc::new(plane::prepare(job, &mut preparation)?),
+            Job::Redo(job) => Arc::new(plane::prepare_region(job, &mut preparation)?),
+            Job::Space(job) => Arc::new(space::prepare(job, &mut preparation)?),
+            Job::Ribbon(job) => Arc::new(ribbon::prepare(job, &mut preparation)?),
+        };
         let Preparation { exemplar, job, warnings, .. } = preparation;
         let recipe = Self { exemplar, job, ..self.clone() };
         Ok(Prepared(Arc::new(Inner { recipe, files, ready, warnings })))
@@ -134,15 +101,20 @@ impl Prepared {
     /// of the file, strips); whatever its files are wrong with; [`Error::NoResult`] when nothing can be placed, [`Error::Limit`] when a
     /// limit is reached.
     pub fn run(&self, request: &Request, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
-        let (asked, prepared) = (request.job.method().fixed(), self.0.recipe.job.method().fixed());
+        let (asked, prepared) = (request.job.prepared_part(), self.0.recipe.job.prepared_part());
         if asked != prepared {
             let expected =
                 format!("a request for the {} that was prepared, with the same method and parameters", prepared.name());
             return Err(Error::parameter("request", asked.name(), expected));
         }
-        let session =
-            Session { prepared: self, job: request.job.clone(), seed: request.seed, warnings: self.0.warnings.clone() };
-        Arc::clone(&self.0.ready).run(session, watch)
+        let context = RunContext {
+            files: &self.0.files,
+            recipe: &self.0.recipe,
+            job: request.job.clone(),
+            seed: request.seed,
+            warnings: self.0.warnings.clone(),
+        };
+        Arc::clone(&self.0.ready).run(context, watch)
     }
 
     /// The recipe, with its exemplar inside it where that is small.
@@ -158,46 +130,5 @@ impl Prepared {
     /// What was understood of the exemplar, in words.
     pub fn understood(&self) -> String {
         self.0.ready.understood()
-    }
-}
-
-impl Session<'_> {
-    pub(crate) fn files(&self) -> &Files {
-        &self.prepared.0.files
-    }
-
-    pub(crate) fn limits(&self) -> Limits {
-        self.files().limits()
-    }
-
-    /// What the recipe says of its output; the resolution counts where areas are avoided pixel by pixel.
-    pub(crate) fn output(&self) -> &OutputOptions {
-        &self.prepared.0.recipe.output
-    }
-
-    /// The name of the exemplar for messages.
-    pub(crate) fn exemplar_name(&self) -> &str {
-        self.prepared.0.recipe.exemplar.name()
-    }
-
-    /// Where an artwork of this session comes from; the job must be resolved by then.
-    pub(crate) fn origin(&self) -> Arc<Origin> {
-        let recipe = Recipe { job: self.job.clone(), seed: self.seed, ..self.prepared.0.recipe.clone() };
-        Arc::new(Origin { recipe, limits: self.limits() })
-    }
-}
-
-/// Shows an engine's snapshots to whoever watches the run, as artworks.
-pub(crate) struct Show<'a, F> {
-    pub(crate) watch: &'a mut dyn Watch<Artwork>,
-    pub(crate) origin: &'a Arc<Origin>,
-    /// Makes something of a snapshot that can be written.
-    pub(crate) make: F,
-}
-
-impl<P, M: Made + 'static, F: Fn(P) -> M> Watch<P> for Show<'_, F> {
-    fn step(&mut self, progress: &arabesque_core::Progress, preview: &dyn Fn() -> P) -> std::ops::ControlFlow<()> {
-        let (make, origin) = (&self.make, self.origin);
-        self.watch.step(progress, &|| Artwork::new(Arc::clone(origin), make(preview())))
     }
 }

@@ -6,9 +6,9 @@ use arabesque_core::{Bounds, Domain, Error, Exemplar, Limits, Outline, Result, S
 use arabesque_io::svg::{self, Drawing, Page, ReadOptions};
 
 use crate::{
-    Fill, Input, Size,
-    prepare::{Files, spacing},
-    recipe::pixels_per_user,
+    recipe::{Fill, Input, Size, pixels_per_user},
+    resources::Files,
+    spacing::spacing,
 };
 
 /// Shortest side of a tile, in mean spacings: in a narrower one every element would meet itself many times.

@@ -4,12 +4,9 @@ use arabesque_core::{Domain, Error, Exemplar, Outline, Result, Shape, Warning};
 use arabesque_io::svg::{self, Drawing, Placed};
 
 use crate::{
-    Input,
-    prepare::{
-        Files,
-        place::{Units, options, read_shape},
-    },
-    recipe::pixels_per_user,
+    plane::place::{Units, options, read_shape},
+    recipe::{Input, pixels_per_user},
+    resources::Files,
 };
 
 /// The areas to keep free: those given, which are embedded, else the layer Avoid of the exemplar.

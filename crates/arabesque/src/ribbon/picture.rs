@@ -2,9 +2,12 @@
 
 use arabesque_core::{Error, Image, Limits, Result, Vector};
 use arabesque_io::{image::draw_svg, png, svg::Page};
-use arabesque_ribbons::{Canvas, Mask, Ribbon, render};
+use arabesque_ribbons::{Canvas, Exemplar, Mask, Ribbon, render};
 
-use crate::{OutputOptions, artwork::RibbonMade, method::Sheet, recipe::pixels_per_user};
+use crate::{
+    artwork::Sheet,
+    recipe::{OutputOptions, pixels_per_user},
+};
 
 /// CSS pixels per inch.
 const PIXELS_PER_INCH: f64 = 96.0;
@@ -32,6 +35,12 @@ pub(crate) fn resolution_of_canvas(output: &OutputOptions, page: Option<&Page>) 
 }
 
 impl Pixels {
+    /// The picture of a page.
+    fn canvas(self, page: &Page, limits: &Limits) -> Result<Canvas> {
+        let [width, height] = self.pixels(page, limits)?;
+        Ok(Canvas { origin: page.view.min, width, height, pixels_per_unit: self.0 })
+    }
+
     /// Width and height of the picture of a page.
     ///
     /// # Errors
@@ -51,29 +60,30 @@ impl Pixels {
     }
 }
 
-impl RibbonMade {
-    /// The ribbons on their canvas, as PNG; those of drawings are drawn as vectors.
-    pub(crate) fn picture(
-        &self,
-        (ribbons, mask): (&[Ribbon<2>], Option<&Mask>),
-        page: &Page,
-        sheet: &Sheet<'_>,
-    ) -> Result<Vec<u8>> {
-        let scale = resolution_of_canvas(sheet.output, Some(page))?;
-        let [width, height] = scale.pixels(page, sheet.limits)?;
-        let canvas = Canvas { origin: page.view.min, width, height, pixels_per_unit: scale.0 };
-        let image = match self.drawings() {
-            Some(_) => {
-                let text = self.svg(ribbons, page, None)?;
-                let mut image = draw_svg("the ribbon", &text, (page.view.size().0, scale.0), sheet.limits)?;
-                mask.into_iter().for_each(|mask| clear(&mut image, mask, &canvas));
-                image
-            }
-            None => render(ribbons, self.exemplars(), mask, &canvas),
-        };
-        let per_metre = scale.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE;
-        png::write_image(&image, per_metre, sheet.recipe)
-    }
+/// Pieces of pictures on their canvas, as PNG.
+pub(crate) fn of_pieces(
+    ribbons: &[Ribbon<2>],
+    exemplars: &[Exemplar],
+    avoid: Option<&Mask>,
+    page: &Page,
+    sheet: &Sheet<'_>,
+) -> Result<Vec<u8>> {
+    let scale = resolution_of_canvas(sheet.output, Some(page))?;
+    encode(&render(ribbons, exemplars, avoid, &scale.canvas(page, sheet.limits)?), scale, page, sheet)
+}
+
+/// Ribbons of drawings, drawn as the vectors of `svg`, as PNG.
+pub(crate) fn of_drawing(svg: &str, avoid: Option<&Mask>, page: &Page, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
+    let scale = resolution_of_canvas(sheet.output, Some(page))?;
+    let canvas = scale.canvas(page, sheet.limits)?;
+    let mut image = draw_svg("the ribbon", svg, (page.view.size().0, scale.0), sheet.limits)?;
+    avoid.into_iter().for_each(|mask| clear(&mut image, mask, &canvas));
+    encode(&image, scale, page, sheet)
+}
+
+fn encode(image: &Image, scale: Pixels, page: &Page, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
+    let per_metre = scale.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE;
+    png::write_image(image, per_metre, sheet.recipe)
 }
 
 /// Leaves out ink on what is to be avoided, as pieces of pictures do.

@@ -1,13 +1,13 @@
 //! Exemplars of any file kind, as a drawing.
 
-use arabesque_core::{Exemplar, Limits, Outline, Result, Vector, Warning};
+use arabesque_core::{Error, Exemplar, Limits, Outline, Result, Vector, Warning};
 use arabesque_io::{
     csv::{self, Points},
     file, obj,
     svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Stacking, Unit},
 };
 
-use crate::{Error, Input, Method};
+use crate::recipe::{Input, Method};
 
 /// An exemplar as it was read.
 #[derive(Clone, Debug)]
@@ -110,6 +110,14 @@ fn circle(centre: Vector<2>, radius: f64) -> Vec<Vector<2>> {
             centre + Vector::xy(c, s) * radius
         })
         .collect()
+}
+
+/// The exemplar of elements and curves, in words.
+pub(crate) fn understood<const D: usize>(exemplar: &Exemplar<D>) -> String {
+    let (elements, classes) = (exemplar.elements.len(), exemplar.classes.len());
+    let (curves, styles) = (exemplar.curves.len(), exemplar.styles.len());
+    let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
+    format!("exemplar: {elements} elements in {classes} classes{of_curves}")
 }
 
 #[cfg(test)]

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, EnergyPoint, Error, Outcome, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{Bounds, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
 use arabesque_io::{csv, json, obj};
 
 use crate::{
-    Encoded, Format, Geometry, Summary,
-    artwork::plane::{snapshot, unfinished},
-    method::{Made, Sheet},
-    prepare::{Volume, spacing},
+    artwork::{Encoded, Geometry, Made, Sheet, Summary},
+    plane::{snapshot, unfinished},
+    recipe::Format,
+    spacing::spacing,
 };
 
 /// How far a written polyline may lie from its curve, in mean spacings.
@@ -18,7 +18,7 @@ const CHORD: f64 = 0.005;
 /// Points and curves in a box.
 #[derive(Debug)]
 pub(crate) struct VolumeMade {
-    pub(crate) volume: Arc<Volume>,
+    pub(crate) exemplar: Arc<Exemplar<3>>,
     /// The box.
     pub(crate) frame: Bounds<3>,
     pub(crate) outcome: Outcome<3>,
@@ -26,14 +26,14 @@ pub(crate) struct VolumeMade {
 
 impl VolumeMade {
     /// What a run has so far.
-    pub(crate) fn of_snapshot(volume: &Arc<Volume>, frame: Bounds<3>, snapshot: Snapshot<3>) -> Self {
-        Self { volume: Arc::clone(volume), frame, outcome: unfinished(snapshot) }
+    pub(crate) fn of_snapshot(exemplar: &Arc<Exemplar<3>>, frame: Bounds<3>, snapshot: Snapshot<3>) -> Self {
+        Self { exemplar: Arc::clone(exemplar), frame, outcome: unfinished(snapshot) }
     }
 }
 
 impl Made for VolumeMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
-        let (exemplar, outcome, frame) = (&self.volume.exemplar, &self.outcome, self.frame);
+        let (exemplar, outcome, frame) = (&*self.exemplar, &self.outcome, self.frame);
         let (points, curves) = (outcome.placements.len(), outcome.curves.len());
         let (text, warnings) = match sheet.format {
             Format::Obj => {
@@ -60,7 +60,7 @@ impl Made for VolumeMade {
     }
 
     fn summary(&self) -> Summary {
-        Summary::of(&self.volume.exemplar, &self.outcome)
+        Summary::of(&*self.exemplar, &self.outcome)
     }
 
     fn geometry(&self) -> Geometry {

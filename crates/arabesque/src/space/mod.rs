@@ -1,5 +1,7 @@
 //! Boxes in space: networks of curves and clouds of points.
 
+mod made;
+
 use std::sync::Arc;
 
 use arabesque_core::{
@@ -8,70 +10,62 @@ use arabesque_core::{
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
-    Artwork, Format, Input, Job, LoadedExemplar, Space,
-    artwork::VolumeMade,
-    method::{Method, Ready},
-    prepare::{Preparation, Session, Show, fields::constant_factor, plane::understood, spacing},
+    artwork::Artwork,
+    exemplar::{LoadedExemplar, understood},
+    method::{Preparation, Ready, RunContext, Show},
+    plane::constant_factor,
+    recipe::{Job, Space},
+    spacing::spacing,
 };
+use made::VolumeMade;
 
 /// An exemplar in space, analysed.
 #[derive(Debug)]
 pub(crate) struct Volume {
-    pub(crate) exemplar: Exemplar<3>,
+    exemplar: Arc<Exemplar<3>>,
     engine: Engine<3>,
 }
 
-impl Method for Space {
-    /// OBJ for curves and CSV for points.
-    fn usual_format(&self, exemplar: &Input) -> Format {
-        let is_points = Format::of_path(&exemplar.path).ok().flatten() == Some(Format::Csv);
-        if is_points { Format::Csv } else { Format::Obj }
-    }
-
-    fn fixed(&self) -> Job {
-        Job::Space(Self { method: self.method, params: self.params.clone(), ..Self::new(crate::Cuboid([1.0; 3])) })
-    }
-
-    fn prepare(&self, preparation: &mut Preparation<'_>) -> Result<Arc<dyn Ready>> {
-        let params = self.params.engine_params()?;
-        let bytes = preparation.files.read(&preparation.exemplar)?;
-        let limits = preparation.files.limits();
-        let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, self.method, &limits)? {
-            LoadedExemplar::Space(exemplar, warnings) => {
-                preparation.warnings.extend(warnings);
-                exemplar
-            }
-            LoadedExemplar::Drawing(_) | LoadedExemplar::Points(_) => {
-                return Err(Error::input(
-                    preparation.exemplar.name(),
-                    "an exemplar of the plane, where a box in space is to be filled",
-                    "give curves as OBJ or points as CSV with a column z, or fill a page with --size",
-                ));
-            }
-        };
-        preparation.exemplar = preparation.exemplar.embedding(&bytes);
-        let engine = Engine::new(&exemplar, &params)?;
-        Ok(Arc::new(Volume { exemplar, engine }))
-    }
+/// Reads an exemplar to fill a box in space.
+pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Result<Volume> {
+    let params = space.params.engine_params()?;
+    let bytes = preparation.files.read(&preparation.exemplar)?;
+    let limits = preparation.files.limits();
+    let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, &limits)? {
+        LoadedExemplar::Space(exemplar, warnings) => {
+            preparation.warnings.extend(warnings);
+            exemplar
+        }
+        LoadedExemplar::Drawing(_) | LoadedExemplar::Points(_) => {
+            return Err(Error::input(
+                preparation.exemplar.name(),
+                "an exemplar of the plane, where a box in space is to be filled",
+                "give curves as OBJ or points as CSV with a column z, or fill a page with --size",
+            ));
+        }
+    };
+    preparation.exemplar = preparation.exemplar.embedding(&bytes);
+    let engine = Engine::new(&exemplar, &params)?;
+    Ok(Volume { exemplar: Arc::new(exemplar), engine })
 }
 
 impl Volume {
-    fn resolve(&self, session: &Session<'_>) -> Result<EngineRequest<3>> {
-        let Job::Space(space) = &session.job else {
-            return Err(Error::parameter("request", session.job.name(), "a request for a box in space"));
+    fn resolve(&self, context: &RunContext<'_>) -> Result<EngineRequest<3>> {
+        let Job::Space(space) = &context.job else {
+            return Err(Error::parameter("request", context.job.name(), "a request for a box in space"));
         };
         if space.border == Some(Border::Turn) {
             let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
             return Err(Error::parameter("border", "turn", expected));
         }
         let bounds = space.cuboid.bounds();
-        check_volume(&self.exemplar, &bounds, &session.limits())?;
+        check_volume(&self.exemplar, &bounds, &context.limits())?;
         let mut request = EngineRequest::new(Domain::Box(bounds));
         request.border = space.border.unwrap_or(Border::Clip);
         request.fields.scale = constant_factor("scale", space.scale.as_ref())?;
         request.fields.density = constant_factor("density", space.density.as_ref())?;
-        request.seed = session.seed;
-        request.limits = session.limits();
+        request.seed = context.seed;
+        request.limits = context.limits();
         Ok(request)
     }
 }
@@ -81,11 +75,11 @@ impl Ready for Volume {
         understood(&self.exemplar)
     }
 
-    fn run(self: Arc<Self>, session: Session<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
-        let request = self.resolve(&session)?;
+    fn run(self: Arc<Self>, context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        let request = self.resolve(&context)?;
         let frame = request.domain.bounds();
-        let origin = session.origin();
-        let make = |snapshot| VolumeMade::of_snapshot(&self, frame, snapshot);
+        let origin = context.origin();
+        let make = |snapshot| VolumeMade::of_snapshot(&self.exemplar, frame, snapshot);
         let mut outcome = self.engine.run(&request, &mut Show { watch, origin: &origin, make })?;
         if outcome.placements.is_empty() && outcome.curves.is_empty() {
             return Err(match outcome.stopped {
@@ -93,8 +87,8 @@ impl Ready for Volume {
                 StopReason::Finished => Error::no_result("nothing fits the box", "make it larger"),
             });
         }
-        outcome.warnings.splice(0..0, session.warnings);
-        Ok(Artwork::new(origin, VolumeMade { volume: self, frame, outcome }))
+        outcome.warnings.splice(0..0, context.warnings);
+        Ok(Artwork::new(origin, VolumeMade { exemplar: Arc::clone(&self.exemplar), frame, outcome }))
     }
 }
 
@@ -124,7 +118,7 @@ mod tests {
     use arabesque_core::Unobserved;
 
     use super::*;
-    use crate::{FieldSource, OutputOptions, Recipe, Resources, recipe_in};
+    use crate::{FieldSource, Format, Input, OutputOptions, Recipe, Resources, recipe_in};
 
     /// A cubic lattice of points of two classes.
     fn lattice() -> String {

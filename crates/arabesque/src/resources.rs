@@ -9,7 +9,7 @@ use std::{
 use arabesque_core::{Limits, Result};
 use arabesque_io::file;
 
-use crate::Input;
+use crate::recipe::Input;
 
 /// Where the files of a recipe come from. Default: the working folder, [`Limits::default`], and nothing in memory.
 #[derive(Clone, Debug, Default)]

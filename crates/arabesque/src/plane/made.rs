@@ -10,10 +10,10 @@ use arabesque_io::{
 };
 
 use crate::{
-    Encoded, Format, Geometry, OutputOptions, Summary,
-    method::{Made, Sheet},
-    prepare::{Plane, PlaneRequest, Units, spacing},
-    recipe::unit_name,
+    artwork::{Encoded, Geometry, Made, Sheet, Summary},
+    plane::{exemplar::PlaneExemplar, place::Units, request::PlaneRequest},
+    recipe::{Format, OutputOptions, unit_name},
+    spacing::spacing,
 };
 
 /// How far a simplified stroke may lie from the true one, in mean spacings.
@@ -24,22 +24,26 @@ const NODE_WIDTH: f64 = 0.02;
 /// Elements and strokes in a part of the plane.
 #[derive(Debug)]
 pub(crate) struct PlaneMade {
-    plane: Arc<Plane>,
+    exemplar: Arc<PlaneExemplar>,
     request: Arc<PlaneRequest>,
     outcome: Outcome<2>,
 }
 
 impl PlaneMade {
     /// What a run ended with.
-    pub(crate) fn new(plane: Arc<Plane>, request: Arc<PlaneRequest>, mut outcome: Outcome<2>) -> Self {
-        simplify(&plane.drawing.exemplar, &mut outcome.curves);
-        Self { plane, request, outcome }
+    pub(crate) fn new(exemplar: &Arc<PlaneExemplar>, request: Arc<PlaneRequest>, mut outcome: Outcome<2>) -> Self {
+        simplify(&exemplar.drawing.exemplar, &mut outcome.curves);
+        Self { exemplar: Arc::clone(exemplar), request, outcome }
     }
 
     /// What a run has so far.
-    pub(crate) fn of_snapshot(plane: &Arc<Plane>, request: &Arc<PlaneRequest>, snapshot: Snapshot<2>) -> Self {
+    pub(crate) fn of_snapshot(
+        exemplar: &Arc<PlaneExemplar>,
+        request: &Arc<PlaneRequest>,
+        snapshot: Snapshot<2>,
+    ) -> Self {
         let outcome = unfinished(snapshot);
-        Self { plane: Arc::clone(plane), request: Arc::clone(request), outcome }
+        Self { exemplar: Arc::clone(exemplar), request: Arc::clone(request), outcome }
     }
 
     /// What a file of points cannot hold.
@@ -60,11 +64,11 @@ impl PlaneMade {
         let placements = &self.outcome.placements;
         let bend = |k: usize, p| arabesque_patterns::warp(&placements[k].control, p);
         write_svg(&SvgSheet {
-            drawing: &self.plane.drawing,
+            drawing: &self.exemplar.drawing,
             placements,
             curves: &self.outcome.curves,
             kept: self.request.kept.as_ref(),
-            host: self.plane.region.as_ref().map(|region| &region.rest),
+            host: self.exemplar.region.as_ref().map(|region| &region.rest),
             page: self.request.page,
             domain: &self.request.engine.domain,
             shape: self.request.shape.as_ref(),
@@ -98,7 +102,7 @@ fn simplify(exemplar: &Exemplar<2>, curves: &mut [Drawn<2>]) {
 
 impl Made for PlaneMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
-        let exemplar = &self.plane.drawing.exemplar;
+        let exemplar = &self.exemplar.drawing.exemplar;
         let page = &self.request.page;
         let size = page.view.size();
         match sheet.format {
@@ -114,7 +118,7 @@ impl Made for PlaneMade {
                 Ok(Encoded { bytes: write_png(&plate, sheet.limits)?, warnings: written.warnings })
             }
             Format::Json => {
-                let has_unit = self.plane.units == Units::OfPage;
+                let has_unit = self.exemplar.units() == Units::OfPage;
                 let unit = has_unit.then_some((unit_name(page.unit), page.unit_per_user));
                 let frame = json::Frame { view: page.view, unit, recipe: sheet.recipe };
                 json::write_json(exemplar, &self.outcome, &frame).map(Encoded::plain)
@@ -131,7 +135,7 @@ impl Made for PlaneMade {
     }
 
     fn summary(&self) -> Summary {
-        Summary::of(&self.plane.drawing.exemplar, &self.outcome)
+        Summary::of(&self.exemplar.drawing.exemplar, &self.outcome)
     }
 
     fn geometry(&self) -> Geometry {

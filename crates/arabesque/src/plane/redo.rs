@@ -1,7 +1,5 @@
 //! Filling a region of a drawing again, from what lies around it or from another region.
 
-use std::sync::Arc;
-
 use arabesque_core::{Border, Bounds, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
@@ -9,14 +7,14 @@ use arabesque_io::{
 };
 
 use crate::{
-    Format, Input, Job, Redo, Region,
-    method::{Method, Ready},
-    prepare::{
-        Files, Preparation,
+    method::Preparation,
+    plane::{
+        exemplar::{PlaneExemplar, RegionOfFile},
         place::{Place, Units, read_shape},
-        plane::{Plane, RegionOfFile},
-        spacing,
     },
+    recipe::{Job, Redo, Region},
+    resources::Files,
+    spacing::spacing,
 };
 
 /// Shortest side of what serves as the example, in mean spacings.
@@ -25,44 +23,29 @@ const MIN_SIDE: f64 = 1.5;
 /// A region hangs over the page when more than this share of it does.
 const OVERHANG: f64 = 0.01;
 
-impl Method for Redo {
-    fn usual_format(&self, _: &Input) -> Format {
-        Format::Svg
+/// Reads the drawing, and takes it apart into the example, the region and what stays.
+pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<PlaneExemplar> {
+    if redo.border == Some(Border::Turn) {
+        let expected =
+            "inside, cross or clip: at the border of a region that is filled again the strokes around it go on";
+        return Err(Error::parameter("border", "turn", expected));
     }
-
-    fn fixed(&self) -> Job {
-        Job::Redo(Self {
-            method: self.method,
-            from: self.from.clone(),
-            params: self.params.clone(),
-            ..Self::of(self.region.clone())
-        })
-    }
-
-    fn prepare(&self, preparation: &mut Preparation<'_>) -> Result<Arc<dyn Ready>> {
-        let params = self.params.engine_params()?;
-        if self.border == Some(Border::Turn) {
-            let expected =
-                "inside, cross or clip: at the border of a region that is filled again the strokes around it go on";
-            return Err(Error::parameter("border", "turn", expected));
+    let bytes = preparation.files.read(&preparation.exemplar)?;
+    let file = HostFile {
+        text: drawing_text(preparation.exemplar.name(), &bytes)?,
+        name: preparation.exemplar.name().to_owned(),
+        files: preparation.files,
+    };
+    let (drawing, region) = file.split(redo, &mut preparation.warnings)?;
+    preparation.exemplar = preparation.exemplar.embedding(&bytes);
+    let mut job = redo.clone();
+    for region in std::iter::once(&mut job.region).chain(job.from.as_mut()) {
+        if let Region::Shape(input) = region {
+            preparation.files.embed(input)?;
         }
-        let bytes = preparation.files.read(&preparation.exemplar)?;
-        let file = HostFile {
-            text: drawing_text(preparation.exemplar.name(), &bytes)?,
-            name: preparation.exemplar.name().to_owned(),
-            files: preparation.files,
-        };
-        let (drawing, region) = file.split(self, &mut preparation.warnings)?;
-        preparation.exemplar = preparation.exemplar.embedding(&bytes);
-        let mut job = self.clone();
-        for region in std::iter::once(&mut job.region).chain(job.from.as_mut()) {
-            if let Region::Shape(input) = region {
-                preparation.files.embed(input)?;
-            }
-        }
-        preparation.job = Job::Redo(job);
-        Ok(Arc::new(Plane::new(drawing, None, Some(region), &params, preparation)?))
     }
+    preparation.job = Job::Redo(job);
+    Ok(PlaneExemplar { drawing, points: None, region: Some(region) })
 }
 
 /// The text of a drawing.

@@ -13,10 +13,9 @@ use arabesque_io::{
 use arabesque_ribbons::{Exemplar, Piece, Ribbon, Rung, facets, rungs, shown_areas};
 
 use crate::{
-    Encoded, Format, Geometry, RibbonSummary, Summary,
-    method::{Made, Sheet},
-    prepare::{RibbonReady, Track},
-    recipe::encode,
+    artwork::{Encoded, Geometry, Made, RibbonSummary, Sheet, Summary},
+    recipe::{Format, encode},
+    ribbon::{picture, strips::RibbonStrips, track::Track},
 };
 
 /// Pixels per metre of an embedded picture: 96 per inch.
@@ -25,7 +24,7 @@ const PER_METRE: f64 = 96.0 / 0.0254;
 /// Ribbons along curves.
 #[derive(Debug)]
 pub(crate) struct RibbonMade {
-    pub(crate) ready: Arc<RibbonReady>,
+    strips: Arc<RibbonStrips>,
     track: Arc<Track>,
     laid: Laid,
     pub(crate) warnings: Vec<Warning>,
@@ -53,23 +52,23 @@ impl From<Vec<Ribbon<3>>> for Laid {
 
 impl RibbonMade {
     pub(crate) fn new(
-        ready: &Arc<RibbonReady>,
+        strips: &Arc<RibbonStrips>,
         track: &Arc<Track>,
         laid: Laid,
         warnings: Vec<Warning>,
         stopped: StopReason,
     ) -> Self {
-        Self { ready: Arc::clone(ready), track: Arc::clone(track), laid, warnings, stopped }
+        Self { strips: Arc::clone(strips), track: Arc::clone(track), laid, warnings, stopped }
     }
 
     /// What a run in the plane has so far.
-    pub(crate) fn of_plane(ready: &Arc<RibbonReady>, track: &Arc<Track>, snapshot: Snapshot<2>) -> Self {
-        Self::new(ready, track, Laid::Plane(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
+    pub(crate) fn of_plane(strips: &Arc<RibbonStrips>, track: &Arc<Track>, snapshot: Snapshot<2>) -> Self {
+        Self::new(strips, track, Laid::Plane(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
     }
 
     /// What a run in space has so far.
-    pub(crate) fn of_space(ready: &Arc<RibbonReady>, track: &Arc<Track>, snapshot: Snapshot<3>) -> Self {
-        Self::new(ready, track, Laid::Space(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
+    pub(crate) fn of_space(strips: &Arc<RibbonStrips>, track: &Arc<Track>, snapshot: Snapshot<3>) -> Self {
+        Self::new(strips, track, Laid::Space(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
     }
 
     /// Number of pieces of each ribbon.
@@ -93,8 +92,8 @@ impl RibbonMade {
         }
     }
 
-    pub(crate) fn exemplars(&self) -> &[Exemplar] {
-        self.ready.engine.exemplars()
+    fn exemplars(&self) -> &[Exemplar] {
+        self.strips.engine.exemplars()
     }
 
     /// What each curve is called.
@@ -134,7 +133,7 @@ impl RibbonMade {
         });
         let sizes = self.exemplars().iter().map(|e| [e.image.width, e.image.height]);
         ribbon_json::write_ribbons(&ribbon_json::Document {
-            exemplars: self.ready.sources.iter().map(|s| s.name.as_str()).zip(sizes).collect(),
+            exemplars: self.strips.sources.iter().map(|s| s.name.as_str()).zip(sizes).collect(),
             ribbons: lines.collect(),
             page: match &*self.track {
                 Track::Plane { page, .. } => Some([page.view.min.0, page.view.size().0]),
@@ -149,7 +148,7 @@ impl RibbonMade {
     /// A textured strip for each exemplar.
     fn parts(&self, pictures: Pictures) -> Result<Vec<Part>> {
         let mut parts = Vec::new();
-        for (exemplar, source) in self.exemplars().iter().zip(&self.ready.sources) {
+        for (exemplar, source) in self.exemplars().iter().zip(&self.strips.sources) {
             let picture = match pictures {
                 Pictures::Held => png::write_image(&exemplar.image, PER_METRE, None)?,
                 Pictures::Left => Vec::new(),
@@ -180,11 +179,11 @@ impl RibbonMade {
     }
 
     /// The exemplars as areas, where they are drawings.
-    pub(crate) fn drawings(&self) -> Option<Vec<&[Area]>> {
-        self.ready.sources.iter().map(|s| s.areas.as_deref()).collect()
+    fn drawings(&self) -> Option<Vec<&[Area]>> {
+        self.strips.sources.iter().map(|s| s.areas.as_deref()).collect()
     }
 
-    pub(crate) fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>) -> Result<String> {
+    fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>) -> Result<String> {
         let size = page.view.size();
         let decimals = Decimals::for_extent(size[0].max(size[1]));
         let drawings = self.drawings();
@@ -231,7 +230,11 @@ impl Made for RibbonMade {
             }
             (Format::Glb, ..) => gltf::write_glb(&self.parts(Pictures::Held)?, recipe)?,
             (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page }) => {
-                self.picture((ribbons, request.avoid.as_ref()), page, sheet)?
+                let avoid = request.avoid.as_ref();
+                match self.drawings() {
+                    Some(_) => picture::of_drawing(&self.svg(ribbons, page, None)?, avoid, page, sheet)?,
+                    None => picture::of_pieces(ribbons, self.exemplars(), avoid, page, sheet)?,
+                }
             }
             (Format::Svg, Laid::Plane(ribbons), Track::Plane { page, .. }) => {
                 self.svg(ribbons, page, recipe)?.into_bytes()

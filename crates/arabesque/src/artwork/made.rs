@@ -1,0 +1,69 @@
+//! What the methods have to say of what they made.
+
+use std::fmt::Debug;
+
+use arabesque_core::{EnergyPoint, Limits, Result, Snapshot, StopReason, Warning};
+
+use crate::{
+    artwork::summary::Summary,
+    recipe::{Format, OutputOptions},
+};
+
+/// What came out of a run, or is there so far.
+pub(crate) trait Made: Debug + Send + Sync {
+    /// Its file.
+    fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded>;
+
+    /// How much of what there is.
+    fn summary(&self) -> Summary;
+
+    /// The bare geometry.
+    fn geometry(&self) -> Geometry;
+
+    /// What the user should know.
+    fn warnings(&self) -> &[Warning];
+
+    /// Mean energy after each iteration, where the method has one.
+    fn energy(&self) -> &[EnergyPoint] {
+        &[]
+    }
+
+    /// Why the run ended.
+    fn stopped(&self) -> StopReason;
+}
+
+/// How something that was made is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sheet<'a> {
+    /// The format; never [`Format::Toml`], which holds the recipe alone.
+    pub(crate) format: Format,
+    pub(crate) output: &'a OutputOptions,
+    /// The recipe that the file carries.
+    pub(crate) recipe: Option<&'a str>,
+    pub(crate) limits: &'a Limits,
+}
+
+/// A file, complete.
+#[derive(Clone, Debug)]
+pub struct Encoded {
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// What could not be written as asked.
+    pub warnings: Vec<Warning>,
+}
+
+/// Geometry without ink: placements, strokes and pieces of pictures, in the units of the page or of the exemplar.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Geometry {
+    /// In the plane; y points down.
+    Plane(Snapshot<2>),
+    /// In space.
+    Space(Snapshot<3>),
+}
+
+impl Encoded {
+    /// A text without warnings.
+    pub(crate) fn plain(text: String) -> Self {
+        Self { bytes: text.into_bytes(), warnings: Vec::new() }
+    }
+}

@@ -1,0 +1,108 @@
+//! The plane: pages, shapes and tiles, and regions of a drawing that are filled again.
+
+mod exemplar;
+mod fields;
+mod made;
+mod place;
+mod redo;
+mod request;
+mod surroundings;
+
+pub(crate) use fields::constant_factor;
+pub(crate) use made::{snapshot, unfinished};
+pub(crate) use place::options;
+
+use std::sync::Arc;
+
+use arabesque_core::{Error, Result, StopReason, Watch};
+use arabesque_patterns::Prepared as Engine;
+
+use crate::{
+    artwork::Artwork,
+    exemplar::{LoadedExemplar, points_as_drawing, understood},
+    method::{Preparation, Ready, RunContext, Show},
+    recipe::{Fill, Parameters, Redo},
+};
+use exemplar::PlaneExemplar;
+use made::PlaneMade;
+
+/// An exemplar of the plane, analysed.
+#[derive(Debug)]
+pub(crate) struct Plane {
+    exemplar: Arc<PlaneExemplar>,
+    engine: Engine<2>,
+}
+
+/// Reads an exemplar to fill a part of the plane.
+pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<Plane> {
+    let input = &preparation.exemplar;
+    // What is wrong with the parameters is told before what is wrong in a file.
+    fill.params.engine_params()?;
+    let bytes = preparation.files.read(input)?;
+    let (drawing, points) = match LoadedExemplar::read(input, &bytes, fill.method, &preparation.files.limits())? {
+        LoadedExemplar::Drawing(drawing) => (*drawing, None),
+        LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(exemplar)),
+        LoadedExemplar::Space(..) => {
+            return Err(Error::input(
+                input.name(),
+                "an exemplar in space, where one of the plane was expected",
+                "give the box to fill with --box, such as --box 10x10x10",
+            ));
+        }
+    };
+    preparation.exemplar = input.embedding(&bytes);
+    Plane::new(PlaneExemplar { drawing, points, region: None }, &fill.params, preparation)
+}
+
+/// Reads a drawing to fill a region of it again.
+pub(crate) fn prepare_region(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Plane> {
+    redo.params.engine_params()?;
+    let exemplar = redo::read(redo, preparation)?;
+    Plane::new(exemplar, &redo.params, preparation)
+}
+
+impl Plane {
+    /// Analyses the exemplar.
+    fn new(mut exemplar: PlaneExemplar, params: &Parameters, preparation: &mut Preparation<'_>) -> Result<Self> {
+        preparation.warnings.append(&mut exemplar.drawing.warnings);
+        let engine = Engine::new(exemplar.exemplar(), &params.engine_params()?)
+            .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
+        Ok(Self { exemplar: Arc::new(exemplar), engine })
+    }
+}
+
+impl Ready for Plane {
+    fn understood(&self) -> String {
+        understood(&self.exemplar.drawing.exemplar)
+    }
+
+    fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        let request = Arc::new(self.exemplar.resolve(&mut context)?);
+        let origin = context.origin();
+        let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);
+        let mut show = Show { watch, origin: &origin, make };
+        let mut outcome = self.engine.run(&request.engine, &mut show)?;
+        if outcome.placements.is_empty() && outcome.curves.is_empty() {
+            return Err(match outcome.stopped {
+                StopReason::Stopped => Error::no_result("stopped before anything was placed", "give it more time"),
+                StopReason::Finished => Error::no_result(
+                    "nothing fits the domain under the given constraints",
+                    "make the domain larger or the avoided shapes smaller, or let elements cross the border with --border cross or clip",
+                ),
+            });
+        }
+        outcome.warnings.splice(0..0, context.warnings);
+        Ok(Artwork::new(origin, PlaneMade::new(&self.exemplar, request, outcome)))
+    }
+}
+
+/// The same error with the name of the file where it speaks of the exemplar.
+fn in_exemplar(error: Error, name: &str) -> Error {
+    match error {
+        Error::Input { problem, advice, .. } => Error::input(name, problem, advice),
+        Error::Limit { what, found, limit, advice } => {
+            Error::Limit { what: format!("{name}: {what}"), found, limit, advice }
+        }
+        other => other,
+    }
+}

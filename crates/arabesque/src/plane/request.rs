@@ -1,0 +1,111 @@
+//! Requests in the plane: every file is read, every unit resolved.
+
+use arabesque_core::{Border, Error, Outline, Request as EngineRequest, Result};
+use arabesque_io::svg::{Page, Placed};
+
+use crate::{
+    method::RunContext,
+    plane::{
+        exemplar::PlaneExemplar,
+        fields::FieldSources,
+        place::{Place, check_room},
+        surroundings,
+    },
+    recipe::{Fill, Input, Job, Redo},
+};
+
+/// A request in the plane, with every file read and every unit resolved.
+#[derive(Debug)]
+pub(crate) struct PlaneRequest {
+    pub(crate) engine: EngineRequest<2>,
+    pub(crate) page: Page,
+    /// Outline of the domain where it is a shape.
+    pub(crate) shape: Option<Outline<2>>,
+    pub(crate) kept: Option<Placed>,
+}
+
+impl PlaneExemplar {
+    /// Reads the files of the request, which are embedded in the job of `context`.
+    pub(crate) fn resolve(&self, context: &mut RunContext<'_>) -> Result<PlaneRequest> {
+        let mut job = std::mem::replace(&mut context.job, Job::Fill(Fill::default()));
+        let resolved = self.resolve_job(&mut job, context);
+        context.job = job;
+        resolved
+    }
+
+    fn resolve_job(&self, job: &mut Job, context: &mut RunContext<'_>) -> Result<PlaneRequest> {
+        let files = context.files;
+        let place = match (&self.region, &mut *job) {
+            (Some(region), _) => region.place.clone(),
+            (None, Job::Fill(fill)) => Place::of(fill, &self.drawing, self.units(), files)?,
+            (None, _) => return Err(Error::parameter("request", job.name(), "a request to fill")),
+        };
+        check_room(self.exemplar(), &place.domain, &files.limits()).map_err(|error| self.in_region(error, context))?;
+        let surroundings = Surroundings::of(job)?;
+        let mut request = EngineRequest::new(place.domain);
+        request.seed = context.seed;
+        request.limits = files.limits();
+        request.known = self.region.is_some().then_some(self.drawing.page.view);
+        request.border = surroundings.border.unwrap_or_else(|| self.usual_border());
+        request.fields = surroundings.fields.read(&self.drawing, &request.domain.bounds(), files)?;
+        let avoid = surroundings.avoid;
+        request.obstacles = surroundings::avoided(avoid, &self.drawing, self.units(), &request.domain, files)?;
+        let mut kept = None;
+        if let Some(input) = surroundings.keep {
+            let mut placed = surroundings::kept(input, &self.drawing, self.units(), files)?;
+            context.warnings.append(&mut placed.warnings);
+            let elsewhere = surroundings::kept_elsewhere(&placed, input, &self.drawing.exemplar, &request.domain);
+            context.warnings.extend(elsewhere);
+            kept = Some(placed);
+        }
+        if let Some(placed) = kept.as_ref().or(self.region.as_ref().map(|region| &region.rest.placed)) {
+            request.frozen.clone_from(&placed.placements);
+            request.frozen_curves.clone_from(&placed.curves);
+            request.obstacles.extend(placed.obstacles.iter().cloned());
+        }
+        Ok(PlaneRequest { engine: request, page: place.page, shape: place.shape, kept })
+    }
+
+    /// In a region that is filled again elements count by their centres, as those do that it replaces.
+    fn usual_border(&self) -> Border {
+        let counts_centres = self.region.is_some() && self.exemplar().curves.is_empty();
+        if counts_centres { Border::Cross } else { Border::Clip }
+    }
+
+    /// The same error with the name of the region that is filled again, where one is.
+    fn in_region(&self, error: Error, context: &RunContext<'_>) -> Error {
+        match (error, &self.region) {
+            (Error::NoResult { problem, advice }, Some(region)) => {
+                Error::no_result(format!("{}: region {}: {problem}", context.exemplar_name(), region.name), advice)
+            }
+            (error, _) => error,
+        }
+    }
+}
+
+/// What a job in the plane says beside its place.
+struct Surroundings<'a> {
+    border: Option<Border>,
+    fields: FieldSources<'a>,
+    avoid: &'a mut Vec<Input>,
+    keep: Option<&'a mut Input>,
+}
+
+impl<'a> Surroundings<'a> {
+    fn of(job: &'a mut Job) -> Result<Self> {
+        match job {
+            Job::Fill(Fill { border, orient, scale, density, avoid, keep, .. }) => Ok(Self {
+                border: *border,
+                fields: FieldSources { orient, scale, density },
+                avoid,
+                keep: keep.as_mut(),
+            }),
+            Job::Redo(Redo { border, orient, scale, density, avoid, .. }) => {
+                Ok(Self { border: *border, fields: FieldSources { orient, scale, density }, avoid, keep: None })
+            }
+            Job::Space(_) | Job::Ribbon(_) => {
+                Err(Error::parameter("request", job.name(), "a request for a part of the plane"))
+            }
+        }
+    }
+}

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 /// A wavy band with dots on it, different for every seed, on `width` x `height` transparent pixels.
 fn strip(width: usize, height: usize, seed: u64) -> Exemplar {
-    let mut draw = Stream::new(seed, Stage::Test, 0);
+    let mut draw = Stream::new(seed, Stage::TEST, 0);
     let (phase, thick) = (draw.unit() * 6.0, 0.12 + 0.08 * draw.unit());
     let dots: Vec<(f64, u8)> =
         (0..width / 6).map(|_| (draw.unit() * width as f64, (draw.unit() * 255.0) as u8)).collect();

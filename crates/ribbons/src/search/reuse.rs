@@ -8,6 +8,9 @@ use arabesque_core::{Stage, Stream};
 
 use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::Params};
 
+/// What the random preference is drawn for.
+const PREFERENCE: Stage = Stage::new(1);
+
 /// Most pieces that a path remembers.
 const MEMORY: usize = 64;
 
@@ -71,7 +74,7 @@ impl Reuse {
         let mut taste = Vec::new();
         if most > 0.0 {
             for piece in 0..pieces.div_ceil(4) + 1 {
-                let mut stream = Stream::new(seed, Stage::Initialise, piece as u64);
+                let mut stream = Stream::new(seed, PREFERENCE, piece as u64);
                 taste.extend((0..parts).map(|_| most * stream.unit() as f32));
             }
         }

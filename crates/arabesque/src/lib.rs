@@ -41,10 +41,10 @@ pub use arabesque_io as io;
 pub use arabesque_patterns as patterns;
 pub use arabesque_ribbons as ribbons;
 
+pub use arabesque_core::suggest::nearest;
 pub use arabesque_core::{
     EnergyPoint, Error, Limits, Observer, Outcome, Progress, Result, StopReason, Unobserved, Warning,
 };
-pub use arabesque_io::nearest::nearest;
 pub use artwork::{Artwork, Encoded};
 pub use carrier::recipe_in;
 pub use format::Format;
@@ -55,7 +55,7 @@ pub use prepare::Prepared;
 pub use recipe::{BorderRule, FieldFile, FieldSource, Method, OutputOptions, Recipe};
 pub use region::Region;
 pub use ribbon::{Laid, RibbonArtwork, RibbonPrepared};
-pub use ribbon_recipe::{ClosingRule, RIBBON_OPTIONS, RibbonOption, RibbonRecipe, WidthSource};
+pub use ribbon_recipe::{ClosingRule, RibbonRecipe, WidthSource, ribbon_options};
 pub use size::Size;
 pub use space::{SpaceArtwork, SpacePrepared};
 pub use subject::Subject;

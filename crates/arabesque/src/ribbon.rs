@@ -10,7 +10,7 @@ use arabesque_io::{
     obj, png,
     svg::{self, Area, Page, ReadOptions, Unit},
 };
-use arabesque_ribbons::{self as ribbons, Exemplar, Mask, Params, Prepared as Engine, Ribbon};
+use arabesque_ribbons::{Mask, Prepared as Engine, Ribbon, RibbonParams, RibbonRequest, StripExemplar, Width};
 
 use crate::{
     Format, Input, OutputOptions, Recipe, RibbonRecipe, Size, prepare::Preparation, ribbon_picture::resolution,
@@ -45,9 +45,9 @@ pub(crate) struct Source {
 #[derive(Clone, Debug)]
 pub(crate) enum Track {
     /// Curves on a page.
-    Plane { request: ribbons::Request<2>, page: Page },
+    Plane { request: RibbonRequest<2>, page: Page },
     /// Curves in space.
-    Space { request: ribbons::Request<3> },
+    Space { request: RibbonRequest<3> },
 }
 
 /// Ribbons of the plane or of space.
@@ -163,7 +163,7 @@ impl RibbonPreparation<'_> {
     }
 
     /// The exemplars as pictures; `params` then counts in their pixels.
-    fn exemplars(&mut self, params: &mut Params) -> Result<(Vec<Exemplar>, Vec<Source>)> {
+    fn exemplars(&mut self, params: &mut RibbonParams) -> Result<(Vec<StripExemplar>, Vec<Source>)> {
         let mut inputs = vec![self.preparation.recipe.exemplar.clone()];
         inputs.append(&mut self.ribbon.then);
         let (mut exemplars, mut sources) = (Vec::new(), Vec::new());
@@ -172,7 +172,7 @@ impl RibbonPreparation<'_> {
             let bytes = self.read(&input)?;
             let carrying = input.carrying(&bytes);
             let (image, source) = self.exemplar(&input, &bytes, &mut finer)?;
-            exemplars.push(Exemplar::new(image));
+            exemplars.push(StripExemplar::new(image));
             sources.push(source);
             if k == 0 {
                 self.preparation.recipe.exemplar = carrying;
@@ -246,12 +246,12 @@ impl RibbonPreparation<'_> {
         Ok((image, areas.collect(), factor))
     }
 
-    fn warn_of_width(&mut self, params: &Params, exemplars: &[Exemplar]) {
+    fn warn_of_width(&mut self, params: &RibbonParams, exemplars: &[StripExemplar]) {
         let height = exemplars.iter().map(|e| e.image.height).max().unwrap_or(0) as f64 * params.scale;
         let widest = match &params.width {
-            ribbons::Width::Exemplar => return,
-            ribbons::Width::Constant(width) => *width,
-            ribbons::Width::Profile(stations) => stations.iter().map(|s| s.1).fold(0.0, f64::max),
+            Width::Exemplar => return,
+            Width::Constant(width) => *width,
+            Width::Profile(stations) => stations.iter().map(|s| s.1).fold(0.0, f64::max),
         };
         if widest > WIDE * height {
             let message = format!(
@@ -291,14 +291,14 @@ impl RibbonPreparation<'_> {
                 return Err(Error::Unsupported { what: "a canvas for curves in space".into(), advice: advice.into() });
             }
             let curves = obj::read_lines(name, &text, &self.limits())?;
-            return Ok(Track::Space { request: ribbons::Request::new(curves) });
+            return Ok(Track::Space { request: RibbonRequest::new(curves) });
         }
         let options = ReadOptions { limits: self.limits(), ..ReadOptions::new(name) };
         let lines = svg::read_lines(&text, input.id.as_deref(), &options)?;
         self.preparation.warnings.extend(lines.warnings);
         let own = lines.page.unwrap_or_else(|| page_around(&lines.paths));
         let page = size.map_or(own, |size| size.on(&own).1);
-        Ok(Track::Plane { request: ribbons::Request::new(lines.paths), page })
+        Ok(Track::Plane { request: RibbonRequest::new(lines.paths), page })
     }
 
     /// Refuses what only the plane has.
@@ -339,7 +339,7 @@ impl RibbonPreparation<'_> {
     }
 
     /// Warns of curves that lie off the canvas.
-    fn warn_of_page(&mut self, request: &ribbons::Request<2>, page: &Page) {
+    fn warn_of_page(&mut self, request: &RibbonRequest<2>, page: &Page) {
         for (name, path) in &request.curves {
             if !path.bounds().intersects(&page.view) {
                 let advice = "move it onto the page, or give another canvas with --on-canvas";
@@ -403,11 +403,11 @@ impl RibbonPrepared {
     pub fn run(&self, seed: u64, observer: &mut (impl Observer<2> + Observer<3>)) -> Result<RibbonArtwork<'_>> {
         let (laid, warnings, stopped) = match &self.track {
             Track::Plane { request, .. } => {
-                let outcome = self.engine.run(&ribbons::Request { seed, ..request.clone() }, observer)?;
+                let outcome = self.engine.run(&RibbonRequest { seed, ..request.clone() }, observer)?;
                 (Laid::Plane(outcome.ribbons), outcome.warnings, outcome.stopped)
             }
             Track::Space { request } => {
-                let outcome = self.engine.run_in_space(&ribbons::Request { seed, ..request.clone() }, observer)?;
+                let outcome = self.engine.run_in_space(&RibbonRequest { seed, ..request.clone() }, observer)?;
                 (Laid::Space(outcome.ribbons), outcome.warnings, outcome.stopped)
             }
         };

@@ -8,7 +8,7 @@ use arabesque_io::{
     strip::Strip,
     svg::{Area, Cell, Embedded, Filled, Look, Page, RibbonSheet, areas_markup, write_ribbons},
 };
-use arabesque_ribbons::{Exemplar, Piece, Ribbon, Rung, facets, rungs, shown_areas};
+use arabesque_ribbons::{Piece, Ribbon, Rung, StripExemplar, facets, rungs, shown_areas};
 
 use crate::{
     Encoded, Format, OutputOptions,
@@ -52,7 +52,7 @@ impl RibbonArtwork<'_> {
         Ok(Encoded { bytes, warnings: Vec::new() })
     }
 
-    fn exemplars(&self) -> &[Exemplar] {
+    fn exemplars(&self) -> &[StripExemplar] {
         self.prepared.engine.exemplars()
     }
 

@@ -67,4 +67,4 @@ mod targets;
 pub use clearance::overlap_ratio;
 pub use deform::warp;
 pub use engine::Prepared;
-pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search, Switch};
+pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Search, Switch};

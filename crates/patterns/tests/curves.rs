@@ -269,9 +269,9 @@ fn every_component_can_be_left_out() {
         assert!(length(&outcome) > 250.0, "{name}={value}: {}", length(&outcome));
     }
     for preset in Params::PRESETS {
-        let params = Params::preset(preset).unwrap();
+        let params = Params::preset(preset.name).unwrap();
         let outcome = fill(&exemplar, &params, &Request::new(Domain::Box(page(60.0, 60.0))));
-        assert!(!outcome.curves.is_empty(), "{preset}");
+        assert!(!outcome.curves.is_empty(), "{}", preset.name);
     }
 }
 

@@ -2,7 +2,11 @@
 
 use std::process::ExitCode;
 
-use arabesque::{BorderRule, FieldSource, Input, Method, Recipe, Region, patterns::Params};
+use arabesque::{
+    BorderRule, FieldSource, Input, Method, Recipe, Region,
+    core::options::{help_list, preset_list},
+    patterns::Params,
+};
 use clap::{Args, ValueEnum};
 
 use crate::{
@@ -99,7 +103,7 @@ struct Engine {
     /// Levels of the hierarchy [default: as the preset has it]
     #[arg(long, value_name = "N")]
     levels: Option<usize>,
-    /// Iterations a level [default: as the preset has it]
+    /// Iterations per level [default: as the preset has it]
     #[arg(long, value_name = "N")]
     iterations: Option<usize>,
     /// Set one parameter by its name (listed under --help); may be given several times
@@ -113,10 +117,10 @@ struct Writing {
     /// SVG: write every element out in place, flattened, for cutters and plotters
     #[arg(long)]
     expand: bool,
-    /// PNG: pixels an inch [default: 96]
+    /// PNG: pixels per inch [default: 96]
     #[arg(long, value_name = "N", conflicts_with = "pixels_per_unit")]
     dpi: Option<f64>,
-    /// PNG: pixels a user unit of the page
+    /// PNG: pixels per user unit of the page
     #[arg(long, value_name = "N")]
     pixels_per_unit: Option<f64>,
 }
@@ -166,9 +170,8 @@ pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
 
 /// The parameters that `--set` knows, for the long help.
 fn parameters() -> String {
-    let list: String =
-        Params::options().iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
-    format!("Parameters for --set, by name:\n{list}\nPresets: {}", Params::PRESETS.join(", "))
+    let (list, presets) = (help_list(&Params::specs()), preset_list(Params::PRESETS));
+    format!("Parameters for --set, by name:\n{list}\nPresets:\n{presets}")
 }
 
 impl Fill {

@@ -6,7 +6,7 @@
 
 use arabesque_core::{Stage, Stream};
 
-use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::Params};
+use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::RibbonParams};
 
 /// What the random preference is drawn for.
 const PREFERENCE: Stage = Stage::new(1);
@@ -62,7 +62,7 @@ pub(crate) struct Reuse {
 
 impl Reuse {
     /// For a curve of `pieces` pieces like `form`.
-    pub(crate) fn new(params: &Params, seed: u64, pieces: usize, form: &Form, strip: &Strip) -> Self {
+    pub(crate) fn new(params: &RibbonParams, seed: u64, pieces: usize, form: &Form, strip: &Strip) -> Self {
         let length = strip.spans.iter().map(ExactSizeIterator::len).max().unwrap_or(1);
         let step = (form.exit() - form.foot * 0.5).norm().max(1.0);
         let rows = form.rows() as f64;

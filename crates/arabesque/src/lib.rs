@@ -71,10 +71,10 @@ pub use arabesque_io as io;
 pub use arabesque_patterns as patterns;
 pub use arabesque_ribbons as ribbons;
 
+pub use arabesque_core::suggest::nearest;
 pub use arabesque_core::{
     Border, EnergyPoint, Error, Limits, Progress, Result, Snapshot, StopReason, Unobserved, Warning, Watch,
 };
-pub use arabesque_io::nearest::nearest;
 pub use artwork::{Artwork, Encoded, Geometry, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, Report, StyleReport, inspect};
@@ -82,7 +82,6 @@ pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
     ClosingRule, Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
-    OutputOptions, Parameters, RIBBON_OPTIONS, Recipe, Redo, Region, Ribbon, RibbonOption, Size, Space, WidthSource,
-    recipe_in,
+    OutputOptions, Parameters, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

@@ -18,10 +18,12 @@ mod field;
 mod image;
 mod index;
 mod limits;
+pub mod options;
 mod random;
 mod region;
 mod run;
 mod space;
+pub mod suggest;
 
 pub use curve::{Cubic, Measured, Path, cubic_at, cubic_part, straight};
 pub use error::{Error, Result};

@@ -24,7 +24,7 @@ fn disc(stream: &mut Stream, n: usize, classes: usize) -> Vec<(f64, f64, usize)>
 
 /// Squared distances between two random neighbourhoods; pairs of unlike classes must not be.
 fn neighbourhoods(item: usize, (rows, columns): (usize, usize), classes: usize) -> Vec<f32> {
-    let mut stream = Stream::new(1, Stage::Test, item as u64);
+    let mut stream = Stream::new(1, Stage::TEST, item as u64);
     let (a, b) = (disc(&mut stream, rows, classes), disc(&mut stream, columns, classes));
     let cost = |p: &(f64, f64, usize), q: &(f64, f64, usize)| match p.2 == q.2 {
         true => ((p.0 - q.0).powi(2) + (p.1 - q.1).powi(2)) as f32,

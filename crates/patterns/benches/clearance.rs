@@ -44,7 +44,7 @@ fn exemplar() -> Exemplar<2> {
 
 /// `n` leaves near the nodes of a grid with `spacing`.
 fn scattered(exemplar: &Exemplar<2>, n: usize, spacing: f64) -> Vec<Placement<2>> {
-    let mut stream = Stream::new(9, Stage::Test, 0);
+    let mut stream = Stream::new(9, Stage::TEST, 0);
     let columns = (n as f64).sqrt().ceil() as usize;
     let mut place = |k: usize| {
         let node = Vector::xy((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5) * spacing;

@@ -34,7 +34,7 @@ fn net() -> Exemplar<2> {
     let (dx, dy) = (edge * 3.0_f64.sqrt(), 1.5 * edge);
     let node = |column: i32, row: i32, lower: bool| {
         let number = ((column + 64) * 256 + (row + 64) * 2 + i32::from(lower)) as u64;
-        let mut stream = Stream::new(5, arabesque_core::Stage::Test, number);
+        let mut stream = Stream::new(5, arabesque_core::Stage::TEST, number);
         let wobble = Vector::xy(stream.range(-1.0, 1.0), stream.range(-1.0, 1.0));
         let shift = 0.5 * f64::from(row.rem_euclid(2));
         let down = if lower { 0.5 * edge } else { 0.0 };

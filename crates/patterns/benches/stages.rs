@@ -36,7 +36,7 @@ fn scattered() -> Exemplar<2> {
 
 /// 80 discs of several sizes in two classes, with outlines of 24 corners.
 fn discs() -> Exemplar<2> {
-    let mut stream = Stream::new(4, Stage::Test, 1);
+    let mut stream = Stream::new(4, Stage::TEST, 1);
     let centres = spread(80, 10.0, 0.8);
     let elements = centres.iter().enumerate().map(|(k, &centre)| {
         let radius = stream.range(0.2, 0.38);
@@ -63,7 +63,7 @@ fn classes(count: usize) -> Vec<Class> {
 
 /// Up to `count` points in a square of `side`, no two nearer than `distance`.
 fn spread(count: usize, side: f64, distance: f64) -> Vec<Vector<2>> {
-    let mut stream = Stream::new(4, Stage::Test, 0);
+    let mut stream = Stream::new(4, Stage::TEST, 0);
     let mut found: Vec<Vector<2>> = Vec::new();
     for _ in 0..100 * count {
         let p = Vector::xy(stream.range(0.5, side - 0.5), stream.range(0.5, side - 0.5));

@@ -112,7 +112,7 @@ mod tests {
     }
 
     fn reproduces_rigid_motions<const D: usize>() {
-        let mut stream = Stream::new(5, Stage::Test, D as u64);
+        let mut stream = Stream::new(5, Stage::TEST, D as u64);
         for _ in 0..50 {
             let motion = Similarity::about(random(&mut stream), random(&mut stream), turn(&mut stream), 1.0);
             let points: Vec<Vector<D>> = (0..5).map(|_| random(&mut stream)).collect();
@@ -129,7 +129,7 @@ mod tests {
     }
 
     fn keeps_control_points<const D: usize>() {
-        let mut stream = Stream::new(6, Stage::Test, D as u64);
+        let mut stream = Stream::new(6, Stage::TEST, D as u64);
         let control: Vec<_> = (0..6).map(|_| (random::<D>(&mut stream), random(&mut stream))).collect();
         for &(p, q) in &control {
             assert_eq!(warp(&control, p), q);

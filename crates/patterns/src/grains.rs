@@ -88,7 +88,7 @@ mod tests {
     const SIDE: f64 = 120.0;
 
     fn exemplar() -> Exemplar<2> {
-        let mut random = Stream::new(5, Stage::Test, 0);
+        let mut random = Stream::new(5, Stage::TEST, 0);
         let mut off = || random.range(3.0, 7.0);
         let dots = (0..144).map(|k| Vector::xy(f64::from(k % 12) * 10.0 + off(), f64::from(k / 12) * 10.0 + off()));
         Exemplar::from_points("t", &dots.collect::<Vec<_>>(), &[0; 144], &["dot".into()]).unwrap()
@@ -101,7 +101,7 @@ mod tests {
         let setting = settings(&exemplar, None, &params).remove(0);
         let request = Request::new(Domain::Box(exemplar.window));
         let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);
-        let mut random = Stream::new(6, Stage::Test, 0);
+        let mut random = Stream::new(6, Stage::TEST, 0);
         let items = exemplar.elements.iter().zip(0..).map(|(element, source)| {
             let place = Vector::xy(random.range(x, SIDE), random.range(0.0, SIDE));
             let position = if element.centre[0] < x { element.centre } else { place };

@@ -9,7 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Frame, Request, Stage, Stream, Vector};
+use arabesque_core::{Frame, Request, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -18,6 +18,7 @@ use crate::{
     extent::Extent,
     layout::Watch,
     library::Library,
+    streams,
 };
 
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
@@ -111,7 +112,7 @@ impl<'a, const D: usize> Grower<'a, D> {
                         site,
                         canvas,
                         coverage,
-                        &mut Stream::new(self.request.seed, Stage::Initialise, item),
+                        &mut Stream::new(self.request.seed, streams::INITIALISE, item),
                     )
                 })
                 .collect();

@@ -61,11 +61,10 @@ mod search;
 mod setting;
 mod solver;
 mod state;
+mod streams;
 mod targets;
 
 pub use clearance::overlap_ratio;
 pub use deform::warp;
 pub use engine::Prepared;
-pub use params::{
-    Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search, Switch,
-};
+pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Search, Switch};

@@ -1,11 +1,12 @@
 //! White noise: single elements at random places, as many of each class as the exemplar has for the area.
 
-use arabesque_core::{Request, Stage, Stream, Vector};
+use arabesque_core::{Request, Stream, Vector};
 
 use crate::{
     canvas::{Canvas, Item},
     extent::Extent,
     library::Library,
+    streams,
 };
 
 /// Scatters elements over the domain.
@@ -20,7 +21,7 @@ pub(crate) fn scatter<const D: usize>(
     } else {
         request.domain.bounds().grown(extent.margin)
     };
-    let mut random = Stream::new(request.seed, Stage::Initialise, u64::MAX);
+    let mut random = Stream::new(request.seed, streams::INITIALISE, u64::MAX);
     let copyable: Vec<u32> = (0..library.len() as u32).filter(|&e| library.copyable[e as usize]).collect();
     // Rejection keeps the density right under fields: a place is kept with the probability that its local density gives it.
     let tightest = extent.smallest_spacing_scale;

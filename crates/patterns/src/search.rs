@@ -5,7 +5,7 @@
 //! [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the result does not depend on the number of threads).
 //! Samples around which nothing changed keep their match.
 
-use arabesque_core::{Stage, Stream, Vector};
+use arabesque_core::{Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -14,6 +14,7 @@ use crate::{
     matching::{Matcher, Prices, Row, Surroundings},
     params::{Matching, Search},
     state::{Match, State},
+    streams,
 };
 
 /// A neighbourhood with less than this energy is as good as a copy: no better one is looked for.
@@ -240,7 +241,7 @@ fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u3
             level.alike(i, find).iter().for_each(|&j| push(list, j));
         }
     }
-    let mut random = Stream::new(state.request.seed ^ (params.step << 20), Stage::Search, u64::from(s));
+    let mut random = Stream::new(state.request.seed ^ (params.step << 20), streams::SEARCH, u64::from(s));
     for n in 0..params.random {
         let seed = list[n % seeds];
         push(list, random_near(state, seed, all, n, &mut random));

@@ -132,11 +132,11 @@ mod tests {
 
     /// A ring of unknowns with chords, random offsets and weights.
     fn problem(n: usize, seed: u64) -> (Vec<Prediction<2>>, Vec<Pull<2>>) {
-        let mut random = Stream::new(seed, Stage::Test, 0);
+        let mut random = Stream::new(seed, Stage::TEST, 0);
         let mut vector = || Vector::xy(random.range(-1.0, 1.0), random.range(-1.0, 1.0));
         let offsets: Vec<_> = (0..3 * n).map(|_| vector()).collect();
         let targets: Vec<_> = (0..n).map(|_| vector()).collect();
-        let mut random = Stream::new(seed, Stage::Test, 1);
+        let mut random = Stream::new(seed, Stage::TEST, 1);
         let predictions = (0..3 * n).map(|k| Prediction {
             from: (k % n) as u32,
             to: ((k * 7 + 1 + k / n) % n) as u32,

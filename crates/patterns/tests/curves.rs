@@ -27,7 +27,7 @@ fn exemplar(curves: Vec<Curve<2>>, window: Bounds<2>) -> Exemplar<2> {
 /// A square grid of `n` by `n` cells of side 10, its lines shifted at random by up to `wobble`.
 fn grid(n: usize, wobble: f64) -> Exemplar<2> {
     let side = 10.0 * n as f64;
-    let mut random = Stream::new(7, Stage::Test, 0);
+    let mut random = Stream::new(7, Stage::TEST, 0);
     let mut curves = Vec::new();
     for k in 0..n {
         let at = 10.0 * k as f64 + 5.0;
@@ -174,7 +174,7 @@ fn outside(path: &Path<2>, hole: &Bounds<2>) -> Vec<Path<2>> {
 
 /// Blocks of five lines each, across and down by turns, like a parquet floor.
 fn parquet(n: usize) -> Exemplar<2> {
-    let mut random = Stream::new(7, Stage::Test, 0);
+    let mut random = Stream::new(7, Stage::TEST, 0);
     let mut curves = Vec::new();
     for block in 0..n * n {
         let (i, j) = (block % n, block / n);
@@ -269,9 +269,9 @@ fn every_component_can_be_left_out() {
         assert!(length(&outcome) > 250.0, "{name}={value}: {}", length(&outcome));
     }
     for preset in Params::PRESETS {
-        let params = Params::preset(preset).unwrap();
+        let params = Params::preset(preset.name).unwrap();
         let outcome = fill(&exemplar, &params, &Request::new(Domain::Box(page(60.0, 60.0))));
-        assert!(!outcome.curves.is_empty(), "{preset}");
+        assert!(!outcome.curves.is_empty(), "{}", preset.name);
     }
 }
 
@@ -306,7 +306,7 @@ fn a_lattice_in_space_goes_on() {
 
 #[test]
 fn curves_that_never_repeat_are_warned_of() {
-    let mut random = Stream::new(3, Stage::Test, 0);
+    let mut random = Stream::new(3, Stage::TEST, 0);
     let points: Vec<_> = (0..12).map(|_| Vector::xy(random.range(5.0, 95.0), random.range(5.0, 95.0))).collect();
     let exemplar = exemplar(vec![curve(&points, false)], page(100.0, 100.0));
     let outcome = fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(150.0, 150.0))));

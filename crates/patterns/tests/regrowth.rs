@@ -13,7 +13,7 @@ fn page(w: f64, h: f64) -> Domain<2> {
 
 /// Bricks: seven rows of height 10, joints 20 apart, every second row shifted by half a brick, lines a little unsteady.
 fn bricks() -> Exemplar<2> {
-    let mut random = Stream::new(7, Stage::Test, 0);
+    let mut random = Stream::new(7, Stage::TEST, 0);
     let mut curves = Vec::new();
     let mut line = |points: &[Vector<2>]| {
         curves.push(Curve { path: Path::polyline(points), style: 0, width: 1.0, colour: [0.0; 3] });

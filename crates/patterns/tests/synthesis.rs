@@ -224,7 +224,7 @@ fn every_preset_and_component_gives_a_result() {
         ("iterations", "0"),
     ];
     let request = Request::new(page(14.0, 14.0));
-    let mut all: Vec<Params> = Params::PRESETS.iter().map(|name| Params::preset(name).unwrap()).collect();
+    let mut all: Vec<Params> = Params::PRESETS.iter().map(|preset| Params::preset(preset.name).unwrap()).collect();
     for (name, value) in settings {
         let mut params = Params::default();
         params.set(name, value).unwrap();

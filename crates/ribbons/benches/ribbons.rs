@@ -6,14 +6,14 @@
 #![allow(missing_docs, reason = "the macros of divan make items without any")]
 
 use arabesque_core::{Image, Path, Unobserved, Vector};
-use arabesque_ribbons::{Exemplar, Params, Prepared, Request, Search, Width};
+use arabesque_ribbons::{Prepared, RibbonParams, RibbonRequest, Search, StripExemplar, Width};
 
 fn main() {
     divan::main();
 }
 
 /// A chain of beads of different sizes and colours on a thread, `width` x `height` pixels.
-fn beads(width: usize, height: usize) -> Exemplar {
+fn beads(width: usize, height: usize) -> StripExemplar {
     let mut image = Image::transparent(width, height);
     for y in 0..height {
         for x in 0..width {
@@ -26,7 +26,7 @@ fn beads(width: usize, height: usize) -> Exemplar {
             image.pixels[y * width + x] = [(40 * (k % 6)) as u8, 120, (35 * (k % 7)) as u8, (255.0 * alpha) as u8];
         }
     }
-    Exemplar::new(image)
+    StripExemplar::new(image)
 }
 
 /// A wave of `pieces` pieces of `step` units.
@@ -80,12 +80,17 @@ fn cases() -> Vec<Case> {
 #[divan::bench(args = cases(), sample_count = 3, sample_size = 1)]
 fn curve(bencher: divan::Bencher<'_, '_>, case: &Case) {
     let step = 16.0;
-    let mut params =
-        Params { step: Some(step), width: Width::Constant(case.ribbon), search: case.search, ..Params::default() };
+    let mut params = RibbonParams {
+        step: Some(step),
+        width: Width::Constant(case.ribbon),
+        search: case.search,
+        ..RibbonParams::default()
+    };
     if case.paper {
-        params = Params { context: 0.0, repetition: 0.0, variety: 0.0, centring: 0.0, wander: Some(1.0), ..params };
+        params =
+            RibbonParams { context: 0.0, repetition: 0.0, variety: 0.0, centring: 0.0, wander: Some(1.0), ..params };
     }
     let prepared = Prepared::new(vec![beads(case.width, case.height)], params).unwrap();
-    let request = Request::new(vec![("wave".into(), wave(case.pieces, step))]);
+    let request = RibbonRequest::new(vec![("wave".into(), wave(case.pieces, step))]);
     bencher.bench(|| prepared.run(&request, &mut Unobserved).unwrap());
 }

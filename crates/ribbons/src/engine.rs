@@ -9,41 +9,19 @@ use crate::{
     constraints::mask::{Mask, forbidden},
     constraints::valid::{Demands, Grade, Position},
     exemplar::columns::Columns,
-    exemplar::strip::{self, Exemplar, Strip},
+    exemplar::strip::{self, Strip, StripExemplar},
     geometry::cage::Cage,
-    params::Params,
+    params::RibbonParams,
     pieces::piece::{Piece, Ribbon},
     pieces::stitch,
+    request::RibbonRequest,
     search::reuse::Reuse,
     search::solve::{Course, Kept, Solution},
 };
 
-/// Curves to lay a pattern along, and what to mind.
-#[derive(Clone, Debug)]
-pub struct Request<const D: usize> {
-    /// The curves, in user units, with the names that messages call them by.
-    pub curves: Vec<(String, Path<D>)>,
-    /// Where no ink may fall. Without effect in space.
-    pub avoid: Option<Mask>,
-    /// Position of the first piece of every curve: the pixel of the exemplar in which its top left corner lies; the row may lie above the
-    /// picture.
-    pub first: Option<(usize, i64)>,
-    /// With several exemplars: the shares of the length, rising, at which the pattern passes into the next one. Empty: equal parts.
-    pub changes: Vec<f64>,
-    /// Seed of the random taste.
-    pub seed: u64,
-}
-
-impl<const D: usize> Request<D> {
-    /// Lays the pattern along `curves` with everything else at its default.
-    pub fn new(curves: Vec<(String, Path<D>)>) -> Self {
-        Self { curves, avoid: None, first: None, changes: Vec::new(), seed: 0 }
-    }
-}
-
 /// The result of a run.
 #[derive(Clone, Debug)]
-pub struct Outcome<const D: usize> {
+pub struct RibbonOutcome<const D: usize> {
     /// One ribbon a curve, in order; fewer when the run was stopped.
     pub ribbons: Vec<Ribbon<D>>,
     /// What the user should know.
@@ -66,16 +44,16 @@ pub struct Memory {
 /// What all rows depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Basis {
-    params: Params,
+    params: RibbonParams,
     seed: u64,
-    exemplars: Arc<Vec<Exemplar>>,
+    exemplars: Arc<Vec<StripExemplar>>,
 }
 
 /// Exemplars that are ready to be laid along curves.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    exemplars: Arc<Vec<Exemplar>>,
-    params: Params,
+    exemplars: Arc<Vec<StripExemplar>>,
+    params: RibbonParams,
     /// As the search sees them.
     strip: Strip,
     /// As they are drawn.
@@ -88,7 +66,7 @@ impl Prepared {
     /// # Errors
     /// [`arabesque_core::Error::Parameter`] for a parameter out of range, [`arabesque_core::Error::Input`] for an exemplar that has no pattern on a transparent
     /// background, [`arabesque_core::Error::Limit`] beyond [`strip::PIXELS`].
-    pub fn new(exemplars: Vec<Exemplar>, params: Params) -> Result<Self> {
+    pub fn new(exemplars: Vec<StripExemplar>, params: RibbonParams) -> Result<Self> {
         params.check()?;
         strip::check(&exemplars, params.coarse, params.relax)?;
         let (strip, full) = (Strip::new(&exemplars, params.coarse), Strip::new(&exemplars, 1));
@@ -96,7 +74,7 @@ impl Prepared {
     }
 
     /// The exemplars.
-    pub fn exemplars(&self) -> &[Exemplar] {
+    pub fn exemplars(&self) -> &[StripExemplar] {
         &self.exemplars
     }
 
@@ -105,7 +83,7 @@ impl Prepared {
     /// # Errors
     /// [`arabesque_core::Error::NoResult`] names a piece for which no part of the exemplar is valid; [`arabesque_core::Error::Input`] and [`arabesque_core::Error::Limit`] a curve that
     /// cannot be used.
-    pub fn run(&self, request: &Request<2>, watch: &mut dyn Watch<Snapshot<2>>) -> Result<Outcome<2>> {
+    pub fn run(&self, request: &RibbonRequest<2>, watch: &mut dyn Watch<Snapshot<2>>) -> Result<RibbonOutcome<2>> {
         self.resume(request, &Memory::default(), watch)
     }
 
@@ -116,10 +94,10 @@ impl Prepared {
     /// As [`Prepared::run`].
     pub fn resume(
         &self,
-        request: &Request<2>,
+        request: &RibbonRequest<2>,
         before: &Memory,
         watch: &mut dyn Watch<Snapshot<2>>,
-    ) -> Result<Outcome<2>> {
+    ) -> Result<RibbonOutcome<2>> {
         let along = |(name, path): &(String, Path<2>)| {
             Cage::along(path, &self.params, self.full.height as f64, self.scale(), name)
         };
@@ -136,7 +114,11 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Prepared::run`].
-    pub fn run_in_space(&self, request: &Request<3>, watch: &mut dyn Watch<Snapshot<3>>) -> Result<Outcome<3>> {
+    pub fn run_in_space(
+        &self,
+        request: &RibbonRequest<3>,
+        watch: &mut dyn Watch<Snapshot<3>>,
+    ) -> Result<RibbonOutcome<3>> {
         let along = |(name, path): &(String, Path<3>)| {
             Cage::in_space(path, &self.params, self.full.height as f64, self.scale(), name)
         };
@@ -154,14 +136,14 @@ impl Prepared {
         &self,
         cages: &[Cage<D>],
         free: Vec<Vec<Vec<crate::constraints::valid::Offset>>>,
-        request: &Request<D>,
+        request: &RibbonRequest<D>,
         before: &Memory,
         watch: &mut dyn Watch<Snapshot<D>>,
-    ) -> Result<Outcome<D>> {
+    ) -> Result<RibbonOutcome<D>> {
         let basis = Basis { params: self.params.clone(), seed: request.seed, exemplars: Arc::clone(&self.exemplars) };
         let known = before.basis.as_ref() == Some(&basis);
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
-        let mut outcome = Outcome {
+        let mut outcome = RibbonOutcome {
             ribbons: Vec::new(),
             warnings: Vec::new(),
             stopped: StopReason::Finished,

@@ -18,8 +18,8 @@
 //!
 //! | symbol | identifier |
 //! |---|---|
-//! | E, W, H | `Exemplar`, `Strip` |
-//! | b, δ, s | [`Params::width`], [`Params::step`], 1 / [`Params::scale`] |
+//! | E, W, H | `StripExemplar`, `Strip` |
+//! | b, δ, s | [`RibbonParams::width`], [`RibbonParams::step`], 1 / [`RibbonParams::scale`] |
 //! | ξ, γ | `columns::pixel_cost`, `columns::GAMMA` |
 //! | u | `Position` |
 //! | L, R, C | `Columns::left`, `Columns::right`, `Form::rows` |
@@ -28,8 +28,8 @@
 //! | M, T, β | `stitch::table`, [`Piece::shift`], `stitch::SKIPPED` |
 //!
 //! Where it departs from the paper: half-transparent pixels have a cost in between; a place where the ribbon overlaps itself belongs to the
-//! piece whose curve is nearest instead of to none; parts that were shown a short while ago cost more ([`Params::repetition`]) and a
-//! random taste varies the pattern ([`Params::variety`]); several exemplars pass into one another; exemplars may have a start and an
+//! piece whose curve is nearest instead of to none; parts that were shown a short while ago cost more ([`RibbonParams::repetition`]) and a
+//! random taste varies the pattern ([`RibbonParams::variety`]); several exemplars pass into one another; exemplars may have a start and an
 //! end; rows of an earlier run are taken over ([`Prepared::resume`]). A closed curve without a cycle among the paths of the first pass
 //! is searched again from its best start. Lower bounds on the difference of columns make the exact optimum fast.
 //!
@@ -41,13 +41,14 @@ mod exemplar;
 mod geometry;
 mod params;
 mod pieces;
+mod request;
 mod search;
 
 pub use constraints::mask::Mask;
-pub use engine::{Memory, Outcome, Prepared, Request};
-pub use exemplar::strip::{Exemplar, PIXELS};
+pub use engine::{Memory, Prepared, RibbonOutcome};
+pub use exemplar::strip::{PIXELS, StripExemplar};
 pub use geometry::cage::PIECES;
-pub use params::{Closing, Params, Search, Width};
+pub use params::{Closing, RibbonParams, Search, Width};
 pub use pieces::piece::{Piece, Ribbon};
 pub use pieces::render::{Canvas, render};
 pub use pieces::{
@@ -55,3 +56,4 @@ pub use pieces::{
     rungs::{Rung, rungs},
     vector::{ShownArea, shown_areas},
 };
+pub use request::RibbonRequest;

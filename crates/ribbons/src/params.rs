@@ -1,6 +1,15 @@
 //! Parameters, with defaults that work.
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{
+    choices,
+    options::{Kind, ParamValue},
+    params,
+};
+
+/// Length of a piece where none is given, in heights of the exemplar.
+pub(crate) const STEP: f64 = 0.1;
+/// How far the pattern leaves the middle where nothing is in its way and no distance is given, in heights of the exemplar.
+pub(crate) const WANDER: f64 = 0.01;
 
 /// How wide the ribbon is, in user units: the room across the curve in which the pattern may lie.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,18 +32,58 @@ impl Width {
             Self::Profile(stations) => interpolated(stations, share),
         }
     }
+}
 
-    fn check(&self) -> Result<()> {
-        let widths: Vec<f64> = match self {
-            Self::Exemplar => return Ok(()),
-            Self::Constant(width) => vec![*width],
-            Self::Profile(stations) => stations.iter().map(|s| s.1).collect(),
+/// Written as `exemplar`, `30`, `20..40` from start to end, or `0:20,0.5:40,1:20` at shares of the length.
+impl ParamValue for Width {
+    fn kind(_: Option<(f64, f64)>) -> Kind {
+        Kind::Text(
+            "exemplar, a positive number of user units, 20..40 from start to end, or widths at rising shares of the length such as \
+             0:20,0.5:40,1:20",
+        )
+    }
+
+    fn parse(text: &str, _: &Kind) -> Option<Self> {
+        let text = text.trim();
+        let pair = |text: &str, by: &str| {
+            let (a, b) = text.split_once(by)?;
+            Some((a.trim().parse::<f64>().ok()?, b.trim().parse::<f64>().ok()?))
         };
-        let wrong = widths.iter().find(|w| !(w.is_finite() && **w > 0.0));
-        match wrong {
-            Some(w) => Err(Error::parameter("width", w, "a positive number of user units")),
-            None if widths.is_empty() => Err(Error::parameter("width", "", "at least one station")),
-            None => Ok(()),
+        let width = if text == "exemplar" {
+            Self::Exemplar
+        } else if let Ok(width) = text.parse() {
+            Self::Constant(width)
+        } else if let Some((from, to)) = pair(text, "..") {
+            Self::Profile(vec![(0.0, from), (1.0, to)])
+        } else {
+            Self::Profile(text.split(',').map(|station| pair(station, ":")).collect::<Option<_>>()?)
+        };
+        width.is_valid().then_some(width)
+    }
+
+    fn show(&self) -> String {
+        match self {
+            Self::Exemplar => "exemplar".to_owned(),
+            Self::Constant(width) => width.to_string(),
+            Self::Profile(stations) => {
+                stations.iter().map(|(share, width)| format!("{share}:{width}")).collect::<Vec<_>>().join(",")
+            }
+        }
+    }
+}
+
+impl Width {
+    fn is_valid(&self) -> bool {
+        let positive = |width: &f64| width.is_finite() && *width > 0.0;
+        match self {
+            Self::Exemplar => true,
+            Self::Constant(width) => positive(width),
+            Self::Profile(stations) => {
+                let rising = stations.windows(2).all(|w| w[0].0 < w[1].0);
+                !stations.is_empty()
+                    && rising
+                    && stations.iter().all(|(share, width)| (0.0..=1.0).contains(share) && positive(width))
+            }
         }
     }
 }
@@ -47,110 +96,125 @@ fn interpolated(stations: &[(f64, f64)], share: f64) -> f64 {
     a.1 + (b.1 - a.1) * (share - a.0) / (b.0 - a.0)
 }
 
-/// How a closed curve is closed [Zhou 2013 §1.5].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Closing {
-    /// One pass; the best of the cycles among its paths, and where there is none, a second pass from the best start.
-    #[default]
-    Quick,
-    /// The best of all cycles.
-    Exact,
-}
-
-/// How each row of the dynamic programme is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Search {
-    /// Exact, skipping pairs of columns that a lower bound rules out.
-    #[default]
-    Bounded,
-    /// Every pair of columns in full.
-    Exhaustive,
-}
-
-/// How a pattern is laid along a curve. Lengths are in user units of the canvas.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Length of a piece along the curve; rounded so that whole pieces fill the curve. Default: a tenth of the height of the exemplar.
-    pub step: Option<f64>,
-    /// Width of the ribbon. Default: [`Width::Exemplar`].
-    pub width: Width,
-    /// User units an exemplar pixel, above 0. Default: 1.
-    pub scale: f64,
-    /// Weight of the slopes of alpha and brightness along the strip, beside the pixels themselves, when two edges are compared, 0 to 100.
-    /// Default: 1; 0 compares pixels alone, as the paper does.
-    pub context: f64,
-    /// Strength of the penalty on showing a part of the exemplar again within [`Params::window`], 0 or more. Default: 1; 0 switches it off.
-    pub repetition: f64,
-    /// Where re-use is penalised, as a multiple of the exemplar's length, 0 to 4. Default: 1.
-    pub window: f64,
-    /// Strength of the random preference of one part of the exemplar over another, from piece to piece, 0 or more. Default: 1;
-    /// 0 makes all seeds equal.
-    pub variety: f64,
-    /// Strength of the pull to the middle of the ribbon, 0 or more. Default: 1; 0 lets the pattern wander across the ribbon freely, as in
-    /// the paper.
-    pub centring: f64,
-    /// How far the pattern may leave the middle of the ribbon, as a share of the exemplar's height, 0 or more. Default: 1/100, and farther
-    /// where regions, folds and overlaps have to be avoided. The fewer the positions, the faster the search; 1 allows all, as in the paper.
-    pub wander: Option<f64>,
-    /// Whether neighbouring pieces are bent to meet [Zhou 2013 §3.2]. Default: true.
-    pub stitch: bool,
-    /// How closed curves are closed. Default: [`Closing::Quick`].
-    pub closing: Closing,
-    /// Whether the pattern may be cut where no position is valid, with a warning. Default: false, which makes it an error.
-    pub relax: bool,
-    /// Exemplar pixels that are averaged to one, along each side, for the search, 1 to 16. Default: 1.
-    pub coarse: usize,
-    /// How rows are computed. Default: [`Search::Bounded`].
-    pub search: Search,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self {
-            step: None,
-            width: Width::Exemplar,
-            scale: 1.0,
-            context: 1.0,
-            repetition: 1.0,
-            window: 1.0,
-            variety: 1.0,
-            centring: 1.0,
-            wander: None,
-            stitch: true,
-            closing: Closing::Quick,
-            relax: false,
-            coarse: 1,
-            search: Search::Bounded,
-        }
+choices! {
+    /// How a closed curve is closed [Zhou 2013 §1.5].
+    pub enum Closing {
+        /// One pass; the best of the cycles among its paths, and where there is none, a second pass from the best start.
+        Quick = "quick",
+        /// The best of all cycles.
+        Exact = "exact",
     }
 }
 
-impl Params {
-    /// Whether every parameter is in its range.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] names the first that is not.
-    pub fn check(&self) -> Result<()> {
-        let positive = |name, value: f64| {
-            let right = value.is_finite() && value > 0.0;
-            if right { Ok(()) } else { Err(Error::parameter(name, value, "a positive number")) }
-        };
-        let strength = |name, value: f64, most: f64| {
-            let right = (0.0..=most).contains(&value);
-            if right { Ok(()) } else { Err(Error::parameter(name, value, format!("a number from 0 to {most}"))) }
-        };
-        positive("scale", self.scale)?;
-        self.step.map_or(Ok(()), |step| positive("step", step))?;
-        self.width.check()?;
-        strength("context", self.context, 100.0)?;
-        strength("repetition", self.repetition, 1000.0)?;
-        strength("window", self.window, 4.0)?;
-        strength("variety", self.variety, 1000.0)?;
-        strength("centring", self.centring, 1000.0)?;
-        strength("wander", self.wander.unwrap_or(0.0), 1000.0)?;
-        if !(1..=16).contains(&self.coarse) {
-            return Err(Error::parameter("coarse", self.coarse, "a whole number from 1 to 16"));
+choices! {
+    /// How each row of the dynamic programme is computed.
+    pub enum Search {
+        /// Exact, skipping pairs of columns that a lower bound rules out.
+        Bounded = "bounded",
+        /// Every pair of columns in full.
+        Exhaustive = "exhaustive",
+    }
+}
+
+params! {
+    /// How a pattern is laid along a curve. Lengths are in user units of the canvas.
+    pub struct RibbonParams {
+        /// Length of a piece along the curve; rounded so that whole pieces fill the curve.
+        step "step": Option<f64> = None, in f64::MIN_POSITIVE..=f64::MAX, auto "0.1 heights of the exemplar", unit "user units", own_option true;
+        /// Width of the ribbon: the room across the curve in which the pattern may lie.
+        width "width": Width = Width::Exemplar, unit "user units", own_option true;
+        /// Size of a pixel of the exemplar.
+        scale "scale": f64 = 1.0, in f64::MIN_POSITIVE..=f64::MAX, unit "user units", own_option true;
+        /// Weight of slopes along the strip, beside the pixels themselves, when two edges are compared.
+        /// Slopes are those of alpha and brightness; 0 compares pixels alone, as the paper does.
+        context "context": f64 = 1.0, in 0.0..=100.0;
+        /// Strength of the penalty on showing a part of the exemplar again within the window.
+        /// 0 switches it off.
+        repetition "repetition": f64 = 1.0, in 0.0..=1000.0;
+        /// Where showing a part again is penalised.
+        window "window": f64 = 1.0, in 0.0..=4.0, unit "lengths of the exemplar";
+        /// Strength of the random preference of one part over another, from piece to piece; 0 makes all seeds equal.
+        variety "variety": f64 = 1.0, in 0.0..=1000.0;
+        /// Strength of the pull to the middle of the ribbon; 0 lets the pattern wander across it freely.
+        /// 0 as in the paper.
+        centring "centring": f64 = 1.0, in 0.0..=1000.0;
+        /// How far the pattern may leave the middle of the ribbon; less is faster.
+        /// The fewer the positions, the faster the search; 1 allows all, as in the paper.
+        wander "wander": Option<f64> = None, in 0.0..=1000.0, auto "0.01 heights of the exemplar, and farther where something is to be avoided", unit "heights of the exemplar";
+        /// Whether neighbouring pieces are bent to meet.
+        /// [Zhou 2013 §3.2]
+        stitch "stitch": bool = true, own_option true;
+        /// How closed curves are closed.
+        closing "closing": Closing = Closing::Quick, own_option true;
+        /// Whether the pattern may be cut where no position is valid.
+        /// There is a warning then; without it, that is an error.
+        relax "relax": bool = false, own_option true;
+        /// Pixels of the exemplar that are averaged to one, along each side, for the search.
+        coarse "coarse": usize = 1, in 1..=16;
+        /// Whether pairs of columns that a lower bound rules out are skipped; the result is the same.
+        search "search": Search = Search::Bounded;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_are_constant_or_vary() {
+        let read = |text: &str| Width::parse(text, &Width::kind(None));
+        assert_eq!(read("30"), Some(Width::Constant(30.0)));
+        assert_eq!(read("20..40"), Some(Width::Profile(vec![(0.0, 20.0), (1.0, 40.0)])));
+        assert_eq!(read("0:20, 0.5:40,1:20"), Some(Width::Profile(vec![(0.0, 20.0), (0.5, 40.0), (1.0, 20.0)])));
+        for text in ["", "x", "0", "20..", "0:20,0:30", "0.5:20,0.2:30", "0:20,2:30", "0:", "nan:5,1:2", "0..5"] {
+            assert_eq!(read(text), None, "{text}");
         }
-        Ok(())
+    }
+
+    #[test]
+    fn the_told_default_is_the_default() {
+        let other = RibbonParams {
+            step: Some(3.0),
+            width: Width::Constant(7.0),
+            scale: 2.0,
+            context: 0.5,
+            repetition: 2.0,
+            window: 2.0,
+            variety: 2.0,
+            centring: 2.0,
+            wander: Some(1.0),
+            stitch: false,
+            closing: Closing::Exact,
+            relax: true,
+            coarse: 2,
+            search: Search::Exhaustive,
+        };
+        let mut params = other.clone();
+        for (spec, (_, value)) in RibbonParams::specs().iter().zip(other.values()) {
+            assert_ne!(spec.default, value, "{}", spec.name);
+            params.set(spec.name, &spec.default).unwrap();
+        }
+        assert_eq!(params, RibbonParams::default());
+        for (name, value) in other.values() {
+            params.set(name, &value).unwrap();
+        }
+        assert_eq!(params, other);
+    }
+
+    #[test]
+    fn what_auto_stands_for_is_what_the_engine_takes() {
+        let told = |name: &str| {
+            let spec = RibbonParams::specs().into_iter().find(|spec| spec.name == name).unwrap();
+            spec.auto.unwrap().split(' ').next().unwrap().parse::<f64>().unwrap()
+        };
+        assert_eq!((told("step"), told("wander")), (STEP, WANDER));
+    }
+
+    #[test]
+    fn values_out_of_range_are_refused() {
+        for (name, value) in [("step", "0"), ("scale", "inf"), ("window", "4.1"), ("coarse", "17"), ("wander", "nan")] {
+            assert!(RibbonParams::default().set(name, value).is_err(), "{name}={value}");
+        }
+        assert!(RibbonParams { width: Width::Profile(Vec::new()), ..RibbonParams::default() }.check().is_err());
     }
 }

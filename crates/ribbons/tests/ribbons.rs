@@ -7,12 +7,14 @@ use std::ops::ControlFlow;
 use arabesque_core::{
     Bounds, Error, Image, Path, Progress, Snapshot, Stage, StopReason, Stream, Unobserved, Vector, Watch, straight,
 };
-use arabesque_ribbons::{Canvas, Closing, Exemplar, Mask, Outcome, Params, Prepared, Request, Search, Width, render};
+use arabesque_ribbons::{
+    Canvas, Closing, Mask, Prepared, RibbonOutcome, RibbonParams, RibbonRequest, Search, StripExemplar, Width, render,
+};
 use proptest::prelude::*;
 
 /// A wavy band with dots on it, different for every seed, on `width` x `height` transparent pixels.
-fn strip(width: usize, height: usize, seed: u64) -> Exemplar {
-    let mut draw = Stream::new(seed, Stage::Test, 0);
+fn strip(width: usize, height: usize, seed: u64) -> StripExemplar {
+    let mut draw = Stream::new(seed, Stage::TEST, 0);
     let (phase, thick) = (draw.unit() * 6.0, 0.12 + 0.08 * draw.unit());
     let dots: Vec<(f64, u8)> =
         (0..width / 6).map(|_| (draw.unit() * width as f64, (draw.unit() * 255.0) as u8)).collect();
@@ -28,7 +30,7 @@ fn strip(width: usize, height: usize, seed: u64) -> Exemplar {
             image.pixels[y * width + x] = [190, green, 40, (255.0 * alpha) as u8];
         }
     }
-    Exemplar::new(image)
+    StripExemplar::new(image)
 }
 
 fn line(points: &[(f64, f64)]) -> Path<2> {
@@ -48,16 +50,23 @@ fn ring(x: f64, y: f64, radius: f64) -> Path<2> {
     Path { cubics, closed: true }
 }
 
-fn request(path: Path<2>) -> Request<2> {
-    Request::new(vec![("curve".into(), path)])
+fn request(path: Path<2>) -> RibbonRequest<2> {
+    RibbonRequest::new(vec![("curve".into(), path)])
 }
 
-fn run(exemplar: &Exemplar, params: &Params, request: &Request<2>) -> Outcome<2> {
+fn run(exemplar: &StripExemplar, params: &RibbonParams, request: &RibbonRequest<2>) -> RibbonOutcome<2> {
     Prepared::new(vec![exemplar.clone()], params.clone()).unwrap().run(request, &mut Unobserved).unwrap()
 }
 
-fn plain() -> Params {
-    Params { step: Some(6.0), repetition: 0.0, variety: 0.0, centring: 0.0, wander: Some(1.0), ..Params::default() }
+fn plain() -> RibbonParams {
+    RibbonParams {
+        step: Some(6.0),
+        repetition: 0.0,
+        variety: 0.0,
+        centring: 0.0,
+        wander: Some(1.0),
+        ..RibbonParams::default()
+    }
 }
 
 #[test]
@@ -73,7 +82,7 @@ fn a_straight_ribbon_shows_the_exemplar_as_it_is() {
 fn a_closed_ribbon_ends_as_it_begins() {
     let exemplar = strip(60, 24, 5);
     for closing in [Closing::Quick, Closing::Exact] {
-        let params = Params { closing, wander: Some(0.1), ..plain() };
+        let params = RibbonParams { closing, wander: Some(0.1), ..plain() };
         let outcome = run(&exemplar, &params, &request(ring(60.0, 60.0, 25.0)));
         let ribbon = &outcome.ribbons[0];
         assert!(ribbon.closed);
@@ -89,7 +98,7 @@ fn the_exact_cycle_is_no_worse_than_the_quick_one_and_as_good_as_the_best_of_all
     let exemplar = strip(26, 16, 8);
     let wanted = request(ring(40.0, 40.0, 14.0));
     let cost = |closing, search| {
-        let params = Params { closing, search, wander: Some(0.12), ..plain() };
+        let params = RibbonParams { closing, search, wander: Some(0.12), ..plain() };
         run(&exemplar, &params, &wanted).ribbons[0].cost
     };
     let (quick, exact) = (cost(Closing::Quick, Search::Bounded), cost(Closing::Exact, Search::Bounded));
@@ -99,13 +108,13 @@ fn the_exact_cycle_is_no_worse_than_the_quick_one_and_as_good_as_the_best_of_all
 }
 
 /// The cheapest cycle by fixing the first piece to every position in turn and closing exactly.
-fn best_cycle(exemplar: &Exemplar, wanted: &Request<2>) -> f64 {
-    let params = Params { closing: Closing::Exact, search: Search::Exhaustive, ..plain() };
+fn best_cycle(exemplar: &StripExemplar, wanted: &RibbonRequest<2>) -> f64 {
+    let params = RibbonParams { closing: Closing::Exact, search: Search::Exhaustive, ..plain() };
     let prepared = Prepared::new(vec![exemplar.clone()], params).unwrap();
     let (width, height) = (exemplar.image.width, exemplar.image.height as i64);
     let starts = (0..width).flat_map(|x| (-2..=height / 4).map(move |y| (x, y)));
     let costs = starts.filter_map(|first| {
-        let fixed = Request { first: Some(first), ..wanted.clone() };
+        let fixed = RibbonRequest { first: Some(first), ..wanted.clone() };
         prepared.run(&fixed, &mut Unobserved).ok().map(|o| o.ribbons[0].cost)
     });
     costs.fold(f64::INFINITY, f64::min)
@@ -115,7 +124,7 @@ fn best_cycle(exemplar: &Exemplar, wanted: &Request<2>) -> f64 {
 fn the_same_bytes_for_any_number_of_threads() {
     let exemplar = strip(60, 24, 7);
     let wanted = request(line(&[(10.0, 30.0), (60.0, 20.0), (90.0, 60.0)]));
-    let params = Params { step: Some(5.0), ..Params::default() };
+    let params = RibbonParams { step: Some(5.0), ..RibbonParams::default() };
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| run(&exemplar, &params, &wanted)).ribbons
@@ -128,7 +137,7 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn a_run_that_goes_on_from_another_equals_a_full_one() {
     let exemplar = strip(60, 24, 9);
-    let prepared = Prepared::new(vec![exemplar], Params { step: Some(6.0), ..Params::default() }).unwrap();
+    let prepared = Prepared::new(vec![exemplar], RibbonParams { step: Some(6.0), ..RibbonParams::default() }).unwrap();
     let before = request(line(&[(10.0, 40.0), (120.0, 40.0), (170.0, 80.0)]));
     let after = request(line(&[(10.0, 40.0), (120.0, 40.0), (170.0, 20.0)]));
     let first = prepared.run(&before, &mut Unobserved).unwrap();
@@ -138,7 +147,7 @@ fn a_run_that_goes_on_from_another_equals_a_full_one() {
     assert_eq!(resumed.ribbons, full.ribbons);
 }
 
-fn blocked(mask: &Mask, outcome: &Outcome<2>, exemplar: &Exemplar, scale: f64) -> usize {
+fn blocked(mask: &Mask, outcome: &RibbonOutcome<2>, exemplar: &StripExemplar, scale: f64) -> usize {
     let size = mask.bounds.size();
     let canvas = Canvas {
         origin: mask.bounds.min,
@@ -166,8 +175,8 @@ fn spot(x: f64, y: f64, radius: f64) -> Mask {
 fn the_pattern_goes_around_what_is_to_be_avoided() {
     let exemplar = strip(80, 24, 11);
     let mask = spot(100.0, 44.0, 5.0);
-    let params = Params { step: Some(5.0), width: Width::Constant(44.0), ..Params::default() };
-    let wanted = Request { avoid: Some(mask.clone()), ..request(line(&[(10.0, 50.0), (190.0, 50.0)])) };
+    let params = RibbonParams { step: Some(5.0), width: Width::Constant(44.0), ..RibbonParams::default() };
+    let wanted = RibbonRequest { avoid: Some(mask.clone()), ..request(line(&[(10.0, 50.0), (190.0, 50.0)])) };
     let outcome = run(&exemplar, &params, &wanted);
     assert!(outcome.warnings.is_empty(), "{:?}", outcome.warnings);
     for scale in [1.0, 2.0] {
@@ -181,14 +190,14 @@ fn the_pattern_goes_around_what_is_to_be_avoided() {
 fn no_way_through_is_an_error_that_names_the_piece_and_relaxing_cuts_it() {
     let exemplar = strip(60, 24, 2);
     let mask = spot(100.0, 50.0, 30.0);
-    let wanted = Request { avoid: Some(mask.clone()), ..request(line(&[(10.0, 50.0), (190.0, 50.0)])) };
-    let params = Params { step: Some(5.0), ..Params::default() };
+    let wanted = RibbonRequest { avoid: Some(mask.clone()), ..request(line(&[(10.0, 50.0), (190.0, 50.0)])) };
+    let params = RibbonParams { step: Some(5.0), ..RibbonParams::default() };
     let prepared = Prepared::new(vec![exemplar.clone()], params.clone()).unwrap();
     let error = prepared.run(&wanted, &mut Unobserved).unwrap_err();
     assert!(matches!(error, Error::NoResult { .. }));
     let text = error.to_string();
     assert!(text.contains("curve: piece 12 of 36, at 67.5,50.0") && text.contains("--relax"), "{text}");
-    let relaxed = run(&exemplar, &Params { relax: true, ..params }, &wanted);
+    let relaxed = run(&exemplar, &RibbonParams { relax: true, ..params }, &wanted);
     assert_eq!(relaxed.warnings.len(), 1);
     let canvas = Canvas { origin: Vector::ZERO, width: 200, height: 100, pixels_per_unit: 1.0 };
     let image = render(&relaxed.ribbons, &[exemplar], Some(&mask), &canvas);
@@ -197,9 +206,12 @@ fn no_way_through_is_an_error_that_names_the_piece_and_relaxing_cuts_it() {
 
 #[test]
 fn ends_are_shown_at_the_ends_and_nowhere_else() {
-    let exemplar = Exemplar { start: Some(0..20), end: Some(70..90), ..strip(90, 24, 4) };
-    let outcome =
-        run(&exemplar, &Params { step: Some(5.0), ..Params::default() }, &request(line(&[(0.0, 20.0), (150.0, 20.0)])));
+    let exemplar = StripExemplar { start: Some(0..20), end: Some(70..90), ..strip(90, 24, 4) };
+    let outcome = run(
+        &exemplar,
+        &RibbonParams { step: Some(5.0), ..RibbonParams::default() },
+        &request(line(&[(0.0, 20.0), (150.0, 20.0)])),
+    );
     let x: Vec<f64> = outcome.ribbons[0].pieces.iter().map(|p| p.patch.texture[0][0] - 0.5).collect();
     assert_eq!(x[..4], [0.0, 5.0, 10.0, 15.0]);
     assert_eq!(x[x.len() - 4..], [69.0, 74.0, 79.0, 84.0]);
@@ -209,9 +221,9 @@ fn ends_are_shown_at_the_ends_and_nowhere_else() {
 #[test]
 fn several_exemplars_pass_into_one_another() {
     let exemplars = vec![strip(60, 24, 20), strip(60, 20, 21)];
-    let params = Params { step: Some(6.0), ..Params::default() };
+    let params = RibbonParams { step: Some(6.0), ..RibbonParams::default() };
     let prepared = Prepared::new(exemplars, params).unwrap();
-    let wanted = Request { changes: vec![0.5], ..request(line(&[(0.0, 20.0), (300.0, 20.0)])) };
+    let wanted = RibbonRequest { changes: vec![0.5], ..request(line(&[(0.0, 20.0), (300.0, 20.0)])) };
     let outcome = prepared.run(&wanted, &mut Unobserved).unwrap();
     let sources: Vec<usize> = outcome.ribbons[0].pieces.iter().map(|p| p.patch.source).collect();
     assert_eq!((sources[0], sources[sources.len() - 1]), (0, 1));
@@ -220,7 +232,7 @@ fn several_exemplars_pass_into_one_another() {
 
 #[test]
 fn a_first_piece_can_be_fixed() {
-    let wanted = Request { first: Some((17, 1)), ..request(line(&[(0.0, 12.0), (60.0, 12.0)])) };
+    let wanted = RibbonRequest { first: Some((17, 1)), ..request(line(&[(0.0, 12.0), (60.0, 12.0)])) };
     let outcome = run(&strip(60, 24, 6), &plain(), &wanted);
     assert_eq!(outcome.ribbons[0].pieces[0].patch.texture[0], Vector::xy(17.5, 1.0));
 }
@@ -230,7 +242,7 @@ fn repetition_is_penalised() {
     let exemplar = strip(60, 24, 12);
     let wanted = request(line(&[(0.0, 20.0), (120.0, 20.0), (200.0, 80.0)]));
     let repeats = |repetition| {
-        let params = Params { repetition, variety: 0.0, step: Some(6.0), ..Params::default() };
+        let params = RibbonParams { repetition, variety: 0.0, step: Some(6.0), ..RibbonParams::default() };
         let x: Vec<f64> =
             run(&exemplar, &params, &wanted).ribbons[0].pieces.iter().map(|p| p.patch.texture[0][0]).collect();
         let pairs = (0..x.len()).flat_map(|i| (i.saturating_sub(8)..i).map(move |j| (i, j)));
@@ -264,8 +276,9 @@ fn curves_in_space_get_a_strip() {
             Vector([40.0 * t.cos(), 40.0 * t.sin(), 6.0 * t])
         })
         .collect();
-    let wanted = Request::new(vec![("helix".into(), Path::polyline(&points))]);
-    let prepared = Prepared::new(vec![strip(60, 24, 1)], Params { step: Some(6.0), ..Params::default() }).unwrap();
+    let wanted = RibbonRequest::new(vec![("helix".into(), Path::polyline(&points))]);
+    let prepared =
+        Prepared::new(vec![strip(60, 24, 1)], RibbonParams { step: Some(6.0), ..RibbonParams::default() }).unwrap();
     let outcome = prepared.run_in_space(&wanted, &mut Unobserved).unwrap();
     for pair in outcome.ribbons[0].pieces.windows(2) {
         assert_eq!(pair[0].patch.corners[1], pair[1].patch.corners[0]);
@@ -276,16 +289,16 @@ fn curves_in_space_get_a_strip() {
 
 #[test]
 fn unusable_exemplars_are_refused() {
-    let blank = Exemplar::new(Image::transparent(40, 20));
-    let opaque = Exemplar::new(Image { pixels: vec![[9, 9, 9, 255]; 800], width: 40, height: 20 });
-    let large = Exemplar::new(Image::transparent(2000, 800));
+    let blank = StripExemplar::new(Image::transparent(40, 20));
+    let opaque = StripExemplar::new(Image { pixels: vec![[9, 9, 9, 255]; 800], width: 40, height: 20 });
+    let large = StripExemplar::new(Image::transparent(2000, 800));
     for (exemplar, word) in [(blank, "every pixel is transparent"), (opaque, "--relax"), (large, "transparent")] {
-        let error = Prepared::new(vec![exemplar], Params::default()).unwrap_err();
+        let error = Prepared::new(vec![exemplar], RibbonParams::default()).unwrap_err();
         assert!(error.to_string().contains(word), "{error}");
     }
     let mut large = strip(2000, 200, 1);
     large.end = None;
-    let error = Prepared::new(vec![large], Params::default()).unwrap_err();
+    let error = Prepared::new(vec![large], RibbonParams::default()).unwrap_err();
     assert!(matches!(error, Error::Limit { .. }) && error.to_string().contains("--coarse 2"), "{error}");
 }
 
@@ -305,9 +318,9 @@ proptest! {
         let exemplar = strip(36, 18, seed);
         let path = if closed { ring(50.0, 50.0, 22.0) } else { line(&[(10.0, 50.0), (50.0, 50.0), (90.0, 50.0 + bend)]) };
         let mask = avoid.then(|| spot(60.0, 42.0, 1.5));
-        let wanted = Request { avoid: mask, seed, ..request(path) };
+        let wanted = RibbonRequest { avoid: mask, seed, ..request(path) };
         let solve = |search| {
-            let params = Params { search, repetition, context, relax: true, step: Some(5.0), ..Params::default() };
+            let params = RibbonParams { search, repetition, context, relax: true, step: Some(5.0), ..RibbonParams::default() };
             run(&exemplar, &params, &wanted).ribbons
         };
         prop_assert_eq!(solve(Search::Bounded), solve(Search::Exhaustive));
@@ -317,7 +330,7 @@ proptest! {
     #[test]
     fn pieces_meet(seed in 0_u64..1000, x in 60.0..140.0_f64, y in 20.0..80.0_f64) {
         let exemplar = strip(48, 20, seed);
-        let params = Params { relax: true, step: Some(5.0), ..Params::default() };
+        let params = RibbonParams { relax: true, step: Some(5.0), ..RibbonParams::default() };
         let outcome = run(&exemplar, &params, &request(line(&[(10.0, 50.0), (x, y), (190.0, 50.0)])));
         for pair in outcome.ribbons[0].pieces.windows(2) {
             prop_assert_eq!(pair[0].patch.corners[1], pair[1].patch.corners[0]);
@@ -335,6 +348,6 @@ proptest! {
 fn a_closed_square_turns_its_corners() {
     let c = [(20.0, 20.0), (120.0, 20.0), (120.0, 120.0), (20.0, 120.0), (20.0, 20.0)].map(|(x, y)| Vector::xy(x, y));
     let path = Path { cubics: c.windows(2).map(|w| straight(w[0], w[1])).collect(), closed: true };
-    let outcome = run(&strip(80, 16, 3), &Params::default(), &request(path));
+    let outcome = run(&strip(80, 16, 3), &RibbonParams::default(), &request(path));
     assert!(outcome.ribbons[0].closed && outcome.ribbons[0].pieces.len() == 250);
 }

@@ -2,11 +2,9 @@
 
 use std::{path::Path, str::FromStr};
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Error, Result, suggest::did_you_mean};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::nearest;
 
 /// File format of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -64,7 +62,7 @@ impl FromStr for Format {
         let lower = text.to_ascii_lowercase();
         Self::ALL.iter().find(|(name, _)| *name == lower).map(|(_, f)| *f).ok_or_else(|| {
             let names = Self::ALL.map(|(name, _)| name);
-            let hint = nearest(&lower, names).map(|n| format!("; did you mean {n}?")).unwrap_or_default();
+            let hint = did_you_mean(&lower, names);
             Error::parameter("output format", text, format!("one of {}{hint}", names.join(", ")))
         })
     }

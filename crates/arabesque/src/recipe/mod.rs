@@ -30,18 +30,17 @@ pub use output::OutputOptions;
 pub use parameters::Parameters;
 pub use redo::Redo;
 pub use region::Region;
-pub use ribbon::{ClosingRule, RIBBON_OPTIONS, Ribbon, RibbonOption, WidthSource};
+pub use ribbon::{ClosingRule, Ribbon, WidthSource, ribbon_options};
 pub use size::{Cuboid, Size};
 pub use space::Space;
 
 pub(crate) use input::encode;
 pub(crate) use size::{pixels_per_user, unit_name};
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Error, Result, suggest::nearest};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
-use crate::nearest;
 use legacy::{FlatRecipe, Head};
 use version::version;
 

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use arabesque_core::options::{Kind, ParamSpec};
 use arabesque_patterns::Params;
+use arabesque_ribbons::RibbonParams;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -64,10 +66,61 @@ pub(super) fn plain_values<'de, D: Deserializer<'de>>(deserializer: D) -> Result
 
 /// The schema of the parameters of the engine for elements and curves.
 pub(super) fn of_patterns(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": "object" })
+    let names = Params::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>();
+    let help = "Named set of parameters to start from. Default: default.";
+    let preset = json_schema!({ "description": help, "type": "string", "enum": names });
+    table(Params::specs(), [(PRESET, preset)])
 }
 
 /// The schema of the parameters of ribbons.
 pub(super) fn of_ribbons(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": "object" })
+    table(RibbonParams::specs().into_iter().filter(|spec| !spec.own_option), [])
+}
+
+/// The schema of a table with a key for each parameter.
+fn table<const N: usize>(specs: impl IntoIterator<Item = ParamSpec>, more: [(&str, Schema); N]) -> Schema {
+    let own = more.into_iter().map(|(name, schema)| (name.to_owned(), schema.to_value()));
+    let keys = specs.into_iter().map(|spec| (spec.name.to_owned(), of_param(&spec).to_value()));
+    let keys: serde_json::Map<String, serde_json::Value> = own.chain(keys).collect();
+    json_schema!({ "type": "object", "properties": keys, "additionalProperties": false })
+}
+
+/// The schema of one parameter: what it may be, and that it may also be written as text.
+fn of_param(spec: &ParamSpec) -> Schema {
+    let unit = spec.unit.map(|unit| format!(" In {unit}.")).unwrap_or_default();
+    let description = format!("{}{unit} Default: {}.", spec.help, spec.default_text());
+    let auto = spec.auto.map(|_| json_schema!({ "const": "auto" }));
+    let value = match spec.kind {
+        Kind::Choice(names) => json_schema!({ "enum": names }),
+        Kind::Switch => json_schema!({ "enum": spec.kind.names() }),
+        Kind::Integer { min, max } => json_schema!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::Real { min, max } => json_schema!({ "type": "number", "minimum": min, "maximum": max }),
+        Kind::Text(_) => json_schema!({ "type": "string" }),
+    };
+    match (auto, spec.kind) {
+        (None, Kind::Choice(_) | Kind::Switch) => {
+            json_schema!({ "description": description, "enum": spec.kind.names() })
+        }
+        (auto, _) => {
+            let text = json_schema!({ "type": "string" });
+            let any: Vec<Schema> = auto.into_iter().chain([value, text]).collect();
+            json_schema!({ "description": description, "anyOf": any })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_schema_has_every_parameter_with_its_default() {
+        let schema = serde_json::to_string(&of_patterns(&mut SchemaGenerator::default())).unwrap();
+        for spec in Params::specs() {
+            assert!(schema.contains(&format!("\"{}\"", spec.name)), "{}", spec.name);
+            assert!(schema.contains(&format!("Default: {}.", spec.default_text())), "{}", spec.name);
+        }
+        let schema = serde_json::to_string(&of_ribbons(&mut SchemaGenerator::default())).unwrap();
+        assert!(schema.contains("\"wander\"") && !schema.contains("\"step\""), "{schema}");
+    }
 }

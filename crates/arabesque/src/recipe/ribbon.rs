@@ -2,15 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Error, Result};
-use arabesque_ribbons::{Closing, Params, Search, Width};
+use arabesque_core::{Error, Result, options::ParamSpec, suggest::did_you_mean};
+use arabesque_ribbons::{Closing, RibbonParams, Width};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    nearest,
-    recipe::{input::Input, parameters, size::Size},
-};
+use crate::recipe::{input::Input, parameters, size::Size};
 
 /// The pattern of a picture along curves. The exemplar of the recipe is the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -92,88 +89,9 @@ fn is_yes(value: &bool) -> bool {
     *value
 }
 
-/// A parameter that `--set` knows.
-#[derive(Clone, Copy, Debug)]
-pub struct RibbonOption {
-    /// Its name.
-    pub name: &'static str,
-    /// What it may be, and its default.
-    pub values: &'static str,
-    /// What it does.
-    pub help: &'static str,
-    set: fn(&mut Params, &str) -> Option<()>,
-}
-
-fn number(text: &str) -> Option<f64> {
-    text.parse().ok()
-}
-
-/// Every parameter that `set` of a recipe for a ribbon knows.
-pub const RIBBON_OPTIONS: &[RibbonOption] = &[
-    RibbonOption {
-        name: "repetition",
-        values: "0 to 1000, default 1",
-        help: "strength of the penalty on showing a part of the exemplar again within the window",
-        set: |p, t| number(t).map(|v| p.repetition = v),
-    },
-    RibbonOption {
-        name: "window",
-        values: "0 to 4, default 1",
-        help: "where re-use is penalised, in lengths of the exemplar",
-        set: |p, t| number(t).map(|v| p.window = v),
-    },
-    RibbonOption {
-        name: "variety",
-        values: "0 to 1000, default 1",
-        help: "strength of the random preference of one part over another; 0 makes all seeds equal",
-        set: |p, t| number(t).map(|v| p.variety = v),
-    },
-    RibbonOption {
-        name: "centring",
-        values: "0 to 1000, default 1",
-        help: "strength of the pull to the middle of the ribbon; 0 lets the pattern wander across it freely",
-        set: |p, t| number(t).map(|v| p.centring = v),
-    },
-    RibbonOption {
-        name: "wander",
-        values: "0 to 1000, default 1/32, and no limit near what is avoided",
-        help: "how far the pattern may leave the middle of the ribbon, in heights of the exemplar; less is faster",
-        set: |p, t| number(t).map(|v| p.wander = Some(v)),
-    },
-    RibbonOption {
-        name: "context",
-        values: "0 to 100, default 1",
-        help: "weight of slopes along the strip, beside the pixels themselves, when two edges are compared",
-        set: |p, t| number(t).map(|v| p.context = v),
-    },
-    RibbonOption {
-        name: "coarse",
-        values: "1 to 16, default 1",
-        help: "pixels of the exemplar that are averaged to one, along each side, for the search",
-        set: |p, t| t.parse().ok().map(|v| p.coarse = v),
-    },
-    RibbonOption {
-        name: "search",
-        values: "bounded or exhaustive, default bounded",
-        help: "whether pairs of columns that a lower bound rules out are skipped; the result is the same",
-        set: |p, t| {
-            p.search = match t {
-                "bounded" => Search::Bounded,
-                "exhaustive" => Search::Exhaustive,
-                _ => return None,
-            };
-            Some(())
-        },
-    },
-];
-
-fn set(params: &mut Params, name: &str, value: &str) -> Result<()> {
-    let Some(option) = RIBBON_OPTIONS.iter().find(|o| o.name == name) else {
-        let names: Vec<&str> = RIBBON_OPTIONS.iter().map(|o| o.name).collect();
-        let hint = nearest(name, names.iter().copied()).map(|n| format!("; did you mean {n}?")).unwrap_or_default();
-        return Err(Error::parameter(name, value, format!("a parameter of ribbons: {}{hint}", names.join(", "))));
-    };
-    (option.set)(params, value.trim()).ok_or_else(|| Error::parameter(name, value, option.values))
+/// The parameters that `set` of a recipe for a ribbon knows; the others have keys of their own.
+pub fn ribbon_options() -> Vec<ParamSpec> {
+    RibbonParams::specs().into_iter().filter(|spec| !spec.own_option).collect()
 }
 
 impl Ribbon {
@@ -213,14 +131,14 @@ impl Ribbon {
     ///
     /// # Errors
     /// [`Error::Parameter`] for an unknown name in `params` or a value out of range.
-    pub(crate) fn engine_params(&self) -> Result<Params> {
-        let mut params = Params {
-            step: self.step,
-            width: self.width.as_ref().map_or(Ok(Width::Exemplar), width)?,
-            stitch: self.stitch,
-            relax: self.relax,
-            ..Params::default()
-        };
+    pub(crate) fn engine_params(&self) -> Result<RibbonParams> {
+        let mut params =
+            RibbonParams { step: self.step, stitch: self.stitch, relax: self.relax, ..RibbonParams::default() };
+        match &self.width {
+            None => {}
+            Some(WidthSource::Constant(width)) => params.width = Width::Constant(*width),
+            Some(WidthSource::Text(text)) => params.set("width", text)?,
+        }
         if self.closing == Some(ClosingRule::Exact) {
             params.closing = Closing::Exact;
         }
@@ -235,45 +153,19 @@ impl Ribbon {
     }
 }
 
-/// The width in a text such as `30`, `20..40` or `0:20,0.5:40,1:20`.
-fn width(source: &WidthSource) -> Result<Width> {
-    let text = match source {
-        WidthSource::Constant(width) => return Ok(Width::Constant(*width)),
-        WidthSource::Text(text) => text.trim(),
-    };
-    let fail = || {
-        let expected = "a number of user units, 20..40 from start to end, or widths at rising shares of the length such as 0:20,0.5:40,1:20";
-        Error::parameter("width", format!("\"{text}\""), expected)
-    };
-    if let Ok(width) = text.parse() {
-        return Ok(Width::Constant(width));
+fn set(params: &mut RibbonParams, name: &str, value: &str) -> Result<()> {
+    let names: Vec<&str> = ribbon_options().iter().map(|spec| spec.name).collect();
+    if names.contains(&name) {
+        return params.set(name, value);
     }
-    let pair = |text: &str, by: &str| {
-        let (a, b) = text.split_once(by)?;
-        Some((a.trim().parse::<f64>().ok()?, b.trim().parse::<f64>().ok()?))
-    };
-    if let Some((from, to)) = pair(text, "..") {
-        return Ok(Width::Profile(vec![(0.0, from), (1.0, to)]));
-    }
-    let stations = text.split(',').map(|station| pair(station, ":")).collect::<Option<Vec<_>>>().ok_or_else(fail)?;
-    let rising = stations.windows(2).all(|w| w[0].0 < w[1].0) && stations.iter().all(|s| (0.0..=1.0).contains(&s.0));
-    if rising { Ok(Width::Profile(stations)) } else { Err(fail()) }
+    let hint = did_you_mean(name, names.iter().copied());
+    Err(Error::parameter("set", name, format!("one of {}{hint}", names.join(", "))))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
 
-    #[test]
-    fn widths_are_constant_or_vary() {
-        let read = |text: &str| width(&WidthSource::Text(text.into()));
-        assert_eq!(read("30").unwrap(), Width::Constant(30.0));
-        assert_eq!(read("20..40").unwrap(), Width::Profile(vec![(0.0, 20.0), (1.0, 40.0)]));
-        assert_eq!(read("0:20, 0.5:40,1:20").unwrap(), Width::Profile(vec![(0.0, 20.0), (0.5, 40.0), (1.0, 20.0)]));
-        for text in ["", "x", "20..", "0:20,0:30", "0.5:20,0.2:30", "0:20,2:30", "0:", "nan:5,1:2"] {
-            assert!(read(text).is_err(), "{text}");
-        }
-    }
+    use super::*;
 
     #[test]
     fn parameters_are_set_by_name() {

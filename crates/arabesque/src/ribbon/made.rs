@@ -10,7 +10,7 @@ use arabesque_io::{
     strip::Strip,
     svg::{Area, Cell, Embedded, Filled, Look, Page, RibbonSheet, areas_markup, write_ribbons},
 };
-use arabesque_ribbons::{Exemplar, Piece, Ribbon, Rung, facets, rungs, shown_areas};
+use arabesque_ribbons::{Piece, Ribbon, Rung, StripExemplar, facets, rungs, shown_areas};
 
 use crate::{
     artwork::{Encoded, Geometry, Made, RibbonSummary, Sheet, Summary},
@@ -92,7 +92,7 @@ impl RibbonMade {
         }
     }
 
-    fn exemplars(&self) -> &[Exemplar] {
+    fn exemplars(&self) -> &[StripExemplar] {
         self.strips.engine.exemplars()
     }
 

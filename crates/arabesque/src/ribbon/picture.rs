@@ -2,7 +2,7 @@
 
 use arabesque_core::{Error, Image, Limits, Result, Vector};
 use arabesque_io::{image::draw_svg, png, svg::Page};
-use arabesque_ribbons::{Canvas, Exemplar, Mask, Ribbon, render};
+use arabesque_ribbons::{Canvas, Mask, Ribbon, StripExemplar, render};
 
 use crate::{
     artwork::Sheet,
@@ -63,7 +63,7 @@ impl Pixels {
 /// Pieces of pictures on their canvas, as PNG.
 pub(crate) fn of_pieces(
     ribbons: &[Ribbon<2>],
-    exemplars: &[Exemplar],
+    exemplars: &[StripExemplar],
     avoid: Option<&Mask>,
     page: &Page,
     sheet: &Sheet<'_>,

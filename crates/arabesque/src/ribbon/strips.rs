@@ -7,7 +7,7 @@ use arabesque_io::{
     png,
     svg::{self, Area},
 };
-use arabesque_ribbons::{Exemplar, Params, Prepared as Engine, Width};
+use arabesque_ribbons::{Prepared as Engine, RibbonParams, StripExemplar, Width};
 
 use crate::{
     method::Preparation,
@@ -63,14 +63,18 @@ struct Loading<'a> {
 impl Loading<'_> {
     /// The exemplars as pictures, which are embedded, and the pixels of the search per pixel or unit of theirs; `params` then counts
     /// in pixels of the search.
-    fn exemplars(&mut self, first: &mut Input, params: &mut Params) -> Result<(Vec<Exemplar>, Vec<Source>, f64)> {
+    fn exemplars(
+        &mut self,
+        first: &mut Input,
+        params: &mut RibbonParams,
+    ) -> Result<(Vec<StripExemplar>, Vec<Source>, f64)> {
         let (mut exemplars, mut sources) = (Vec::new(), Vec::new());
         let mut finer = None;
         let mut then = std::mem::take(&mut self.ribbon.then);
         for input in std::iter::once(first).chain(&mut then) {
             let bytes = self.files.embed(input)?;
             let (image, source) = self.exemplar(input, &bytes, &mut finer)?;
-            exemplars.push(Exemplar::new(image));
+            exemplars.push(StripExemplar::new(image));
             sources.push(source);
         }
         self.ribbon.then = then;
@@ -140,7 +144,7 @@ fn check_alike(sources: &[Source]) -> Result<()> {
 }
 
 /// Warns of a ribbon that is much wider than its exemplar.
-fn width_warning(params: &Params, exemplars: &[Exemplar]) -> Option<Warning> {
+fn width_warning(params: &RibbonParams, exemplars: &[StripExemplar]) -> Option<Warning> {
     let height = exemplars.iter().map(|e| e.image.height).max().unwrap_or(0) as f64 * params.scale;
     let widest = match &params.width {
         Width::Exemplar => return None,

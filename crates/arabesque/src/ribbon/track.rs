@@ -7,7 +7,7 @@ use arabesque_io::{
     obj, png,
     svg::{self, Page, Unit},
 };
-use arabesque_ribbons::{Mask, Request as EngineRequest};
+use arabesque_ribbons::{Mask, RibbonRequest};
 
 use crate::{
     method::RunContext,
@@ -20,9 +20,9 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) enum Track {
     /// Curves on a page.
-    Plane { request: EngineRequest<2>, page: Page },
+    Plane { request: RibbonRequest<2>, page: Page },
     /// Curves in space.
-    Space { request: EngineRequest<3> },
+    Space { request: RibbonRequest<3> },
 }
 
 impl Track {
@@ -89,13 +89,13 @@ fn follow(ribbon: &mut Ribbon, context: &mut RunContext<'_>) -> Result<Track> {
             return Err(Error::Unsupported { what: "a canvas for curves in space".into(), advice: advice.into() });
         }
         let curves = obj::read_lines(name, &text, &files.limits())?;
-        return Ok(Track::Space { request: EngineRequest::new(curves) });
+        return Ok(Track::Space { request: RibbonRequest::new(curves) });
     }
     let lines = svg::read_lines(&text, input.id.as_deref(), &options(input, files))?;
     context.warnings.extend(lines.warnings);
     let own = lines.page.unwrap_or_else(|| page_around(&lines.paths));
     let page = size.map_or(own, |size| size.on(&own).1);
-    Ok(Track::Plane { request: EngineRequest::new(lines.paths), page })
+    Ok(Track::Plane { request: RibbonRequest::new(lines.paths), page })
 }
 
 /// The cells of the canvas that must stay free, one for each pixel of the canvas. The files are embedded.
@@ -124,7 +124,7 @@ fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Resul
 }
 
 /// Warnings of curves that lie off the canvas.
-fn off_canvas(request: &EngineRequest<2>, page: &Page) -> Vec<Warning> {
+fn off_canvas(request: &RibbonRequest<2>, page: &Page) -> Vec<Warning> {
     let off = request.curves.iter().filter(|(_, path)| !path.bounds().intersects(&page.view));
     let advice = "move it onto the page, or give another canvas with --on-canvas";
     off.map(|(name, _)| Warning::new(format!("{name} lies off the canvas"), advice)).collect()

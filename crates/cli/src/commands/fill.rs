@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
     Border, Cuboid, Error, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo, Region, Space,
+    core::options::{help_list, preset_list},
     patterns::Params,
 };
 use clap::{Args, ValueEnum};
@@ -169,9 +170,8 @@ pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
 
 /// The parameters that `--set` knows, for the long help.
 fn parameters() -> String {
-    let list: String =
-        Params::options().iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
-    format!("Parameters for --set, by name:\n{list}\nPresets: {}", Params::PRESETS.join(", "))
+    let (list, presets) = (help_list(&Params::specs()), preset_list(Params::PRESETS));
+    format!("Parameters for --set, by name:\n{list}\nPresets:\n{presets}")
 }
 
 impl From<BorderName> for Border {

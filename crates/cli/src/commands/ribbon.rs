@@ -2,7 +2,9 @@
 
 use std::process::ExitCode;
 
-use arabesque::{ClosingRule, Input, Recipe, Ribbon as RibbonJob, WidthSource};
+use arabesque::{
+    ClosingRule, Input, Recipe, Ribbon as RibbonJob, WidthSource, core::options::help_list, ribbon_options,
+};
 use clap::{Args, ValueEnum};
 
 use crate::{
@@ -47,7 +49,7 @@ struct Shape {
     /// Length of a piece in user units [default: a tenth of the height of the exemplar]
     #[arg(long, value_name = "D")]
     step: Option<f64>,
-    /// User units a pixel of the exemplar, or a unit of an SVG exemplar [default: 1]
+    /// User units per pixel of the exemplar, or per unit of an SVG exemplar [default: 1]
     #[arg(long, value_name = "S")]
     scale: Option<f64>,
     /// Put no ink on these shapes, or on the dark opaque pixels of a PNG picture that covers the canvas; may be given several times
@@ -105,10 +107,10 @@ struct Canvas {
     /// Size of the canvas, from the origin, such as 800x600 or 210mmx297mm [default: the page of the file of curves]
     #[arg(long, value_name = "WxH")]
     on_canvas: Option<String>,
-    /// PNG: pixels a user unit [default: 1]
+    /// PNG: pixels per user unit [default: 1]
     #[arg(long, value_name = "N", conflicts_with = "dpi")]
     pixels_per_unit: Option<f64>,
-    /// PNG: pixels an inch, instead
+    /// PNG: pixels per inch, instead
     #[arg(long, value_name = "N")]
     dpi: Option<f64>,
 }
@@ -133,9 +135,7 @@ fn range(text: &str) -> Result<[usize; 2], String> {
 
 /// The parameters that `--set` knows, for the long help.
 fn parameters() -> String {
-    let list: String =
-        arabesque::RIBBON_OPTIONS.iter().map(|o| format!("  {} = {}\n      {}\n", o.name, o.values, o.help)).collect();
-    format!("Parameters for --set, by name:\n{list}")
+    format!("Parameters for --set, by name:\n{}", help_list(&ribbon_options()))
 }
 
 impl Ribbon {

@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn the_window_of_random_points_is_hardly_larger_than_their_box() {
-        let mut random = Stream::new(5, Stage::Test, 0);
+        let mut random = Stream::new(5, Stage::TEST, 0);
         let points: Vec<_> = (0..400).map(|_| Vector::xy(random.unit(), random.unit())).collect();
         let e = Exemplar::from_points("t", &points, &[0; 400], &["a".into()]).unwrap();
         assert!((e.window.measure() - 1.0).abs() < 0.06, "{:?}", e.window);

@@ -130,7 +130,7 @@ mod tests {
     use crate::random::{Stage, Stream};
 
     fn check(domain: &Domain<2>, radius: f64) {
-        let mut s = Stream::new(3, Stage::Test, 0);
+        let mut s = Stream::new(3, Stage::TEST, 0);
         let points: Vec<_> = (0..400).map(|_| Vector::xy(s.range(0.0, 10.0), s.range(0.0, 10.0))).collect();
         let index = GridIndex::new(&points, radius, domain);
         for _ in 0..50 {

@@ -220,7 +220,7 @@ mod tests {
     fn an_annulus_knows_its_inside_and_its_distances() {
         let shape = Shape::new(&[ring(720, 10.0), ring(720, 4.0)], FillRule::EvenOdd).unwrap();
         assert!((shape.measure() - std::f64::consts::PI * 84.0).abs() < 0.1);
-        let mut s = Stream::new(1, Stage::Test, 0);
+        let mut s = Stream::new(1, Stage::TEST, 0);
         for _ in 0..2000 {
             let p = Vector::xy(s.range(-13.0, 13.0), s.range(-13.0, 13.0));
             let r = p.norm();

@@ -59,6 +59,8 @@ mod search;
 mod setting;
 #[path = "../../src/solver.rs"]
 mod solver;
+#[path = "../../src/streams.rs"]
+mod streams;
 #[path = "../../src/state.rs"]
 mod state;
 #[path = "../../src/targets.rs"]

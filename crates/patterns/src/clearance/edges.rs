@@ -86,7 +86,7 @@ mod tests {
     fn bands_cover_what_the_outline_covers() {
         let outline = Outline::union(&[star(70, 10.0), star(12, 3.0)], FillRule::EvenOdd);
         let bands = EdgeBands::new(&outline);
-        let mut stream = Stream::new(2, Stage::Test, 0);
+        let mut stream = Stream::new(2, Stage::TEST, 0);
         for _ in 0..2000 {
             let p = Vector::xy(stream.range(-11.0, 11.0), stream.range(-11.0, 11.0));
             assert_eq!(bands.covers(p), outline.contains(p), "{p:?}");

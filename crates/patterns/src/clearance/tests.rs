@@ -333,7 +333,7 @@ fn crowd(n: usize, spacing: f64) -> (Exemplar<2>, Vec<Placement<2>>, Request<2>)
             .collect(),
     );
     let side = spacing * (n as f64).sqrt().ceil();
-    let mut stream = Stream::new(9, Stage::Test, 0);
+    let mut stream = Stream::new(9, Stage::TEST, 0);
     let columns = (n as f64).sqrt().ceil() as usize;
     let placements = (0..n).map(|k| {
         let source = stream.below(16);

@@ -7,17 +7,15 @@ use rayon::prelude::*;
 
 use crate::{
     constraints::valid::{Demands, Grade, Offset, positions},
-    engine::Request,
     exemplar::strip::Strip,
     geometry::cage::Cage,
-    params::Params,
+    params::{RibbonParams, WANDER},
+    request::RibbonRequest,
 };
 
 /// Half of the length of a transition, in heights of the exemplar.
 const TRANSITION: f64 = 1.5;
 
-/// How far the pattern leaves the middle where nothing is in its way, in heights of the exemplar.
-const WANDER: f64 = 0.01;
 /// Room beside the least detour, in heights of the exemplar.
 const RESERVE: f64 = 0.1;
 /// How fast a detour may begin and end: across against along.
@@ -26,8 +24,8 @@ const SLOPE: f64 = 0.25;
 /// Everything that the demands on the pieces of one curve follow from.
 pub(crate) struct Plan<'a, const D: usize> {
     pub(crate) strip: &'a Strip,
-    pub(crate) params: &'a Params,
-    pub(crate) request: &'a Request<D>,
+    pub(crate) params: &'a RibbonParams,
+    pub(crate) request: &'a RibbonRequest<D>,
     pub(crate) cage: &'a Cage<D>,
 }
 

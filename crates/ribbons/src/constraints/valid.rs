@@ -163,7 +163,7 @@ fn pixels(from: Vector<2>, to: Vector<2>, lower: f64) -> Vec<Offset> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exemplar::strip::Exemplar;
+    use crate::exemplar::strip::StripExemplar;
     use arabesque_core::Image;
 
     /// A bar of ink in rows 8 to 11 of 20, 40 columns.
@@ -174,7 +174,7 @@ mod tests {
                 *pixel = [200, 10, 10, 255];
             }
         }
-        Strip::new(&[Exemplar::new(image)], 1)
+        Strip::new(&[StripExemplar::new(image)], 1)
     }
 
     fn rectangle(width: f64, height: f64) -> Form {

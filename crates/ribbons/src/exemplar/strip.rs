@@ -19,7 +19,7 @@ pub const PIXELS: usize = 250_000;
 
 /// One exemplar: a picture whose pattern runs from left to right, and the parts of it that are kept for the ends of the curve.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Exemplar {
+pub struct StripExemplar {
     /// The picture.
     pub image: Image,
     /// Columns that begin an open curve, and are used nowhere else.
@@ -28,7 +28,7 @@ pub struct Exemplar {
     pub end: Option<Range<usize>>,
 }
 
-impl Exemplar {
+impl StripExemplar {
     /// An exemplar without ends.
     pub fn new(image: Image) -> Self {
         Self { image, start: None, end: None }
@@ -59,7 +59,7 @@ pub(crate) struct Strip {
 
 impl Strip {
     /// Joins `exemplars`, each averaged over squares of `coarse` pixels.
-    pub(crate) fn new(exemplars: &[Exemplar], coarse: usize) -> Self {
+    pub(crate) fn new(exemplars: &[StripExemplar], coarse: usize) -> Self {
         let small: Vec<(usize, usize)> =
             exemplars.iter().map(|e| (e.image.width.div_ceil(coarse), e.image.height.div_ceil(coarse))).collect();
         let width = small.iter().map(|s| s.0).sum();
@@ -82,7 +82,7 @@ impl Strip {
         let scaled = |range: &Option<Range<usize>>, span: &Range<usize>| {
             range.as_ref().map(|r| span.start + r.start / coarse..(span.start + r.end.div_ceil(coarse)).min(span.end))
         };
-        let pick = |of: fn(&Exemplar) -> &Option<Range<usize>>| {
+        let pick = |of: fn(&StripExemplar) -> &Option<Range<usize>>| {
             exemplars.iter().zip(&spans).map(|(e, span)| scaled(of(e), span)).collect()
         };
         let (starts, ends) = (pick(|e| &e.start), pick(|e| &e.end));
@@ -166,7 +166,7 @@ fn average(image: &Image, x: usize, y: usize, side: usize) -> [f32; 4] {
 }
 
 /// Refuses exemplars that no pattern can be read from.
-pub(crate) fn check(exemplars: &[Exemplar], coarse: usize, relax: bool) -> Result<()> {
+pub(crate) fn check(exemplars: &[StripExemplar], coarse: usize, relax: bool) -> Result<()> {
     if exemplars.is_empty() {
         return Err(Error::input(
             "exemplar",
@@ -192,7 +192,7 @@ pub(crate) fn check(exemplars: &[Exemplar], coarse: usize, relax: bool) -> Resul
     Err(Error::Limit { what, found: pixels.to_string(), limit: limit.to_string(), advice })
 }
 
-fn check_one(exemplar: &Exemplar, place: &str, relax: bool) -> Result<()> {
+fn check_one(exemplar: &StripExemplar, place: &str, relax: bool) -> Result<()> {
     let image = &exemplar.image;
     if image.width < 4 || image.height < 2 {
         let problem = format!("{} x {} pixels, where at least 4 x 2 were expected", image.width, image.height);

@@ -2,7 +2,7 @@
 
 use arabesque_core::{Bounds, Error, Measured, Path, Result, Vector};
 
-use crate::params::Params;
+use crate::params::{RibbonParams, STEP};
 
 /// Most pieces of one curve.
 pub const PIECES: usize = 20_000;
@@ -133,7 +133,7 @@ impl<const D: usize> Cage<D> {
 
 impl Cage<2> {
     /// Cuts the ribbon around `path` for an exemplar that is `height` pixels high. `scale` is in user units a pixel.
-    pub(crate) fn along(path: &Path<2>, params: &Params, height: f64, scale: f64, place: &str) -> Result<Self> {
+    pub(crate) fn along(path: &Path<2>, params: &RibbonParams, height: f64, scale: f64, place: &str) -> Result<Self> {
         let line = Line::new(path, params, height * params.scale, place)?;
         let mut down = Vector::xy(0.0, 1.0);
         let rungs: Vec<_> = (0..=line.pieces)
@@ -187,7 +187,7 @@ impl Cage<2> {
 /// the pieces before it as they are.
 pub(crate) struct Line<'a, const D: usize> {
     line: Measured<D>,
-    params: &'a Params,
+    params: &'a RibbonParams,
     /// Height of the exemplar, in user units.
     height: f64,
     pub(crate) pieces: usize,
@@ -195,12 +195,12 @@ pub(crate) struct Line<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Line<'a, D> {
-    pub(crate) fn new(path: &Path<D>, params: &'a Params, height: f64, place: &str) -> Result<Self> {
+    pub(crate) fn new(path: &Path<D>, params: &'a RibbonParams, height: f64, place: &str) -> Result<Self> {
         if path.cubics.iter().flatten().any(|p| !p.is_finite()) {
             let advice = "give every point of the curve as a number";
             return Err(Error::input(place, "a coordinate that is not a finite number", advice));
         }
-        let step = params.step.unwrap_or(0.1 * height);
+        let step = params.step.unwrap_or(STEP * height);
         let line = Measured::new(path.clone(), 0.01 * step);
         let length = line.length();
         if length < 1e-3 * step {
@@ -269,7 +269,7 @@ mod tests {
     use arabesque_core::straight;
 
     fn cage(path: &Path<2>, step: f64) -> Cage<2> {
-        let params = Params { step: Some(step), ..Params::default() };
+        let params = RibbonParams { step: Some(step), ..RibbonParams::default() };
         Cage::along(path, &params, 20.0, 1.0, "curve").unwrap()
     }
 
@@ -308,7 +308,7 @@ mod tests {
     #[test]
     fn curves_without_length_are_refused() {
         let dot = Path { cubics: vec![straight(Vector::ZERO, Vector::ZERO)], closed: false };
-        let error = Cage::along(&dot, &Params::default(), 20.0, 1.0, "c.svg#a").unwrap_err();
+        let error = Cage::along(&dot, &RibbonParams::default(), 20.0, 1.0, "c.svg#a").unwrap_err();
         assert!(error.to_string().starts_with("c.svg#a: a curve of length 0"), "{error}");
     }
 }

@@ -4,12 +4,18 @@ use arabesque_core::{Path, Result, Vector};
 
 use crate::{
     geometry::cage::{Cage, Form, Line, Rung},
-    params::Params,
+    params::RibbonParams,
 };
 
 impl Cage<3> {
     /// Cuts the ribbon around `path`. It lies flat on the ground as far as the curve allows and turns as little as it can on the way.
-    pub(crate) fn in_space(path: &Path<3>, params: &Params, height: f64, scale: f64, place: &str) -> Result<Self> {
+    pub(crate) fn in_space(
+        path: &Path<3>,
+        params: &RibbonParams,
+        height: f64,
+        scale: f64,
+        place: &str,
+    ) -> Result<Self> {
         let line = Line::new(path, params, height * params.scale, place)?;
         let tangents: Vec<Vector<3>> = (0..=line.pieces).map(|k| line.direction(k)).collect();
         let downs = downs(&tangents, line.closed());

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::{
     constraints::mask::Mask,
-    exemplar::strip::{Exemplar, Strip},
+    exemplar::strip::{Strip, StripExemplar},
     geometry::cage::side,
     pieces::piece::{Piece, Ribbon},
 };
@@ -44,7 +44,7 @@ struct Painter<'a> {
 type Colour = [f32; 4];
 
 /// Draws ribbons on a transparent canvas, later ones over earlier ones. Ink on `mask` is left out.
-pub fn render(ribbons: &[Ribbon<2>], exemplars: &[Exemplar], mask: Option<&Mask>, canvas: &Canvas) -> Image {
+pub fn render(ribbons: &[Ribbon<2>], exemplars: &[StripExemplar], mask: Option<&Mask>, canvas: &Canvas) -> Image {
     let strips: Vec<Strip> = exemplars.iter().map(|e| Strip::new(std::slice::from_ref(e), 1)).collect();
     let painters: Vec<Painter<'_>> = ribbons
         .iter()

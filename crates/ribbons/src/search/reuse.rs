@@ -6,7 +6,10 @@
 
 use arabesque_core::{Stage, Stream};
 
-use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::Params};
+use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::RibbonParams};
+
+/// What the random preference is drawn for.
+const PREFERENCE: Stage = Stage::new(1);
 
 /// Most pieces that a path remembers.
 const MEMORY: usize = 64;
@@ -59,7 +62,7 @@ pub(crate) struct Reuse {
 
 impl Reuse {
     /// For a curve of `pieces` pieces like `form`.
-    pub(crate) fn new(params: &Params, seed: u64, pieces: usize, form: &Form, strip: &Strip) -> Self {
+    pub(crate) fn new(params: &RibbonParams, seed: u64, pieces: usize, form: &Form, strip: &Strip) -> Self {
         let length = strip.spans.iter().map(ExactSizeIterator::len).max().unwrap_or(1);
         let step = (form.exit() - form.foot * 0.5).norm().max(1.0);
         let rows = form.rows() as f64;
@@ -71,7 +74,7 @@ impl Reuse {
         let mut taste = Vec::new();
         if most > 0.0 {
             for piece in 0..pieces.div_ceil(4) + 1 {
-                let mut stream = Stream::new(seed, Stage::Initialise, piece as u64);
+                let mut stream = Stream::new(seed, PREFERENCE, piece as u64);
                 taste.extend((0..parts).map(|_| most * stream.unit() as f32));
             }
         }

@@ -9,7 +9,7 @@ use crate::{
     exemplar::columns::Columns,
     exemplar::strip::Strip,
     geometry::cage::Form,
-    params::{Closing, Params, Search},
+    params::{Closing, RibbonParams, Search},
     search::reuse::{Reuse, Trail},
     search::row::{NONE, Row, Step},
 };
@@ -18,7 +18,7 @@ use crate::{
 #[derive(Debug)]
 pub(crate) struct Course<'a> {
     pub(crate) strip: &'a Strip,
-    pub(crate) params: &'a Params,
+    pub(crate) params: &'a RibbonParams,
     /// The pieces.
     pub(crate) forms: &'a [Form],
     /// What is asked of each.
@@ -165,7 +165,7 @@ impl Course<'_> {
             return Ok(last.cost.clone());
         }
         // Re-use depends on the path behind, so that P bounds nothing; without it, P does.
-        let params = Params { repetition: 0.0, ..self.params.clone() };
+        let params = RibbonParams { repetition: 0.0, ..self.params.clone() };
         let free = Course {
             params: &params,
             reuse: self.reuse.without_repetition(),

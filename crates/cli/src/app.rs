@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
     commands::{completions, fill, inspect, man, ribbon, run},
@@ -44,8 +44,8 @@ impl App {
             Command::Ribbon(c) => c.execute(),
             Command::Inspect(c) => c.execute(),
             Command::Run(c) => c.execute(),
-            Command::Completions(c) => c.execute(),
-            Command::Man(c) => c.execute(),
+            Command::Completions(c) => c.execute(Self::command()),
+            Command::Man(c) => c.execute(Self::command()),
         }
     }
 }
@@ -53,7 +53,6 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {

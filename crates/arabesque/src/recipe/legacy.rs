@@ -8,16 +8,11 @@ use serde::Deserialize;
 
 use crate::recipe::{
     field::FieldSource,
-    fill::{Fill, Method},
     input::Input,
-    job::Job,
+    job::{ClosingRule, Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, plain_values},
     output::OutputOptions,
-    parameters::{Parameters, plain_values},
-    redo::Redo,
     region::Region,
-    ribbon::{ClosingRule, Ribbon, WidthSource},
     size::{Cuboid, Size},
-    space::Space,
     version::version,
 };
 

@@ -6,33 +6,23 @@
 
 mod embedded;
 mod field;
-mod fill;
 mod format;
 mod input;
 mod job;
 mod legacy;
 mod output;
-mod parameters;
-mod redo;
 mod region;
-mod ribbon;
 mod size;
-mod space;
 mod version;
 
 pub use embedded::recipe_in;
 pub use field::{FieldFile, FieldSource};
-pub use fill::{Fill, Method};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
-pub use job::Job;
+pub use job::{ClosingRule, Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, ribbon_options};
 pub use output::OutputOptions;
-pub use parameters::Parameters;
-pub use redo::Redo;
 pub use region::Region;
-pub use ribbon::{ClosingRule, Ribbon, WidthSource, ribbon_options};
 pub use size::{Cuboid, Size};
-pub use space::Space;
 
 pub(crate) use input::encode;
 pub(crate) use size::{pixels_per_user, unit_name};

@@ -2,10 +2,10 @@
 
 use std::{io::Write, process::ExitCode};
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
-use crate::{app::App, failure::Failure};
+use crate::failure::Failure;
 
 /// Write the completion script of a shell
 #[derive(Args, Debug)]
@@ -15,9 +15,9 @@ pub(crate) struct Completions {
 }
 
 impl Completions {
-    pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn execute(self, mut program: clap::Command) -> Result<ExitCode, Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut App::command(), "arabesque", &mut script);
+        clap_complete::generate(self.shell, &mut program, "arabesque", &mut script);
         std::io::stdout().lock().write_all(&script)?;
         Ok(ExitCode::SUCCESS)
     }

@@ -2,9 +2,9 @@
 
 use std::{io::Write, process::ExitCode};
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 
-use crate::{app::App, failure::Failure};
+use crate::failure::Failure;
 
 /// Write the manual page
 #[derive(Args, Debug)]
@@ -14,12 +14,11 @@ pub(crate) struct Man {
 }
 
 impl Man {
-    pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
-        let mut command = App::command();
-        command.build();
+    pub(crate) fn execute(self, mut program: clap::Command) -> Result<ExitCode, Failure> {
+        program.build();
         let command = match &self.subcommand {
-            None => command,
-            Some(name) => named(&command, name)?,
+            None => program,
+            Some(name) => named(&program, name)?,
         };
         let mut page = Vec::new();
         clap_mangen::Man::new(command).render(&mut page)?;

@@ -7,7 +7,7 @@ use arabesque_ribbons::{Closing, RibbonParams, Width};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::recipe::{input::Input, parameters, size::Size};
+use crate::recipe::{input::Input, job::parameters, size::Size};
 
 /// The pattern of a picture along curves. The exemplar of the recipe is the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

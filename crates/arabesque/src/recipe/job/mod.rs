@@ -1,6 +1,20 @@
 //! What is to be made of an exemplar.
 
-use crate::recipe::{fill::Fill, format::Format, input::Input, redo::Redo, ribbon::Ribbon, space::Space};
+mod fill;
+mod parameters;
+mod redo;
+mod ribbon;
+mod space;
+
+pub use fill::{Fill, Method};
+pub use parameters::Parameters;
+pub use redo::Redo;
+pub use ribbon::{ClosingRule, Ribbon, WidthSource, ribbon_options};
+pub use space::Space;
+
+pub(super) use parameters::plain_values;
+
+use crate::recipe::{format::Format, input::Input};
 
 /// What is to be made, one variant a kind of job; each owns the options that it has.
 #[derive(Clone, Debug, PartialEq)]

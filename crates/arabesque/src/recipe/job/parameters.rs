@@ -54,7 +54,9 @@ impl<'de> Deserialize<'de> for Parameters {
 }
 
 /// Numbers, strings and truth values of a table, as text.
-pub(super) fn plain_values<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, String>, D::Error> {
+pub(in crate::recipe) fn plain_values<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, String>, D::Error> {
     let table = BTreeMap::<String, toml::Value>::deserialize(deserializer)?;
     let plain = table.into_iter().map(|(name, value)| match value {
         toml::Value::String(text) => Ok((name, text)),

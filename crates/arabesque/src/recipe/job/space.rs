@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::recipe::{
     field::FieldSource,
-    fill::Method,
-    parameters::{self, Parameters},
+    job::{
+        fill::Method,
+        parameters::{self, Parameters},
+    },
     size::Cuboid,
 };
 

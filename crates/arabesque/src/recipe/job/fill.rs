@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::recipe::{
     field::FieldSource,
     input::Input,
-    parameters::{self, Parameters},
+    job::parameters::{self, Parameters},
     size::Size,
 };
 

@@ -6,9 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::recipe::{
     field::FieldSource,
-    fill::Method,
     input::Input,
-    parameters::{self, Parameters},
+    job::{
+        fill::Method,
+        parameters::{self, Parameters},
+    },
     region::Region,
 };
 

@@ -36,4 +36,4 @@ pub use run::{
     Border, Drawn, EnergyPoint, Observer, Outcome, Patch, Placement, Preview, Progress, Request, StopReason,
     Unobserved, Warning,
 };
-pub use space::{Bounds, Matrix, Similarity, Vector};
+pub use space::{Bounds, Matrix, Similarity, Vector, Warp, cell_index, cell_place, warp};

@@ -31,7 +31,11 @@ pub use image::Image;
 pub use index::GridIndex;
 pub use limits::Limits;
 pub use random::{Stage, Stream};
-pub use region::{Domain, FillRule, Outline, Region, Ring, Shape, ring_area};
+pub use region::{
+    Domain, FillRule, Outline, Region, Ring, Shape,
+    ring::{self, area as ring_area},
+    segment::{self, Segment},
+};
 pub use run::{
     Border, Drawn, EnergyPoint, Observer, Outcome, Patch, Placement, Preview, Progress, Request, StopReason,
     Unobserved, Warning,

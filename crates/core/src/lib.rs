@@ -28,7 +28,7 @@ pub use error::{Error, Result};
 pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
-pub use index::GridIndex;
+pub use index::{Buckets, GridIndex, Lattice};
 pub use limits::Limits;
 pub use random::{Stage, Stream};
 pub use region::{

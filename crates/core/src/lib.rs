@@ -18,18 +18,24 @@ mod field;
 mod image;
 mod index;
 mod limits;
+mod numerics;
 mod random;
 mod region;
 mod run;
 mod space;
+mod text;
 
-pub use curve::{Cubic, Measured, Path, cubic_at, cubic_part, straight};
+pub use curve::{
+    Cubic, Measured, Path, arc_lengths, cubic_at, cubic_part, net_line_spacing, parallel_line_spacing, polyline_length,
+    straight,
+};
 pub use error::{Error, Result};
 pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice};
 pub use limits::Limits;
+pub use numerics::{DisjointSets, Equations, conjugate_gradients, pairing};
 pub use random::{Stage, Stream};
 pub use region::{
     Domain, FillRule, Outline, Region, Ring, Shape,
@@ -41,3 +47,4 @@ pub use run::{
     Unobserved, Warning,
 };
 pub use space::{Bounds, Matrix, Similarity, Vector, Warp, cell_index, cell_place, warp};
+pub use text::Decimals;

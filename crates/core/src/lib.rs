@@ -27,7 +27,7 @@ mod text;
 
 pub use curve::{
     Cubic, Measured, Path, arc_lengths, cubic_at, cubic_part, net_line_spacing, parallel_line_spacing, polyline_length,
-    straight,
+    spans_inside, straight,
 };
 pub use error::{Error, Result};
 pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};

@@ -1,0 +1,12 @@
+//! Results as SVG text.
+
+pub(crate) mod background;
+pub(crate) mod curves;
+pub(crate) mod cut;
+pub(crate) mod flat;
+pub(crate) mod kept;
+pub(crate) mod pieces;
+pub(crate) mod result;
+pub(crate) mod ribbon;
+pub(crate) mod survey;
+pub(crate) mod text;

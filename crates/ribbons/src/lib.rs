@@ -44,6 +44,7 @@ mod engine;
 mod mask;
 mod params;
 mod piece;
+mod pieces;
 mod render;
 mod reuse;
 mod row;
@@ -58,5 +59,10 @@ pub use engine::{Memory, Outcome, Prepared, Request};
 pub use mask::Mask;
 pub use params::{Closing, Params, Search, Width};
 pub use piece::{Piece, Ribbon};
+pub use pieces::{
+    facets::{Facet, facets},
+    rungs::{Rung, rungs},
+    vector::{ShownArea, shown_areas},
+};
 pub use render::{Canvas, render};
 pub use strip::{Exemplar, PIXELS};

@@ -28,6 +28,7 @@ pub use shape::{
     simplify::simplified,
 };
 pub use write::{
+    areas::{Filled, areas_markup},
     result::{Bend, NAMESPACE, Sheet, Style, Written, recipe_of, write_svg},
     ribbon::{Cell, Embedded, Look, RibbonSheet, write_ribbons},
     survey::write_survey,

@@ -1,5 +1,6 @@
 //! Results as SVG text.
 
+pub(crate) mod areas;
 pub(crate) mod background;
 pub(crate) mod curves;
 pub(crate) mod cut;

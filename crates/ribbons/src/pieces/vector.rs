@@ -1,12 +1,8 @@
 //! Ribbons of drawings: the areas of the exemplar cut by pieces, bent, and joined again.
 
-use arabesque_core::{FillRule, Outline, Path, Ring, Vector};
-use arabesque_io::{
-    number::Decimals,
-    path_data::path_data,
-    svg::{Area, simplified},
-};
-use arabesque_ribbons::{Piece, Ribbon};
+use arabesque_core::{FillRule, Outline, Ring, Vector};
+
+use crate::piece::{Piece, Ribbon};
 
 /// How far the cut areas reach over the edges of their pieces, in exemplar pixels, so that what goes on is joined.
 const REACH: f64 = 0.3;
@@ -15,34 +11,35 @@ const BEND: f64 = 2.0;
 /// How far a written border may lie from the true one, in exemplar pixels.
 const DEVIATION: f64 = 0.05;
 
-/// An exemplar's areas, in pixels of its picture.
-pub(crate) struct Drawing {
-    pub(crate) areas: Vec<Area>,
+/// What a ribbon shows of one area of an exemplar that is a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownArea {
+    /// Which exemplar.
+    pub source: usize,
+    /// Which of its areas.
+    pub area: usize,
+    /// Where it is seen, in user units.
+    pub outline: Outline<2>,
+    /// How far a written border may lie from this one, in user units.
+    pub tolerance: f64,
 }
 
-/// The markup of a ribbon: one path for each area of each exemplar that shows, in the order of the drawings.
-pub(crate) fn markup(ribbon: &Ribbon<2>, drawings: &[Drawing], decimals: Decimals) -> String {
-    let mut out = String::new();
-    for (source, drawing) in drawings.iter().enumerate() {
+/// What a ribbon shows of the areas of each exemplar, in the order of `drawings`: outlines in exemplar pixels, the lowest first. Areas
+/// that are not seen are left out.
+pub fn shown_areas(ribbon: &Ribbon<2>, drawings: &[Vec<&Outline<2>>]) -> Vec<ShownArea> {
+    let mut all = Vec::new();
+    for (source, areas) in drawings.iter().enumerate() {
         let pieces: Vec<&Piece<2>> = ribbon.pieces.iter().filter(|p| p.patch.source == source).collect();
         let Some(scale) = pieces.first().map(|p| p.scale()) else { continue };
-        for area in &drawing.areas {
-            let rings: Vec<Ring<2>> = pieces.iter().flat_map(|piece| shown(piece, &area.outline)).collect();
-            let joined = Outline::union(&rings, FillRule::NonZero);
-            let data: String = joined
-                .rings
-                .iter()
-                .map(|ring| path_data(&simplified(&closed(ring), DEVIATION * scale), decimals))
-                .collect();
-            if data.is_empty() {
-                continue;
+        for (area, &outline) in areas.iter().enumerate() {
+            let rings: Vec<Ring<2>> = pieces.iter().flat_map(|piece| shown(piece, outline)).collect();
+            let outline = Outline::union(&rings, FillRule::NonZero);
+            if !outline.rings.is_empty() {
+                all.push(ShownArea { source, area, outline, tolerance: DEVIATION * scale });
             }
-            let opacity =
-                if area.opacity < 1.0 { format!(" fill-opacity=\"{:.4}\"", area.opacity) } else { String::new() };
-            out += &format!("      <path fill=\"{}\"{opacity} fill-rule=\"evenodd\" d=\"{data}\"/>\n", area.colour);
         }
     }
-    out
+    all
 }
 
 /// What a piece shows of an area, on the canvas.
@@ -81,11 +78,6 @@ fn placed(piece: &Piece<2>, ring: &[Vector<2>]) -> Ring<2> {
         .collect()
 }
 
-fn closed(ring: &[Vector<2>]) -> Path<2> {
-    let points: Vec<_> = ring.iter().chain(ring.first()).copied().collect();
-    Path { closed: true, ..Path::polyline(&points) }
-}
-
 #[cfg(test)]
 mod tests {
     use arabesque_core::Patch;
@@ -101,22 +93,21 @@ mod tests {
         Ribbon { pieces: (0..3).map(|k| piece(f64::from(k))).collect(), closed: false, cost: 0.0 }
     }
 
-    fn area(colour: &str, [x, y, w, h]: [f64; 4]) -> Area {
+    fn area([x, y, w, h]: [f64; 4]) -> Outline<2> {
         let ring = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)].map(|(x, y)| Vector::xy(x, y)).to_vec();
-        Area { outline: Outline { rings: vec![ring] }, colour: colour.into(), opacity: 1.0 }
+        Outline { rings: vec![ring] }
     }
 
     #[test]
     fn what_pieces_cut_is_joined_and_the_order_stays() {
-        let drawing =
-            Drawing { areas: vec![area("#0000ff", [0.0, 8.0, 30.0, 4.0]), area("red", [12.0, 9.0, 2.0, 2.0])] };
-        let text = markup(&strip(), &[drawing], Decimals::for_extent(100.0));
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len(), 2);
-        // One bar with few nodes, not three.
-        assert_eq!(lines[0].matches(['M', 'm']).count(), 1, "{text}");
-        assert!(lines[0].contains("#0000ff") && lines[1].contains("red"));
-        assert!(lines[0].len() < 140, "{text}");
+        let areas = [area([0.0, 8.0, 30.0, 4.0]), area([40.0, 0.0, 2.0, 2.0]), area([12.0, 9.0, 2.0, 2.0])];
+        let shown = shown_areas(&strip(), &[areas.iter().collect()]);
+        assert_eq!(shown.iter().map(|s| s.area).collect::<Vec<_>>(), [0, 2]);
+        // One bar, not three.
+        assert_eq!(shown[0].outline.rings.len(), 1);
+        let size = shown[0].outline.bounds().size();
+        assert!((size - Vector::xy(60.0, 8.0)).norm() < 0.1, "{size:?}");
+        assert!((shown[0].tolerance - 2.0 * DEVIATION).abs() < 1e-12);
     }
 
     #[test]
@@ -124,7 +115,7 @@ mod tests {
         let mut ribbon = strip();
         ribbon.pieces.truncate(1);
         ribbon.pieces[0].shift = vec![2.0; 20];
-        let rings = shown(&ribbon.pieces[0], &area("red", [0.0, 9.0, 10.0, 1.0]).outline);
+        let rings = shown(&ribbon.pieces[0], &area([0.0, 9.0, 10.0, 1.0]));
         let at = |x: f64| rings[0].iter().filter(|p| (p[0] - x).abs() < 1.0).map(|p| p[1]).fold(f64::MAX, f64::min);
         // What lies two pixels further down comes up.
         assert!((at(20.0) - 14.0).abs() < 0.3 && (at(0.0) - 18.0).abs() < 0.3, "{rings:?}");

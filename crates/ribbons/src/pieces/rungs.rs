@@ -1,7 +1,8 @@
 //! Pieces of ribbons cut so finely that straight-sided cells show how they are bent.
 
 use arabesque_core::Vector;
-use arabesque_ribbons::Piece;
+
+use crate::piece::Piece;
 
 /// How far a cell may be from the true bending, in exemplar pixels.
 const TOLERANCE: f64 = 0.4;
@@ -10,16 +11,16 @@ const SLOPE: f64 = 2.0;
 
 /// The two ends of a line across a piece, on its left and on its right edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rung<const D: usize> {
+pub struct Rung<const D: usize> {
     /// In the output.
-    pub(crate) ends: [Vector<D>; 2],
+    pub ends: [Vector<D>; 2],
     /// What is shown there, in exemplar pixels.
-    pub(crate) texture: [Vector<2>; 2],
+    pub texture: [Vector<2>; 2],
 }
 
 /// Lines across a piece from top to bottom, such that what lies between two of them is shown almost as between the corners. Only what
 /// lies in the `height` rows of the picture is covered, for there is nothing above and below; no lines where that is nothing.
-pub(crate) fn rungs<const D: usize>(piece: &Piece<D>, height: f64) -> Vec<Rung<D>> {
+pub fn rungs<const D: usize>(piece: &Piece<D>, height: f64) -> Vec<Rung<D>> {
     let [tl, tr, br, bl] = piece.patch.texture;
     let [left, right] = [inside(tl, bl, height), inside(tr, br, height)];
     let ([Some(left), Some(right)], [a, b, c, d]) = ([left, right], piece.patch.corners) else { return Vec::new() };

@@ -1,7 +1,7 @@
 //! Time of one pairing, at the sizes that the search meets.
 
 #[expect(unused, reason = "the benchmark uses part of the solver")]
-#[path = "../src/assignment.rs"]
+#[path = "../src/optimise/assignment.rs"]
 mod assignment;
 
 use std::cell::Cell;

@@ -1,17 +1,15 @@
 //! Time of the final clearance check, with and without something to mend. One thread, unless `RAYON_NUM_THREADS` says otherwise.
 
-#[expect(unused, unreachable_pub, reason = "the benchmark uses part of the module")]
-#[path = "../src/clearance/mod.rs"]
-mod clearance;
-#[expect(unused, unreachable_pub, reason = "the benchmark uses part of the module")]
-#[path = "../src/deform.rs"]
-mod deform;
+#![expect(unused, unreachable_pub, reason = "the benchmark uses part of the engine")]
+
+include!("engine/modules.rs");
 
 use arabesque_core::{
     Bounds, Class, Domain, Element, Exemplar, Matrix, Outline, Placement, Request, Role, Similarity, Stage, Stream,
     Vector,
 };
 use divan::Bencher;
+use finish::clearance;
 
 /// Corners of an outline.
 const CORNERS: u32 = 24;

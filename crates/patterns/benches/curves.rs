@@ -10,8 +10,8 @@ mod stages;
 
 use arabesque_core::{Bounds, Class, Curve, Exemplar, Path, Stream, Unobserved, Vector};
 use divan::Bencher;
-use engine::Prepared;
 use params::Params;
+use prepared::Prepared;
 use stages::{Stage, page, set_threads, time};
 
 /// Samples of the output at the finest level, about.

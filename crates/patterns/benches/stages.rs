@@ -13,8 +13,8 @@ use arabesque_core::{
     Vector,
 };
 use divan::Bencher;
-use engine::Prepared;
 use params::Params;
+use prepared::Prepared;
 use stages::{set_threads, time};
 
 /// Elements of the output.

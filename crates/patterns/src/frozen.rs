@@ -5,11 +5,17 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Matrix, Measured, Path, Request, Vector};
 
 use crate::{
-    canvas::Item,
-    curves::{Line, Net, Skeleton, directions},
+    curves::votes::tangents::directions,
+    exemplar::{
+        graph::{
+            net::Net,
+            skeleton::{Line, Skeleton},
+        },
+        library::Library,
+        setting::Setting,
+    },
     layout::{Draft, Items},
-    library::Library,
-    setting::Setting,
+    output::canvas::Item,
 };
 
 /// Stands for a frozen stroke where items name the frozen placement they are.

@@ -31,41 +31,21 @@
 //!
 //! Not handled: interleaved physics; anything outside two and three dimensions.
 
-mod assignment;
-mod attributes;
-mod buckets;
-mod canvas;
-mod clearance;
-mod coverage;
+mod border;
 mod curves;
-mod deform;
-mod engine;
-mod existence;
-mod extent;
-mod features;
+mod exemplar;
 mod finish;
 mod frozen;
-mod grains;
-mod grow;
-mod kinds;
 mod layout;
-mod level;
-mod library;
-mod matching;
-mod noise;
+mod optimise;
+mod output;
 mod params;
-mod positions;
+mod prepared;
 mod run;
-mod samples;
-mod search;
-mod setting;
-mod solver;
-mod state;
-mod targets;
+mod toolbox;
 
-pub use clearance::overlap_ratio;
-pub use deform::warp;
-pub use engine::Prepared;
+pub use finish::{clearance::overlap_ratio, deform::warp};
 pub use params::{
     Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search, Switch,
 };
+pub use prepared::Prepared;

@@ -5,20 +5,29 @@ use std::ops::ControlFlow;
 use arabesque_core::{Drawn, EnergyPoint, Matrix, Observer, Preview, Progress, Request};
 
 use crate::{
-    attributes,
-    canvas::Item,
-    curves,
-    engine::Prepared,
-    existence::{self, Changes},
-    extent::Extent,
-    finish, frozen, grains,
-    layout::{Draft, Layout},
-    matching::Prices,
+    border::Extent,
+    curves::{
+        draw::{
+            chains::{self, Chain},
+            resample, shape,
+        },
+        repair::mend,
+        votes::{edge_votes, edges, tangents},
+    },
+    exemplar::setting::Setting,
+    finish::placements,
+    frozen,
+    layout::{Draft, Layout, grains},
+    optimise::{
+        attributes,
+        existence::{self, Changes},
+        matching::Prices,
+        positions,
+        search::{self, SearchParams},
+    },
+    output::{canvas::Item, state::State},
     params::{Attributes, Existence, Initialisation, Search, Switch},
-    positions,
-    search::{self, SearchParams},
-    setting::Setting,
-    state::State,
+    prepared::Prepared,
 };
 
 /// Share of the progress that the first layout counts for.
@@ -59,7 +68,7 @@ pub(crate) struct Run<'a, const D: usize> {
 struct Finished<const D: usize> {
     /// What the next level starts from, or after the last one, the elements.
     draft: Draft<D>,
-    bends: Option<Vec<finish::Bend<D>>>,
+    bends: Option<Vec<placements::Bend<D>>>,
     curves: Vec<Drawn<D>>,
 }
 
@@ -96,12 +105,12 @@ impl<const D: usize> Run<'_, D> {
     fn coarsened(&self, draft: &Draft<D>) -> Draft<D> {
         let (Some(finest), Some(coarsest)) = (self.stands.last(), self.stands.first()) else { return draft.clone() };
         let mut state = self.state(finest, draft);
-        curves::link_sources(&mut state);
+        edges::link_sources(&mut state);
         match &coarsest.setting.level.net {
             Some(net) if self.stands.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) => {
                 let chains = self.chains(&mut state);
                 let frozen = frozen::draft(self.request, coarsest.setting);
-                curves::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
+                resample::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
             }
             _ => draft.clone(),
         }
@@ -120,7 +129,7 @@ impl<const D: usize> Run<'_, D> {
     fn result(&self, done: &Finished<D>) -> Preview<D> {
         let Some(stand) = self.stands.last() else { return Preview::default() };
         let mut placements =
-            finish::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
+            placements::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
         for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
             placement.control.clone_from(control);
         }
@@ -184,7 +193,7 @@ impl<const D: usize> Run<'_, D> {
     /// The elements alone: strokes are not known before the samples are joined.
     fn layout_preview(&self, stand: &Stand<'_, D>, items: &[Item<D>]) -> Preview<D> {
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
-        let placements = finish::placements(&items, self.request, stand.extent, stand.setting.level.base);
+        let placements = placements::placements(&items, self.request, stand.extent, stand.setting.level.base);
         let state = self.state(stand, &Draft { items, links: Vec::new() });
         Preview { placements, curves: self.strokes(state), ..Preview::default() }
     }
@@ -204,7 +213,7 @@ impl<const D: usize> Run<'_, D> {
     ) -> (Finished<D>, ControlFlow<()>) {
         let stand = &self.stands[k];
         let mut state = self.state(stand, draft);
-        curves::link_sources(&mut state);
+        edges::link_sources(&mut state);
         if k > 0 && flow.is_continue() {
             // Handing over takes as long as iterations do, and strokes have come out finer.
             flow = observer.step(&self.progress(k, 0, &state), &|| self.snapshot(stand, &state));
@@ -218,7 +227,7 @@ impl<const D: usize> Run<'_, D> {
         let params = &self.prepared.params;
         if params.existence == Existence::Voted && flow.is_continue() {
             self.layout(stand).fill_holes(&mut state);
-            curves::link_sources(&mut state);
+            edges::link_sources(&mut state);
         }
         (self.finish(k, state, flow), flow)
     }
@@ -245,7 +254,7 @@ impl<const D: usize> Run<'_, D> {
             observer.step(&Progress { elements: items.len(), ..known }, &|| self.layout_preview(stand, items))
         });
         *state = self.state(stand, &draft);
-        curves::link_sources(state);
+        edges::link_sources(state);
         flow?;
         self.refine((0, self.iterations), state, trace, observer)
     }
@@ -283,8 +292,8 @@ impl<const D: usize> Run<'_, D> {
         };
         position.extend(state.samples[position.len()..].iter().map(|s| s.position));
         state.follow_samples(&position);
-        let (_, joined) = curves::assign_edges(state);
-        curves::assign_tangents(state);
+        let (_, joined) = edges::assign(state);
+        tangents::assign(state);
         let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
         let moved = state.announce_moves(noticeable * state.library.spacing * stand.extent.smallest_spacing_scale);
         state.reindex();
@@ -294,7 +303,7 @@ impl<const D: usize> Run<'_, D> {
     /// What a level leaves: elements and, for the next level, denser samples along its strokes; after the last level, the strokes.
     fn finish(&self, k: usize, mut state: State<'_, D>, flow: ControlFlow<()>) -> Finished<D> {
         let base = state.level.base;
-        let bends = finish::bends(&state);
+        let bends = placements::bends(&state);
         let next = self.stands.get(k + 1).filter(|_| flow.is_continue());
         let finer = next.and_then(|next| next.setting.level.net.as_deref().map(|net| (next, net)));
         let Some((next, net)) = finer else {
@@ -307,15 +316,15 @@ impl<const D: usize> Run<'_, D> {
         }
         let chains = self.chains(&mut state);
         let frozen = frozen::draft(self.request, next.setting);
-        let draft = curves::resample(&state, &chains, (net, next.setting.level.base), frozen);
+        let draft = resample::resample(&state, &chains, (net, next.setting.level.base), frozen);
         Finished { draft, bends, curves: Vec::new() }
     }
 
     /// Everything that lives, for a level with the same samples.
     fn as_it_is(&self, mut state: State<'_, D>) -> Draft<D> {
         if self.prepared.params.mending == Switch::On {
-            let votes = curves::collect_votes(&state);
-            curves::mend(&mut state, &votes);
+            let votes = edge_votes::collect_votes(&state);
+            mend::mend(&mut state, &votes);
         }
         let mut number = vec![u32::MAX; state.items.len()];
         let living_items = (0..state.items.len()).filter(|&i| state.items[i].alive);
@@ -327,16 +336,16 @@ impl<const D: usize> Run<'_, D> {
     }
 
     /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.
-    fn chains(&self, state: &mut State<'_, D>) -> Vec<curves::Chain> {
+    fn chains(&self, state: &mut State<'_, D>) -> Vec<Chain> {
         let params = &self.prepared.params;
-        let votes = curves::collect_votes(state);
+        let votes = edge_votes::collect_votes(state);
         if params.mending == Switch::On {
-            curves::mend(state, &votes);
+            mend::mend(state, &votes);
             state.reindex();
         }
-        let chains = curves::chains(state, &votes, params.orientations == Switch::On);
+        let chains = chains::chains(state, &votes, params.orientations == Switch::On);
         if params.shapes == Switch::On {
-            let position = curves::polish(state, &chains);
+            let position = shape::polish(state, &chains);
             state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
         }
         chains
@@ -347,13 +356,13 @@ impl<const D: usize> Run<'_, D> {
             return Vec::new();
         }
         let chains = self.chains(&mut state);
-        curves::draw(&state, &chains)
+        shape::strokes(&state, &chains)
     }
 
     fn snapshot(&self, stand: &Stand<'_, D>, state: &State<'_, D>) -> Preview<D> {
         let base = state.level.base;
-        let mut placements = finish::placements(&living(state), self.request, stand.extent, base);
-        for (placement, control) in placements.iter_mut().zip(finish::bends(state).into_iter().flatten()) {
+        let mut placements = placements::placements(&living(state), self.request, stand.extent, base);
+        for (placement, control) in placements.iter_mut().zip(placements::bends(state).into_iter().flatten()) {
             placement.control = control;
         }
         Preview { placements, curves: self.strokes(state.clone()), ..Preview::default() }

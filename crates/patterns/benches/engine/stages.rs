@@ -4,19 +4,25 @@ use arabesque_core::{Bounds, Domain, Drawn, Exemplar, Placement, Request, Vector
 use divan::Bencher;
 
 use crate::{
-    curves,
-    engine::Prepared,
-    existence,
-    extent::Extent,
-    finish,
+    border::Extent,
+    curves::{
+        draw::{chains::chains, shape},
+        repair::mend::mend,
+        votes::{edge_votes::collect_votes, edges, tangents},
+    },
+    exemplar::setting::Setting,
+    finish::placements,
     layout::{Draft, Layout},
-    matching::{Matcher, Prices, Row, Surroundings},
+    optimise::{
+        existence,
+        matching::{Matcher, Prices, Row, Surroundings},
+        positions,
+        search::{self, SearchParams},
+        targets::class_targets,
+    },
+    output::state::State,
     params::{Deform, Matching, Params, Switch},
-    positions,
-    search::{self, SearchParams},
-    setting::Setting,
-    state::State,
-    targets::class_targets,
+    prepared::Prepared,
 };
 
 /// A stage that is timed on its own.
@@ -69,7 +75,7 @@ pub(crate) fn time(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, stage: St
         return bencher.bench_local(lay_out);
     }
     let mut state = State::new(library, level, &request, &extent, (&lay_out(), Deform::Rigid));
-    curves::link_sources(&mut state);
+    edges::link_sources(&mut state);
     let first = search_params(&params);
     if let Stage::Search = stage {
         return bencher
@@ -89,10 +95,10 @@ fn timed_after_search(bencher: Bencher, state: &State<'_, 2>, targets: &[f64], s
         Stage::Layout | Stage::Search | Stage::Matching => {}
         Stage::Solve => fresh.bench_local_refs(|state| positions::assign(state)),
         Stage::Existence => fresh.bench_local_values(|mut state| (existence::assign(&mut state, targets, 0.95), state)),
-        Stage::Edges => fresh.bench_local_values(|mut state| (curves::assign_edges(&mut state), state)),
+        Stage::Edges => fresh.bench_local_values(|mut state| (edges::assign(&mut state), state)),
         // The first layout knows its edges.
         Stage::Orientations => fresh.bench_local_values(|mut state| {
-            curves::assign_tangents(&mut state);
+            tangents::assign(&mut state);
             state
         }),
         Stage::Reconstruct => fresh.bench_local_values(reconstruct),
@@ -101,17 +107,17 @@ fn timed_after_search(bencher: Bencher, state: &State<'_, 2>, targets: &[f64], s
 
 fn reconstruct(mut state: State<'_, 2>) -> (Vec<Placement<2>>, Vec<Drawn<2>>) {
     let items = state.items.iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect();
-    let placements = finish::placements(&items, state.request, state.extent, state.level.base);
+    let placements = placements::placements(&items, state.request, state.extent, state.level.base);
     if state.level.net.is_none() {
         return (placements, Vec::new());
     }
-    let votes = curves::collect_votes(&state);
-    curves::mend(&mut state, &votes);
+    let votes = collect_votes(&state);
+    mend(&mut state, &votes);
     state.reindex();
-    let chains = curves::chains(&state, &votes, Params::default().orientations == Switch::On);
-    let position = curves::polish(&state, &chains);
+    let chains = chains(&state, &votes, Params::default().orientations == Switch::On);
+    let position = shape::polish(&state, &chains);
     state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
-    (placements, curves::draw(&state, &chains))
+    (placements, shape::strokes(&state, &chains))
 }
 
 /// As many pairings as the state has samples, on one thread: neighbourhoods of the exemplar, each with the next of its kind.
@@ -133,7 +139,7 @@ fn matching(bencher: Bencher, state: &State<'_, 2>) {
 /// The neighbourhood of an exemplar sample, as if it were one of the output.
 fn surroundings(state: &State<'_, 2>, i: u32) -> Surroundings<2> {
     let level = state.level;
-    let row = |near: &crate::level::Near<2>| Row {
+    let row = |near: &crate::exemplar::level::Near<2>| Row {
         sample: near.sample,
         key: level.key[near.sample as usize],
         source: level.element[near.sample as usize],

@@ -1,0 +1,4 @@
+//! Tools that know nothing of patterns.
+
+pub(crate) mod buckets;
+pub(crate) mod solver;

@@ -150,7 +150,7 @@ impl Artwork<'_> {
     fn svg(&self, output: &OutputOptions, recipe: Option<&str>) -> Result<Written> {
         let prepared = self.prepared;
         let placements = &self.outcome.placements;
-        let bend = |k: usize, p| arabesque_patterns::warp(&placements[k].control, p);
+        let bend = |k: usize, p| arabesque_core::warp(&placements[k].control, p);
         write_svg(&Sheet {
             drawing: &prepared.drawing,
             placements,

@@ -35,7 +35,7 @@ pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice};
 pub use limits::Limits;
-pub use numerics::{DisjointSets, Equations, conjugate_gradients, pairing};
+pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
 pub use random::{Stage, Stream};
 pub use region::{
     Domain, FillRule, Outline, Region, Ring, Shape,

@@ -8,11 +8,11 @@
 //! | sample the elements | `samples`, `level` | [Ma 2011 §3.1], [Tu 2020 §4.1.1] |
 //! | lay out the output | `layout`, `grow`, `noise` | [Tu 2020 §4.3.2], [Ma 2011 §4.1] |
 //! | search | `search`, `matching`, `assignment` | [Ma 2011 §4.2], [Tu 2020 §4.2, §4.3.3] |
-//! | assign positions | `positions`, `solver` | [Ma 2011 eqs 3, 4], [Tu 2020 eqs 14, 15] |
+//! | assign positions | `positions`, `core::NormalEquations` | [Ma 2011 eqs 3, 4], [Tu 2020 eqs 14, 15] |
 //! | assign attributes | `attributes`, `features` | [Ma 2011 eq. 5] |
 //! | assign existence | `existence`, `targets` | [Tu 2020 §4.3.4, appendix A] |
 //! | sample curves, assign edges and tangents, draw strokes | `curves` | [Tu 2020 §4.1.1, §4.3.4, §4.4.2] |
-//! | place | `finish`, `clearance`, `deform` | [Ma 2011 §3.1], [Schaefer 2006] |
+//! | place | `finish`, `clearance`, `core::Warp` | [Ma 2011 §3.1], [Schaefer 2006] |
 //!
 //! | symbol | identifier |
 //! |---|---|
@@ -42,9 +42,8 @@ mod output;
 mod params;
 mod prepared;
 mod run;
-mod toolbox;
 
-pub use finish::{clearance::overlap_ratio, deform::warp};
+pub use finish::clearance::overlap_ratio;
 pub use params::{
     Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search, Switch,
 };

@@ -23,5 +23,3 @@ mod params;
 mod prepared;
 #[path = "../../src/run.rs"]
 mod run;
-#[path = "../../src/toolbox/mod.rs"]
-mod toolbox;

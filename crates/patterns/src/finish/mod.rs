@@ -1,5 +1,4 @@
-//! From the optimised output to placements: bending, and the last check of exact outlines.
+//! From the optimised output to placements, and the last check of exact outlines.
 
 pub(crate) mod clearance;
-pub(crate) mod deform;
 pub(crate) mod placements;

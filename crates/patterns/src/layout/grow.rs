@@ -142,7 +142,7 @@ impl<'a, const D: usize> Grower<'a, D> {
             sites.sort_by_cached_key(far);
         }
         let reach = (self.params.patch + self.params.context) * self.largest_scale();
-        let mut earlier = crate::toolbox::buckets::Buckets::new(&self.request.domain, self.extent.margin, reach);
+        let mut earlier = arabesque_core::Buckets::new(&self.request.domain, self.extent.margin, reach);
         let mut round_of: Vec<usize> = Vec::with_capacity(sites.len());
         let mut rounds: Vec<Vec<Vector<D>>> = Vec::new();
         for (i, &site) in sites.iter().enumerate() {

@@ -3,16 +3,13 @@
 //! An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods miss an exemplar element, it is
 //! added. The samples of an element come and go together; frozen elements stay.
 
-use arabesque_core::{Matrix, Vector};
+use arabesque_core::{Buckets, Matrix, Vector};
 
 use rayon::prelude::*;
 
-use crate::{
-    output::{
-        canvas::Item,
-        state::{LiveItem, State},
-    },
-    toolbox::buckets::Buckets,
+use crate::output::{
+    canvas::Item,
+    state::{LiveItem, State},
 };
 
 /// Confidence from which an element exists.

@@ -1,13 +1,9 @@
 //! Position assignment: where the matched neighbourhoods say that samples should be [Ma 2011 eqs 3, 4; Tu 2020 eqs 14, 15].
 
-use arabesque_core::Vector;
+use arabesque_core::{NormalEquations, Prediction, Pull, Vector};
 use rayon::prelude::*;
 
-use crate::{
-    exemplar::level::fall_off,
-    output::state::State,
-    toolbox::solver::{NormalEquations, Prediction, Pull},
-};
+use crate::{exemplar::level::fall_off, output::state::State};
 
 /// Share of a sample's predictions' weight with which it is held where it is: predictions fix relative positions only.
 const PIN: f64 = 0.05;

@@ -1,8 +1,6 @@
 //! The output while it is made: elements at places, quick to look up.
 
-use arabesque_core::{Domain, Vector};
-
-use crate::toolbox::buckets::Buckets;
+use arabesque_core::{Buckets, Domain, Vector};
 
 /// One output element.
 #[derive(Clone, Copy, Debug, PartialEq)]

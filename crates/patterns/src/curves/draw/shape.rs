@@ -3,7 +3,7 @@
 //! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their mean direction. Where
 //! it has a corner, the corner stays.
 
-use arabesque_core::{Cubic, Drawn, Path, Vector, straight};
+use arabesque_core::{Cubic, Drawn, NormalEquations, Path, Prediction, Pull, Vector, straight};
 
 use crate::{
     curves::{
@@ -15,7 +15,6 @@ use crate::{
         skeleton::Knot,
     },
     output::state::State,
-    toolbox::solver::{NormalEquations, Prediction, Pull},
 };
 
 /// Weight of the place of a sample against the shapes of the edges around it.

@@ -2,14 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Domain, Exemplar, Outline, Placement, Role, Similarity};
+use arabesque_core::{Domain, Exemplar, Outline, Placement, Role, Similarity, Warp};
 
-use crate::finish::{
-    clearance::{
-        figure::Figure,
-        scene::{Body, Overlap, Scene},
-    },
-    deform::Warp,
+use crate::finish::clearance::{
+    figure::Figure,
+    scene::{Body, Overlap, Scene},
 };
 
 /// Overlaps below this share of the smaller element are rounding.

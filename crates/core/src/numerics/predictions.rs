@@ -1,28 +1,37 @@
-//! Least squares for positions: conjugate gradients on the graph of predictions.
+//! Least squares for positions that predict one another: the graph of predictions as linear equations.
 
-use arabesque_core::Vector;
-use rayon::prelude::*;
+use crate::{
+    numerics::{Equations, conjugate_gradients},
+    space::Vector,
+};
 
 /// `weight * |(x_to - x_from) - offset|^2` for a pair of unknowns.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Prediction<const D: usize> {
-    pub(crate) from: u32,
-    pub(crate) to: u32,
-    pub(crate) offset: Vector<D>,
-    pub(crate) weight: f64,
+pub struct Prediction<const D: usize> {
+    /// The unknown that predicts.
+    pub from: u32,
+    /// The unknown that is predicted.
+    pub to: u32,
+    /// Where the one should lie from the other.
+    pub offset: Vector<D>,
+    /// How much it counts.
+    pub weight: f64,
 }
 
 /// `weight * |x - target|^2` for one unknown.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pull<const D: usize> {
-    pub(crate) target: Vector<D>,
-    pub(crate) weight: f64,
+pub struct Pull<const D: usize> {
+    /// Where the unknown should lie.
+    pub target: Vector<D>,
+    /// How much it counts.
+    pub weight: f64,
 }
 
 /// The normal equations of a sum of predictions and pulls: symmetric positive definite when every unknown has a pull of its own.
 ///
 /// Unknowns are displacements from a start, so that positions on a torus need no common origin.
-pub(crate) struct NormalEquations<const D: usize> {
+#[derive(Clone, Debug)]
+pub struct NormalEquations<const D: usize> {
     diagonal: Vec<f64>,
     starts: Vec<u32>,
     /// Other unknown and weight, row by row.
@@ -31,15 +40,9 @@ pub(crate) struct NormalEquations<const D: usize> {
     fixed: Vec<bool>,
 }
 
-/// Unknowns handled as one piece of parallel work; sums are taken piece by piece, so that they do not depend on the number of threads.
-const PIECE: usize = 4096;
-
-/// Fewest rows worth a piece of parallel work of their own.
-const ROWS: usize = 512;
-
 impl<const D: usize> NormalEquations<D> {
     /// Equations for `n` displacements; `pulls[i]` belongs to unknown `i`, unknowns with `fixed[i]` stay at zero.
-    pub(crate) fn new(predictions: &[Prediction<D>], pulls: &[Pull<D>], fixed: Vec<bool>) -> Self {
+    pub fn new(predictions: &[Prediction<D>], pulls: &[Pull<D>], fixed: Vec<bool>) -> Self {
         let n = pulls.len();
         let mut diagonal: Vec<f64> = pulls.iter().map(|p| p.weight).collect();
         let mut right: Vec<_> = pulls.iter().map(|p| p.target * p.weight).collect();
@@ -65,6 +68,14 @@ impl<const D: usize> NormalEquations<D> {
         Self { diagonal, starts, entries, right, fixed }
     }
 
+    /// Solves the equations from zero, until the residual is `tolerance` of the start or after `most` steps. Never raises the sum of squares
+    /// above its value at zero.
+    pub fn solve(&self, tolerance: f64, most: usize) -> Vec<Vector<D>> {
+        conjugate_gradients(self, tolerance, most)
+    }
+}
+
+impl<const D: usize> Equations<D> for NormalEquations<D> {
     fn row(&self, i: usize, x: &[Vector<D>]) -> Vector<D> {
         if self.fixed[i] {
             return Vector::ZERO;
@@ -73,62 +84,23 @@ impl<const D: usize> NormalEquations<D> {
         entries.iter().fold(x[i] * self.diagonal[i], |sum, &(j, w)| sum - x[j as usize] * w)
     }
 
-    fn residual(&self, x: &[Vector<D>]) -> Vec<Vector<D>> {
-        let one = |i: usize| if self.fixed[i] { Vector::ZERO } else { self.right[i] - self.row(i, x) };
-        (0..x.len()).into_par_iter().with_min_len(ROWS).map(one).collect()
+    fn diagonal(&self, i: usize) -> f64 {
+        self.diagonal[i]
     }
 
-    /// Solves by conjugate gradients with the diagonal as preconditioner, from zero, until the residual is `tolerance` of the start or after
-    /// `most` steps. Never raises the sum of squares above its value at zero.
-    pub(crate) fn solve(&self, tolerance: f64, most: usize) -> Vec<Vector<D>> {
-        let n = self.right.len();
-        let mut x = vec![Vector::ZERO; n];
-        let mut r = self.residual(&x);
-        let mut z = self.preconditioned(&r);
-        let mut p = z.clone();
-        let mut rz = dot(&r, &z);
-        let stop = rz * tolerance * tolerance;
-        for _ in 0..most {
-            if rz <= stop || rz <= f64::MIN_POSITIVE {
-                break;
-            }
-            let q: Vec<_> = (0..n).into_par_iter().with_min_len(ROWS).map(|i| self.row(i, &p)).collect();
-            let alpha = rz / dot(&p, &q).max(f64::MIN_POSITIVE);
-            add_scaled(&mut x, &p, alpha);
-            add_scaled(&mut r, &q, -alpha);
-            z = self.preconditioned(&r);
-            let next = dot(&r, &z);
-            let beta = next / rz;
-            rz = next;
-            p.par_iter_mut().with_min_len(ROWS).zip(&z).for_each(|(p, &z)| *p = z + *p * beta);
-        }
-        x
+    fn right(&self, i: usize) -> Vector<D> {
+        if self.fixed[i] { Vector::ZERO } else { self.right[i] }
     }
 
-    fn preconditioned(&self, r: &[Vector<D>]) -> Vec<Vector<D>> {
-        let scaled = |(&v, &d): (&Vector<D>, &f64)| v * (1.0 / d.max(f64::MIN_POSITIVE));
-        r.par_iter().with_min_len(ROWS).zip(&self.diagonal).map(scaled).collect()
+    fn count(&self) -> usize {
+        self.right.len()
     }
-}
-
-/// `x += y * factor`, entry by entry.
-fn add_scaled<const D: usize>(x: &mut [Vector<D>], y: &[Vector<D>], factor: f64) {
-    x.par_iter_mut().with_min_len(ROWS).zip(y).for_each(|(x, &y)| *x += y * factor);
-}
-
-fn dot<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
-    let pieces: Vec<f64> = a
-        .par_chunks(PIECE)
-        .zip(b.par_chunks(PIECE))
-        .map(|(a, b)| a.iter().zip(b).map(|(p, q)| p.dot(*q)).sum())
-        .collect();
-    pieces.into_iter().sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arabesque_core::{Stage, Stream};
+    use crate::random::{Stage, Stream};
 
     /// A ring of unknowns with chords, random offsets and weights.
     fn problem(n: usize, seed: u64) -> (Vec<Prediction<2>>, Vec<Pull<2>>) {

@@ -1,4 +1,0 @@
-//! Tools that know nothing of patterns.
-
-pub(crate) mod buckets;
-pub(crate) mod solver;

@@ -17,7 +17,7 @@ use crate::{
         clearance::{self, ExemplarClearance},
         placements,
     },
-    layout::{Draft, Layout},
+    layout::Layout,
     optimise::{
         assignment::Assignment,
         existence,
@@ -26,7 +26,7 @@ use crate::{
         search::{self, SearchParams},
         targets::class_targets,
     },
-    output::state::State,
+    output::{draft::Draft, state::State},
     params::{Deform, Matching, Params, Switch},
     prepared::Prepared,
 };

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::{
     output::{
-        canvas::Item,
+        draft::Item,
         state::{LiveItem, State},
     },
     toolbox::buckets::Buckets,

@@ -2,3 +2,4 @@
 
 pub(crate) mod buckets;
 pub(crate) mod solver;
+pub(crate) mod spans;

@@ -6,8 +6,11 @@
 use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View};
 
 use crate::{
-    curves::border::trim::inside,
-    exemplar::graph::contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
+    exemplar::graph::{
+        contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
+        line::Line,
+    },
+    toolbox::spans::inside,
 };
 
 /// An end this many stroke widths from a line meets it: the ink of the two touches.
@@ -39,20 +42,6 @@ pub(crate) enum Knot {
     Junction,
     /// A line turns sharply.
     Corner,
-}
-
-/// A connected part of an exemplar curve.
-#[derive(Clone, Debug)]
-pub(crate) struct Line<const D: usize> {
-    pub(crate) measured: Measured<D>,
-    /// Index into the curves.
-    pub(crate) curve: u32,
-    /// Half of this is how far its ink reaches.
-    pub(crate) width: f64,
-    /// Whether the window cuts it at its start, at its end.
-    pub(crate) is_cut: [bool; 2],
-    /// Knots along it, by arc length: (arc, knot).
-    pub(crate) stops: Vec<(f64, u32)>,
 }
 
 /// Lines and knots.

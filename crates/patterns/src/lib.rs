@@ -42,6 +42,9 @@ mod output;
 mod params;
 mod prepared;
 mod run;
+#[cfg(feature = "bench-stages")]
+#[doc(hidden)]
+pub mod stages;
 
 pub use finish::clearance::overlap_ratio;
 pub use params::{

@@ -147,7 +147,7 @@ impl<const D: usize> Prepared<D> {
             Stand { setting: &self.settings[k], extent: &extents[shared], targets: &targets[shared] }
         };
         let stands: Vec<_> = levels.iter().enumerate().map(stand).collect();
-        let run = Run { prepared: self, request, stands, iterations };
+        let run = Run { params: &self.params, request, stands, iterations };
         let mut trace = Vec::new();
         let (mut found, flow) = run.synthesise(&mut trace, observer);
         let last = &extents[extents.len() - 1];

@@ -17,7 +17,7 @@ use crate::{
     exemplar::setting::Setting,
     finish::placements,
     frozen,
-    layout::{Draft, Layout, grains},
+    layout::{Layout, grains},
     optimise::{
         attributes,
         existence::{self, Changes},
@@ -25,9 +25,11 @@ use crate::{
         positions,
         search::{self, SearchParams},
     },
-    output::{canvas::Item, state::State},
-    params::{Attributes, Existence, Initialisation, Search, Switch},
-    prepared::Prepared,
+    output::{
+        draft::{Draft, Item},
+        state::State,
+    },
+    params::{Attributes, Existence, Initialisation, Params, Search, Switch},
 };
 
 /// Share of the progress that the first layout counts for.
@@ -56,7 +58,7 @@ pub(crate) struct Stand<'a, const D: usize> {
 
 /// What one run works on.
 pub(crate) struct Run<'a, const D: usize> {
-    pub(crate) prepared: &'a Prepared<D>,
+    pub(crate) params: &'a Params,
     pub(crate) request: &'a Request<D>,
     /// The levels that are used, coarsest first.
     pub(crate) stands: Vec<Stand<'a, D>>,
@@ -81,7 +83,7 @@ impl<const D: usize> Run<'_, D> {
     ) -> (Preview<D>, ControlFlow<()>) {
         let mut flow = ControlFlow::Continue(());
         let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
-        let from_noise = self.prepared.params.initialisation == Initialisation::WhiteNoise;
+        let from_noise = self.params.initialisation == Initialisation::WhiteNoise;
         if let Some(stand) = if from_noise { self.stands.first() } else { self.stands.last() } {
             let frozen = frozen::draft(self.request, stand.setting);
             let layout = self.layout(stand);
@@ -119,7 +121,7 @@ impl<const D: usize> Run<'_, D> {
     fn layout<'s>(&'s self, stand: &Stand<'s, D>) -> Layout<'s, D> {
         Layout {
             library: &stand.setting.library,
-            params: &self.prepared.params,
+            params: self.params,
             request: self.request,
             extent: stand.extent,
             base: stand.setting.level.base,
@@ -148,7 +150,7 @@ impl<const D: usize> Run<'_, D> {
         }
     }
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
-        let params = &self.prepared.params;
+        let params = self.params;
         let first = iteration.is_multiple_of(self.iterations);
         SearchParams {
             search: params.search,
@@ -167,7 +169,7 @@ impl<const D: usize> Run<'_, D> {
 
     /// Share of the target numbers below which no element is removed.
     fn floor(&self, k: usize, iteration: usize) -> f64 {
-        if self.prepared.params.initialisation != Initialisation::WhiteNoise {
+        if self.params.initialisation != Initialisation::WhiteNoise {
             return FLOOR;
         }
         let done = (k as f64 + iteration as f64 / self.iterations.max(1) as f64) / self.stands.len() as f64;
@@ -200,7 +202,7 @@ impl<const D: usize> Run<'_, D> {
 
     fn state<'s>(&'s self, stand: &Stand<'s, D>, draft: &Draft<D>) -> State<'s, D> {
         let setting = stand.setting;
-        State::new(&setting.library, &setting.level, self.request, stand.extent, (draft, self.prepared.params.deform))
+        State::new(&setting.library, &setting.level, self.request, stand.extent, (draft, self.params.deform))
     }
 
     /// Search and assign at one level, then mend and hand over to the next.
@@ -224,7 +226,7 @@ impl<const D: usize> Run<'_, D> {
         if k == 0 && flow.is_continue() && self.may_regrow() {
             flow = self.regrow(&mut state, trace, observer);
         }
-        let params = &self.prepared.params;
+        let params = self.params;
         if params.existence == Existence::Voted && flow.is_continue() {
             self.layout(stand).fill_holes(&mut state);
             edges::link_sources(&mut state);
@@ -234,7 +236,7 @@ impl<const D: usize> Run<'_, D> {
 
     /// Patches that agree with one another are as much order as there is to find; any other start may have ended in disorder.
     fn may_regrow(&self) -> bool {
-        let params = &self.prepared.params;
+        let params = self.params;
         params.regrowth == Switch::On && params.initialisation != Initialisation::PatchCopy && self.iterations > 0
     }
 
@@ -281,12 +283,12 @@ impl<const D: usize> Run<'_, D> {
 
     /// One assignment step: attributes, positions, existence, edges, tangents. Returns whether anything changed.
     fn assign(&self, state: &mut State<'_, D>, stand: &Stand<'_, D>, floor: f64) -> bool {
-        let exchanged = match self.prepared.params.attributes {
+        let exchanged = match self.params.attributes {
             Attributes::Selected => attributes::assign(state),
             Attributes::Kept => 0,
         };
         let mut position = positions::assign(state);
-        let changes = match self.prepared.params.existence {
+        let changes = match self.params.existence {
             Existence::Voted => existence::assign(state, stand.targets, floor),
             Existence::Fixed => Changes::default(),
         };
@@ -322,7 +324,7 @@ impl<const D: usize> Run<'_, D> {
 
     /// Everything that lives, for a level with the same samples.
     fn as_it_is(&self, mut state: State<'_, D>) -> Draft<D> {
-        if self.prepared.params.mending == Switch::On {
+        if self.params.mending == Switch::On {
             let votes = edge_votes::collect_votes(&state);
             mend::mend(&mut state, &votes);
         }
@@ -337,7 +339,7 @@ impl<const D: usize> Run<'_, D> {
 
     /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.
     fn chains(&self, state: &mut State<'_, D>) -> Vec<Chain> {
-        let params = &self.prepared.params;
+        let params = self.params;
         let votes = edge_votes::collect_votes(state);
         if params.mending == Switch::On {
             mend::mend(state, &votes);

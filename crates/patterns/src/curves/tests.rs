@@ -19,8 +19,10 @@ use crate::{
         },
         setting::settings,
     },
-    layout::Draft,
-    output::{canvas::Item, state::State},
+    output::{
+        draft::{Draft, Item},
+        state::State,
+    },
     params::{Deform, Params},
 };
 

@@ -5,9 +5,8 @@ use arabesque_core::{Matrix, Placement, Request, Vector, Warning};
 use crate::{
     border::Extent,
     finish::clearance::{self, ExemplarClearance},
-    layout::Items,
     output::{
-        canvas::Item,
+        draft::{Frozen, Item, Items},
         state::{LiveItem, State},
     },
     params::{Clearance, Deform, Params},
@@ -21,8 +20,8 @@ pub(crate) fn placements<const D: usize>(
     base: u32,
 ) -> Vec<Placement<D>> {
     let one = |(item, turn): &(Item<D>, Matrix<D>)| match item.frozen {
-        Some(n) => Placement { frozen: Some(n as usize), ..request.frozen[n as usize].clone() },
-        None => Placement {
+        Some(Frozen::Element(n)) => Placement { frozen: Some(n as usize), ..request.frozen[n as usize].clone() },
+        Some(Frozen::Stroke) | None => Placement {
             source: item.source as usize,
             transform: extent.turned(item.source, item.position, turn),
             control: Vec::new(),

@@ -5,9 +5,9 @@
 //! [Tu 2020 §6] both name. What undoes them in a crystal is growth from one nucleus. So where a level ends in small grains, the best of
 //! them stays and the layout grows on from it. Frozen samples are such a nucleus already; then no grain is kept.
 
-use crate::{
-    layout::{Draft, Items},
-    output::state::State,
+use crate::output::{
+    draft::{Draft, Items},
+    state::State,
 };
 
 /// Samples above this energy belong to no grain.
@@ -82,7 +82,7 @@ mod tests {
             matching::Prices,
             search::{SearchParams, search},
         },
-        output::canvas::Item,
+        output::draft::Item,
         params::{Deform, Matching, Params, Search},
     };
 

@@ -15,12 +15,12 @@ use rayon::prelude::*;
 use crate::{
     border::Extent,
     exemplar::library::Library,
-    layout::{
-        Watch,
-        coverage::{Cell, Coverage},
-    },
-    output::canvas::{Canvas, Item},
+    layout::coverage::{Cell, Coverage},
+    output::{canvas::Canvas, draft::Item},
 };
+
+/// What the layout tells while it works: the state, and the share that is done.
+pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -> ControlFlow<()>;
 
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
 const NOISE: f64 = 0.02;

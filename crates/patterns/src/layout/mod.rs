@@ -14,10 +14,11 @@ use crate::{
     exemplar::library::Library,
     layout::{
         coverage::Coverage,
-        grow::{GrowParams, Grower},
+        grow::{GrowParams, Grower, Watch},
     },
     output::{
-        canvas::{Canvas, Item},
+        canvas::Canvas,
+        draft::{Draft, Items},
         state::State,
     },
     params::{Initialisation, Params},
@@ -38,23 +39,6 @@ const HOLE_STROKES: f64 = 1.0;
 /// Items that a patch is registered on, where it is to join what is there.
 const ANCHORS: usize = 3;
 
-/// Items with their turns.
-pub(crate) type Items<const D: usize> = Vec<(Item<D>, Matrix<D>)>;
-
-/// What is handed from level to level.
-#[derive(Clone, Debug)]
-pub(crate) struct Draft<const D: usize> {
-    pub(crate) items: Items<D>,
-    /// Pairs of items, curve samples both, that an edge joins.
-    pub(crate) links: Vec<(u32, u32)>,
-}
-
-impl<const D: usize> Default for Draft<D> {
-    fn default() -> Self {
-        Self { items: Vec::new(), links: Vec::new() }
-    }
-}
-
 /// Lays out one output.
 pub(crate) struct Layout<'a, const D: usize> {
     pub(crate) library: &'a Library<D>,
@@ -64,9 +48,6 @@ pub(crate) struct Layout<'a, const D: usize> {
     /// First pseudo element, see [`crate::exemplar::level::Level::base`].
     pub(crate) base: u32,
 }
-
-/// What the layout tells while it works: the state, and the share that is done.
-pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -> ControlFlow<()>;
 
 impl<const D: usize> Layout<'_, D> {
     /// The first state: what is frozen, and everything else by the chosen initialisation.

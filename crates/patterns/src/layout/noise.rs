@@ -5,7 +5,7 @@ use arabesque_core::{Request, Stage, Stream, Vector};
 use crate::{
     border::Extent,
     exemplar::library::Library,
-    output::canvas::{Canvas, Item},
+    output::{canvas::Canvas, draft::Item},
 };
 
 /// Scatters elements over the domain.

@@ -17,6 +17,7 @@ pub(crate) const OUTLIER: u32 = u32::MAX;
 const NONE: u32 = u32::MAX;
 
 /// Entries of a row that are compared in one go when a full cost matrix is read.
+#[cfg(any(test, feature = "bench-stages"))]
 const LANES: usize = 16;
 
 /// Solver with its buffers.
@@ -83,7 +84,7 @@ enum End {
 impl Assignment {
     /// Pairs every row with a column of its own at the least total cost, which is returned.
     /// `cost` is finite and row-major; `rows <= columns`.
-    #[allow(dead_code, reason = "for tests and benchmarks: the search enters its pairs as it meets them")]
+    #[cfg(any(test, feature = "bench-stages"))]
     pub(crate) fn solve(&mut self, rows: usize, columns: usize, cost: &[f32]) -> f32 {
         debug_assert!(rows <= columns && cost.len() >= rows * columns);
         self.begin(columns);
@@ -95,7 +96,7 @@ impl Assignment {
 
     /// Pairs rows with columns, or leaves row `i` alone at `outlier[i]`, at the least total cost, which is returned.
     /// `cost` is row-major; an infinite cost marks a pair that must not be. There may be fewer columns than rows.
-    #[allow(dead_code, reason = "for tests and benchmarks: the search enters its pairs as it meets them")]
+    #[cfg(any(test, feature = "bench-stages"))]
     pub(crate) fn solve_with_outliers(&mut self, rows: usize, columns: usize, cost: &[f32], outlier: &[f32]) -> f32 {
         debug_assert!(cost.len() >= rows * columns && outlier.len() >= rows);
         self.begin(columns);
@@ -106,7 +107,7 @@ impl Assignment {
     }
 
     /// Enters a full matrix and [settles it greedily](Self::settle_greedily). `cost` is row-major.
-    #[allow(dead_code, reason = "for tests and benchmarks: the search enters its pairs as it meets them")]
+    #[cfg(any(test, feature = "bench-stages"))]
     pub(crate) fn greedy(&mut self, rows: usize, columns: usize, cost: &[f32]) -> f32 {
         self.begin(columns);
         for i in 0..rows {
@@ -197,6 +198,7 @@ impl Assignment {
     }
 
     /// Enters a full row, skipping stretches without a usable pair.
+    #[cfg(any(test, feature = "bench-stages"))]
     fn enter_row(&mut self, row: &[f32], outlier: f32) {
         self.begin_row(outlier);
         let (chunks, rest) = row.as_chunks::<LANES>();
@@ -209,6 +211,7 @@ impl Assignment {
         self.end_row();
     }
 
+    #[cfg(any(test, feature = "bench-stages"))]
     fn enter_entries(&mut self, first: usize, entries: &[f32]) {
         for (k, &cost) in entries.iter().enumerate() {
             self.pair((first + k) as u32, cost);

@@ -8,7 +8,7 @@ use arabesque_core::{Buckets, Matrix, Vector};
 use rayon::prelude::*;
 
 use crate::output::{
-    canvas::Item,
+    draft::Item,
     state::{LiveItem, State},
 };
 

@@ -2,16 +2,7 @@
 
 use arabesque_core::{Buckets, Domain, Vector};
 
-/// One output element.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Item<const D: usize> {
-    /// Exemplar element drawn here.
-    pub(crate) source: u32,
-    /// Its centre.
-    pub(crate) position: Vector<D>,
-    /// Index into the frozen placements of the request, for an element that must not change.
-    pub(crate) frozen: Option<u32>,
-}
+use crate::output::draft::Item;
 
 /// Output elements with an index by place.
 #[derive(Clone, Debug)]

@@ -5,8 +5,7 @@ use arabesque_core::{Domain, GridIndex, Matrix, Request, Similarity, Vector};
 use crate::{
     border::Extent,
     exemplar::{graph::net::Star, level::Level, library::Library, samples::pose_of},
-    layout::Draft,
-    output::canvas::Item,
+    output::draft::{Draft, Item},
     params::Deform,
 };
 

@@ -5,9 +5,10 @@ use arabesque_core::{Matrix, Vector};
 use crate::{
     curves::draw::{chains::Chain, shape},
     exemplar::graph::net::{Net, Piece},
-    frozen::STROKE,
-    layout::Draft,
-    output::{canvas::Item, state::State},
+    output::{
+        draft::{Draft, Frozen, Item},
+        state::State,
+    },
 };
 
 /// The elements of `state` and samples along `chains` at the spacing of the `finer` net, whose first pseudo element is `base`.
@@ -17,7 +18,7 @@ pub(crate) fn resample<const D: usize>(
     (finer, base): (&Net<D>, u32),
     frozen: Draft<D>,
 ) -> Draft<D> {
-    let strokes = frozen.items.iter().enumerate().filter(|(_, (item, _))| item.frozen == Some(STROKE));
+    let strokes = frozen.items.iter().enumerate().filter(|(_, (item, _))| item.frozen == Some(Frozen::Stroke));
     let drawn = strokes.map(|(n, (item, _))| (n as u32, item.position)).collect();
     let draft = with_elements(state, frozen);
     let mut made = Resampled { state, finer, base, draft, drawn, known: vec![u32::MAX; state.samples.len()] };

@@ -7,7 +7,7 @@ use arabesque_core::{Cubic, Drawn, NormalEquations, Path, Prediction, Pull, Vect
 
 use crate::{
     curves::{
-        border::{hem::Hem, trim::at_border},
+        border::{border_turn::BorderTurn, trim::at_border},
         draw::chains::Chain,
     },
     exemplar::graph::{
@@ -53,8 +53,8 @@ pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) ->
         let scale = state.request.fields.frame(path.start().unwrap_or(Vector::ZERO)).element_scale;
         Drawn { path, source: curve as usize, scale, frozen: None }
     });
-    if let Some(hem) = Hem::of(state, net) {
-        return frozen.chain(hem.finish(free.collect())).collect();
+    if let Some(turn) = BorderTurn::of(state, net) {
+        return frozen.chain(turn.finish(free.collect())).collect();
     }
     let cut = |d: Drawn<D>| {
         let (width, unit) = (state.width(d.source as u32), net.spacing * d.scale);

@@ -2,7 +2,11 @@
 
 use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 
-use crate::{curves::votes::edge_votes::Votes, exemplar::graph::net::Net, output::state::State};
+use crate::{
+    curves::votes::edge_votes::Votes,
+    exemplar::graph::net::{MAX_EDGE, Net},
+    output::state::State,
+};
 
 /// Two edges leave a sample side by side when they enclose less than this share of the sharpest angle of the exemplar.
 const SIDE_BY_SIDE: f64 = 0.6;
@@ -54,8 +58,7 @@ impl Tangle {
     fn crosses_any<const D: usize>(&self, state: &State<'_, D>, a: u32, across: Vector<D>, b: u32) -> bool {
         let Some(net) = &state.level.net else { return false };
         let middle = state.samples[a as usize].position + across * 0.5;
-        let reach = 0.5 * across.norm()
-            + crate::curves::votes::edges::LONGEST * net.spacing * state.extent.largest_spacing_scale;
+        let reach = 0.5 * across.norm() + MAX_EDGE * net.spacing * state.extent.largest_spacing_scale;
         let mut found = false;
         state.index.within(middle, reach, |slot, offset| {
             let c = state.living[slot];

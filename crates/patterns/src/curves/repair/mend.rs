@@ -11,7 +11,7 @@ use crate::{
         },
     },
     exemplar::graph::net::Net,
-    output::{canvas::Item, state::State},
+    output::{draft::Item, state::State},
 };
 
 /// How far an end looks for something to join, in sampling distances.

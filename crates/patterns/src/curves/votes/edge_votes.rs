@@ -3,8 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
-    curves::votes::edges::LONGEST,
-    exemplar::graph::net::{Net, Piece},
+    exemplar::graph::net::{MAX_EDGE, Net, Piece},
     output::state::State,
 };
 
@@ -81,7 +80,7 @@ fn joined_pairs<const D: usize>(
     for &(o, e) in &opinion.pairs {
         for arm in &net.nodes[e as usize].arms {
             let Some(&(p, _)) = opinion.pairs.iter().find(|(p, i)| *i == arm.to && *p > o) else { continue };
-            if state.reach(o, p) <= LONGEST * net.spacing {
+            if state.reach(o, p) <= MAX_EDGE * net.spacing {
                 found.push(((o, p), arm.piece, opinion.weight));
             }
         }

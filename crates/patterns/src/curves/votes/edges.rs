@@ -10,9 +10,6 @@ use crate::{
     output::state::State,
 };
 
-/// No edge is longer than this many sampling distances.
-pub(crate) const LONGEST: f64 = 2.2;
-
 /// Two samples are joined when each lies this near to where the exemplar has the other, in sampling distances.
 const NEAR: f64 = 0.7;
 

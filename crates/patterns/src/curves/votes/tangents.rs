@@ -3,7 +3,7 @@
 use arabesque_core::Vector;
 use rayon::prelude::*;
 
-use crate::{exemplar::graph::net::Net, output::state::State};
+use crate::output::state::State;
 
 /// Updates number and values of the tangents of every living curve sample.
 pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) {
@@ -20,17 +20,11 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) {
             let frame = state.request.fields.frame(state.samples[s].position);
             let turned = |v: Vector<D>| frame.rotation.apply(v);
             let sets: Vec<Vec<Vector<D>>> =
-                votes[s].iter().map(|&e| directions(net, e).into_iter().map(turned).collect()).collect();
+                votes[s].iter().map(|&e| net.directions(e).into_iter().map(turned).collect()).collect();
             update(own, &sets)
         })
         .collect();
     state.tangents = updated;
-}
-
-/// Tangents of a node, those included that the window cuts off.
-pub(crate) fn directions<const D: usize>(net: &Net<D>, node: u32) -> Vec<Vector<D>> {
-    let node = &net.nodes[node as usize];
-    node.arms.iter().map(|a| a.tangent).chain(node.beyond.iter().copied()).collect()
 }
 
 /// For every sample, the exemplar nodes that it was matched with; its own match first.

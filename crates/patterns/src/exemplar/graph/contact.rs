@@ -2,7 +2,7 @@
 
 use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 
-use crate::exemplar::graph::skeleton::Line;
+use crate::exemplar::graph::line::Line;
 
 /// No more crossings are looked for when there are so many.
 pub(crate) const MOST_CONTACTS: usize = 200_000;

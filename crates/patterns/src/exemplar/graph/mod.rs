@@ -2,6 +2,7 @@
 
 pub(crate) mod contact;
 pub(crate) mod crowding;
+pub(crate) mod line;
 pub(crate) mod net;
 pub(crate) mod pseudo;
 pub(crate) mod skeleton;

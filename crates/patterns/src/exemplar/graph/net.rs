@@ -4,10 +4,16 @@ use std::sync::Arc;
 
 use arabesque_core::{Measured, Vector};
 
-use crate::exemplar::graph::skeleton::{Knot, Line, Skeleton};
+use crate::exemplar::graph::{
+    line::Line,
+    skeleton::{Knot, Skeleton},
+};
 
 /// Most arms of a node that are told apart; further ones are left out of the comparison.
 pub(crate) const ARMS: usize = 12;
+
+/// No edge of the output is longer than this many sampling distances.
+pub(crate) const MAX_EDGE: f64 = 2.2;
 
 /// Edge sets up to this size are matched optimally, larger ones nearest pair first.
 const EXACT: usize = 4;
@@ -259,6 +265,12 @@ impl<const D: usize> Net<D> {
         let node = &self.nodes[node as usize];
         let arms = node.arms.iter().map(|arm| self.nodes[arm.to as usize].position - node.position);
         Star::new(arms.chain(node.beyond.iter().map(|t| *t * self.spacing)))
+    }
+
+    /// Unit vectors in which strokes leave a node, those included that the window cuts off.
+    pub(crate) fn directions(&self, node: u32) -> Vec<Vector<D>> {
+        let node = &self.nodes[node as usize];
+        node.arms.iter().map(|a| a.tangent).chain(node.beyond.iter().copied()).collect()
     }
 
     /// Number of edges of a node, those included that the window cuts off.

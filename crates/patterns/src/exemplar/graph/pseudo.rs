@@ -4,12 +4,9 @@ use std::sync::Arc;
 
 use arabesque_core::{Class, Element, Exemplar, Outline, Role, Similarity};
 
-use crate::{
-    curves::votes::tangents::directions,
-    exemplar::graph::{
-        net::Net,
-        skeleton::{Knot, Skeleton},
-    },
+use crate::exemplar::graph::{
+    net::Net,
+    skeleton::{Knot, Skeleton},
 };
 
 /// The exemplar of one level: its elements, then one pseudo element a curve sample.
@@ -35,7 +32,7 @@ impl<const D: usize> Cast<D> {
                 kinds.len() - 1
             });
             let node = &net.nodes[number as usize];
-            let tips = directions(&net, number).into_iter().map(|t| node.position + t * spacing);
+            let tips = net.directions(number).into_iter().map(|t| node.position + t * spacing);
             cast.elements.push(Element {
                 class: exemplar.classes.len() + kind,
                 centre: node.position,

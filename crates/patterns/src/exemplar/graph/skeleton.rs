@@ -3,11 +3,11 @@
 //! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the stroke is wide. Lines
 //! that run side by side do not meet, however close they are.
 
-use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View};
+use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View, spans_inside};
 
-use crate::{
-    curves::border::trim::inside,
-    exemplar::graph::contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
+use crate::exemplar::graph::{
+    contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
+    line::Line,
 };
 
 /// An end this many stroke widths from a line meets it: the ink of the two touches.
@@ -39,20 +39,6 @@ pub(crate) enum Knot {
     Junction,
     /// A line turns sharply.
     Corner,
-}
-
-/// A connected part of an exemplar curve.
-#[derive(Clone, Debug)]
-pub(crate) struct Line<const D: usize> {
-    pub(crate) measured: Measured<D>,
-    /// Index into the curves.
-    pub(crate) curve: u32,
-    /// Half of this is how far its ink reaches.
-    pub(crate) width: f64,
-    /// Whether the window cuts it at its start, at its end.
-    pub(crate) is_cut: [bool; 2],
-    /// Knots along it, by arc length: (arc, knot).
-    pub(crate) stops: Vec<(f64, u32)>,
 }
 
 /// Lines and knots.
@@ -269,7 +255,7 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, view: &View<D>, side: f64) -> V
         is_cut,
         stops: Vec::new(),
     };
-    let spans = inside(&measured, side / 200.0, &|p| view.contains(p));
+    let spans = spans_inside(&measured, side / 200.0, &|p| view.contains(p));
     let whole = matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length());
     let pieces: Vec<Path<D>> = match whole && measured.is_closed() {
         true => vec![curve.path.clone()],

@@ -131,7 +131,7 @@ impl<const D: usize> Level<D> {
             let mut found = Vec::new();
             index.within(self.position[i], reach, |j, offset| {
                 if j != i {
-                    let weight = if offset.norm() <= self.radius { fall_off(offset, self.radius) } else { 0.0 };
+                    let weight = if offset.norm() <= self.radius { fall_off(offset, self.radius) as f32 } else { 0.0 };
                     let offset = offset.0.map(|v| v as f32);
                     found.push((self.key[j], Near { offset, sample: j as u32, weight }));
                 }
@@ -194,7 +194,7 @@ impl<const D: usize> Level<D> {
 }
 
 /// Weight of a neighbour at `offset` in a neighbourhood of `radius`: 1 in the middle, 0.1 at the rim.
-pub(crate) fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f32 {
+pub(crate) fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f64 {
     let x = (offset.norm2() / (radius * radius)).min(1.0);
-    (0.1 + 0.9 * (1.0 - x) * (1.0 - x)) as f32
+    0.1 + 0.9 * (1.0 - x) * (1.0 - x)
 }

@@ -166,12 +166,7 @@ fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -
     let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).clamp(1, 2048));
     let mut largest = 0.0_f64;
     for c in 0..cells.iter().product() {
-        let mut rest: usize = c;
-        let p = Vector(std::array::from_fn(|k| {
-            let i = rest % cells[k];
-            rest /= cells[k];
-            window.min[k] + size[k] * (i as f64 + 0.5) / cells[k] as f64
-        }));
+        let p = window.cell_centre(c, &cells);
         let side = view.signed_distance(p);
         let Some((_, distance)) = (0..6).find_map(|n| all.nearest(p, spacing * f64::from(1 << n), None)) else {
             continue;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Exemplar, Vector};
+use arabesque_core::{Exemplar, Vector, parallel_line_spacing};
 
 use crate::{
     exemplar::{
@@ -88,7 +88,7 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
 /// across.
 fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
     let side = exemplar.view().side();
-    let gap = (exemplar.view().measure() / length(skeleton).max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));
+    let gap = parallel_line_spacing::<D>(exemplar.view().measure(), length(skeleton));
     params.spacing.unwrap_or((STROKE_GAP * gap).clamp(STEP_RANGE.0 * side, STEP_RANGE.1 * side))
 }
 

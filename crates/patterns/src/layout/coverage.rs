@@ -1,6 +1,6 @@
 //! Which part of the output is laid out already.
 
-use arabesque_core::{Domain, Vector};
+use arabesque_core::{Domain, Lattice, Vector};
 
 /// What is known about a cell of the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,10 +16,7 @@ pub(crate) enum Cell {
 /// A raster over the output.
 #[derive(Clone, Debug)]
 pub(crate) struct Coverage<const D: usize> {
-    origin: Vector<D>,
-    size: Vector<D>,
-    cells: [usize; D],
-    torus: bool,
+    lattice: Lattice<D>,
     state: Vec<Cell>,
 }
 
@@ -30,71 +27,30 @@ impl<const D: usize> Coverage<D> {
         let bounds = if torus { domain.bounds() } else { domain.bounds().grown(margin) };
         let extent = bounds.size();
         let cells: [usize; D] = std::array::from_fn(|k| ((extent[k] / cell).ceil() as usize).clamp(1, 8192));
-        let size = Vector(std::array::from_fn(|k| extent[k] / cells[k] as f64));
-        let mut coverage = Self { origin: bounds.min, size, cells, torus, state: Vec::new() };
-        coverage.state = (0..cells.iter().product())
-            .map(|c| {
-                let inside = domain.signed_distance(coverage.centre(c)) >= -margin - 0.5 * size[0];
-                if inside { Cell::Open } else { Cell::Outside }
-            })
-            .collect();
-        coverage
+        let lattice = Lattice::new(bounds, cells, torus);
+        let is_inside = |c| domain.signed_distance(lattice.centre(c)) >= -margin - 0.5 * lattice.cell()[0];
+        let state = |c| if is_inside(c) { Cell::Open } else { Cell::Outside };
+        Self { state: (0..lattice.count()).map(state).collect(), lattice }
     }
 
     /// Centre of cell `index`.
     pub(crate) fn centre(&self, index: usize) -> Vector<D> {
-        let mut rest = index;
-        Vector(std::array::from_fn(|k| {
-            let i = rest % self.cells[k];
-            rest /= self.cells[k];
-            self.origin[k] + (i as f64 + 0.5) * self.size[k]
-        }))
+        self.lattice.centre(index)
     }
 
     /// State of the cell at `p`.
     pub(crate) fn at(&self, p: Vector<D>) -> Cell {
-        let mut index = 0;
-        for k in (0..D).rev() {
-            let n = self.cells[k] as isize;
-            let i = ((p[k] - self.origin[k]) / self.size[k]).floor() as isize;
-            let i = if self.torus { i.rem_euclid(n) } else { i };
-            if !(0..n).contains(&i) {
-                return Cell::Outside;
-            }
-            index = index * self.cells[k] + i as usize;
-        }
-        self.state[index]
+        self.lattice.at(p).map_or(Cell::Outside, |index| self.state[index])
     }
 
     /// Calls `visit(index, offset)` for the cells whose centre lies within `radius` of `p`.
     pub(crate) fn ball(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
-        let mut low = [0_isize; D];
-        let mut count = [0_usize; D];
-        for k in 0..D {
-            let at = |v: f64| ((v - self.origin[k]) / self.size[k]).floor() as isize;
-            let (mut a, mut b) = (at(p[k] - radius), at(p[k] + radius));
-            if !self.torus {
-                a = a.max(0);
-                b = b.min(self.cells[k] as isize - 1);
-            }
-            low[k] = a;
-            count[k] = ((b - a + 1).max(0) as usize).min(self.cells[k]);
-        }
-        for step in 0..count.iter().product() {
-            let (mut rest, mut index, mut stride) = (step, 0, 1);
-            let mut centre = Vector::ZERO;
-            for k in 0..D {
-                let i = low[k] + (rest % count[k]) as isize;
-                rest /= count[k];
-                centre[k] = self.origin[k] + (i as f64 + 0.5) * self.size[k];
-                index += i.rem_euclid(self.cells[k] as isize) as usize * stride;
-                stride *= self.cells[k];
-            }
-            let offset = centre - p;
+        self.lattice.around(p, radius, |index, place| {
+            let offset = self.lattice.centre_at(place) - p;
             if offset.norm2() <= radius * radius {
                 visit(index, offset);
             }
-        }
+        });
     }
 
     /// Numbers of open and of all usable cells within `radius` of `p`.

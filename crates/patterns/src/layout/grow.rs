@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::{
     border::Extent,
-    exemplar::library::Library,
+    exemplar::{level::fall_off, library::Library},
     layout::coverage::{Cell, Coverage},
     output::{canvas::Canvas, draft::Item},
 };
@@ -422,10 +422,4 @@ impl<const D: usize> View<'_, D> {
             Cell::Outside => false,
         }
     }
-}
-
-/// Weight of an element at `offset` in surroundings of `radius`: 1 in the middle, 0.1 at the rim.
-fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f64 {
-    let x = (offset.norm2() / (radius * radius)).min(1.0);
-    0.1 + 0.9 * (1.0 - x) * (1.0 - x)
 }

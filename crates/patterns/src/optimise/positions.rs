@@ -60,7 +60,7 @@ fn predictions_of<const D: usize>(state: &State<'_, D>, slot_of: &[u32], s: u32)
             from: slot_of[s as usize],
             to: slot_of[o as usize],
             offset: frame.to_output(offset) - present,
-            weight: trust * f64::from(fall_off(offset, state.level.radius)),
+            weight: trust * f64::from(fall_off(offset, state.level.radius) as f32),
         }
     };
     living.map(one).collect()

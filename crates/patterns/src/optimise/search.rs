@@ -197,7 +197,7 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
             key: neighbour.key,
             source: item.source,
             offset,
-            weight: fall_off(offset, radius),
+            weight: fall_off(offset, radius) as f32,
             frozen: item.frozen.is_some() && item.source < state.level.base,
             star: state.star(other),
         });

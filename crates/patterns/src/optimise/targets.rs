@@ -1,6 +1,6 @@
 //! How many elements of each class the output should have.
 
-use arabesque_core::{Border, Request, Vector};
+use arabesque_core::{Border, Request};
 
 use crate::{border::Extent, exemplar::library::Library};
 
@@ -27,12 +27,7 @@ pub(crate) fn class_targets<const D: usize>(
     let cell_measure = bounds.measure() / count as f64;
     let mut usable = vec![0.0; library.classes()];
     for c in 0..count {
-        let mut rest = c;
-        let p = Vector(std::array::from_fn(|k| {
-            let i = rest % cells[k];
-            rest /= cells[k];
-            bounds.min[k] + size[k] * (i as f64 + 0.5) / cells[k] as f64
-        }));
+        let p = bounds.cell_centre(c, &cells);
         let frame = request.fields.frame(p);
         let distance = request.domain.signed_distance(p);
         if extent.is_blocked(p, 0.0) {

@@ -43,16 +43,7 @@ pub(crate) fn coverage<const D: usize>(skeleton: &Skeleton<D>, window: &Bounds<D
 /// A grid of places all over a box.
 fn places<const D: usize>(window: &Bounds<D>) -> Vec<Vector<D>> {
     let n = if D == 2 { GRID.0 } else { GRID.1 };
-    let size = window.size();
-    let place = |number: usize| {
-        let mut rest = number;
-        Vector(std::array::from_fn(|k| {
-            let i = rest % n;
-            rest /= n;
-            window.min[k] + size[k] * (i as f64 + 0.5) / n as f64
-        }))
-    };
-    (0..n.pow(D as u32)).map(place).collect()
+    (0..n.pow(D as u32)).map(|number| window.cell_centre(number, &[n; D])).collect()
 }
 
 #[cfg(test)]

@@ -46,9 +46,9 @@ impl<const D: usize> Vector<D> {
         (length > least).then(|| self * (1.0 / length))
     }
 
-    /// Cosine of the angle between two vectors, by rounding a little beyond [-1, 1]; 0 when either is zero.
+    /// Cosine of the angle between two vectors, in [-1, 1]; 0 when either is zero.
     pub fn cosine(self, other: Self) -> f64 {
-        self.dot(other) / (self.norm() * other.norm()).max(f64::MIN_POSITIVE)
+        (self.dot(other) / (self.norm() * other.norm()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
     }
 
     /// Applies `f` to each coordinate.

@@ -105,7 +105,7 @@ fn principal_axis<const D: usize>(points: &[Vector<D>]) -> Option<(Vector<D>, f6
         axis = axis * (1.0 / length);
         axis = points.iter().fold(Vector::ZERO, |s, &p| s + (p - mean) * (p - mean).dot(axis));
     }
-    let axis = axis * (1.0 / axis.norm().max(f64::MIN_POSITIVE));
+    let axis = axis.unit_or_zero();
     let along = variance(axis);
     let across = ((total - along) / (D as f64 - 1.0)).max(1e-12 * along);
     (along > 0.0).then(|| (axis, (along / across).sqrt()))

@@ -1,6 +1,6 @@
 //! Smooth paths through many points.
 
-use arabesque_core::{Cubic, Vector, cubic_at};
+use arabesque_core::{Cubic, Vector, arc_lengths, cubic_at};
 
 /// Runs of so many points or fewer are not split further.
 const FEW: usize = 2;
@@ -14,7 +14,7 @@ pub(crate) fn fit(points: &[Vector<2>], ends: [Vector<2>; 2], tolerance: f64) ->
     if a == b && points.len() <= FEW {
         return Vec::new();
     }
-    let arcs = arcs(points);
+    let arcs = arc_lengths(points);
     let third = arcs[arcs.len() - 1] / 3.0;
     let cubic = [a, a + ends[0] * third, b - ends[1] * third, b];
     if points.len() <= FEW || misfit(&cubic, points, &arcs) <= tolerance {
@@ -22,20 +22,10 @@ pub(crate) fn fit(points: &[Vector<2>], ends: [Vector<2>; 2], tolerance: f64) ->
     }
     let half = 0.5 * arcs[arcs.len() - 1];
     let middle = arcs.partition_point(|s| *s < half).clamp(1, points.len() - 2);
-    let way = unit(points[middle + 1] - points[middle - 1]);
+    let way = (points[middle + 1] - points[middle - 1]).unit_or_zero();
     let mut cubics = fit(&points[..=middle], [ends[0], way], tolerance);
     cubics.extend(fit(&points[middle..], [way, ends[1]], tolerance));
     cubics
-}
-
-/// Arc length at every point.
-fn arcs(points: &[Vector<2>]) -> Vec<f64> {
-    let mut arc = 0.0;
-    let steps = points.windows(2).map(|w| {
-        arc += (w[1] - w[0]).norm();
-        arc
-    });
-    std::iter::once(0.0).chain(steps).collect()
 }
 
 /// Largest distance of a cubic from the run of points at the same share of its length.
@@ -53,14 +43,9 @@ fn misfit(cubic: &Cubic<2>, points: &[Vector<2>], arcs: &[f64]) -> f64 {
 
 /// A cubic from `a` to `b` that leaves and arrives in the unit directions given, an arc of a circle where there is one.
 pub(crate) fn arc((a, out): (Vector<2>, Vector<2>), (b, on): (Vector<2>, Vector<2>)) -> Cubic<2> {
-    let turn = out.cross(on).atan2(out.dot(on)).abs();
+    let turn = out.angle_to(on).abs();
     let reach = (b - a).norm() / (3.0 * (0.25 * turn).cos().powi(2));
     [a, a + out * reach, b - on * reach, b]
-}
-
-/// `v` at length 1; zero stays zero.
-pub(crate) fn unit(v: Vector<2>) -> Vector<2> {
-    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 use arabesque_core::{Cubic, Drawn, Path, Vector};
 
 use crate::curves::border::{
-    fit::{arc, unit},
+    fit::arc,
     rings::{ClippedStroke, OffsetRings},
 };
 
@@ -263,7 +263,7 @@ impl<'a> StrokeJoiner<'a> {
         let (cut, length) = (self.radius(joint, tip.stroke), measured.length());
         let step = 1e-3 * length;
         let at = |back: f64| measured.point(if tip.end == 0 { back } else { length - back });
-        (at(cut), unit(at((cut - step).max(0.0)) - at(cut + step)))
+        (at(cut), (at((cut - step).max(0.0)) - at(cut + step)).unit_or_zero())
     }
 }
 
@@ -313,7 +313,7 @@ mod tests {
         // Ten lines and nine turns, whose rounded corners are shortcuts.
         assert!((1020.0..1090.0).contains(&length), "{length}");
         for w in strokes[0].path.cubics.windows(2) {
-            let (come, go) = (unit(w[0][3] - w[0][2]), unit(w[1][1] - w[1][0]));
+            let (come, go) = ((w[0][3] - w[0][2]).unit_or_zero(), (w[1][1] - w[1][0]).unit_or_zero());
             assert!(w[0][3] == w[1][0] && come.dot(go) > 0.99, "a corner at {:?}", w[1][0]);
         }
     }

@@ -1,8 +1,8 @@
 //! The rings on which strokes end or turn: the border of the domain, moved inside.
 
-use arabesque_core::{Drawn, Measured, Outline, Path, Region, Shape, Vector};
+use arabesque_core::{Drawn, Measured, Outline, Path, Region, Shape, Vector, segment};
 
-use crate::curves::border::fit::{fit, unit};
+use crate::curves::border::fit::fit;
 
 /// Radius of turns, in sampling distances.
 const TURN: f64 = 0.5;
@@ -92,11 +92,16 @@ impl OffsetRings {
         let mut best: Option<(f64, Place)> = None;
         for (ring, measured) in self.all.iter().enumerate() {
             for (k, w) in measured.points().windows(2).enumerate() {
-                let along = w[1] - w[0];
-                let t = ((p - w[0]).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-                let gap = (w[0] + along * t - p).norm();
+                let edge = (w[0], w[1]);
+                let gap = segment::distance(edge, p);
                 if best.is_none_or(|(least, _)| gap < least) {
-                    best = Some((gap, Place { ring, arc: measured.arc_of(k) + t * along.norm() }));
+                    best = Some((
+                        gap,
+                        Place {
+                            ring,
+                            arc: measured.arc_of(k) + segment::nearest_share(edge, p) * (w[1] - w[0]).norm(),
+                        },
+                    ));
                 }
             }
         }
@@ -121,6 +126,6 @@ impl OffsetRings {
         let measured = &self.all[ring];
         let step = (2.0 * self.tolerance).min(0.1 * measured.length());
         let at = |arc: f64| measured.point(arc.rem_euclid(measured.length()));
-        unit(at(arc + step) - at(arc - step))
+        (at(arc + step) - at(arc - step)).unit_or_zero()
     }
 }

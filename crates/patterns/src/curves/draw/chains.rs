@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::Vector;
+use arabesque_core::{Vector, pairing};
 
 use crate::{
     curves::votes::edge_votes::Votes,
@@ -92,7 +92,7 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
         next.insert(a, b);
         next.insert(b, a);
     };
-    let ways: Vec<Vector<D>> = links.iter().map(|&o| unit(state.offset(s, o))).collect();
+    let ways: Vec<Vector<D>> = links.iter().map(|&o| state.offset(s, o).unit_or_zero()).collect();
     if let [a, b] = links[..] {
         if ways[0].dot(ways[1]) < BENT || !is_meeting(state, s) {
             through(a, b);
@@ -136,16 +136,12 @@ fn is_meeting<const D: usize>(state: &State<'_, D>, s: u32) -> bool {
 fn opposite<const D: usize>(directions: &[Vector<D>]) -> Vec<(usize, usize)> {
     let n = directions.len();
     let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-    let mut pairs: Vec<(f64, usize, usize)> = all.map(|(i, j)| (directions[i].dot(directions[j]), i, j)).collect();
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut taken = vec![false; n];
+    let wishes = all.map(|(i, j)| (directions[i].dot(directions[j]), i as u32, j as u32)).filter(|w| w.0 < OPPOSITE);
     let mut found = Vec::new();
-    for (cosine, i, j) in pairs {
-        if cosine < OPPOSITE && !taken[i] && !taken[j] {
-            (taken[i], taken[j]) = (true, true);
-            found.push((i, j));
-        }
-    }
+    pairing::pair_up(wishes.collect(), n, |i, j| {
+        found.push((i as usize, j as usize));
+        true
+    });
     found
 }
 
@@ -156,24 +152,7 @@ fn matched<const D: usize>(ways: &[Vector<D>], tangents: &[Vector<D>]) -> Vec<Ve
 
 /// For every edge direction the number of the tangent that is matched with it, the best pairs first.
 fn assigned<const D: usize>(ways: &[Vector<D>], tangents: &[Vector<D>]) -> Vec<Option<usize>> {
-    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-    for (w, way) in ways.iter().enumerate() {
-        pairs.extend(tangents.iter().enumerate().map(|(t, tangent)| (way.dot(*tangent), w, t)));
-    }
-    pairs.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut result = vec![None; ways.len()];
-    let mut taken = vec![false; tangents.len()];
-    for (_, w, t) in pairs {
-        if result[w].is_none() && !taken[t] {
-            result[w] = Some(t);
-            taken[t] = true;
-        }
-    }
-    result
-}
-
-fn unit<const D: usize>(v: Vector<D>) -> Vector<D> {
-    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
+    pairing::pair_sides(ways.len(), tangents.len(), |w, t| ways[w].dot(tangents[t]))
 }
 
 /// The exemplar line for an edge: of those voted for, the one whose ends lie best; else the one between the sources of its ends.
@@ -202,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_crossing_is_two_strokes() {
-        let d = [(1.0, 0.0), (0.1, 0.99), (-1.0, 0.05), (0.0, -1.0)].map(|(x, y)| unit(Vector::xy(x, y)));
+        let d = [(1.0, 0.0), (0.1, 0.99), (-1.0, 0.05), (0.0, -1.0)].map(|(x, y)| Vector::xy(x, y).unit_or_zero());
         assert_eq!(opposite(&d), vec![(0, 2), (1, 3)]);
     }
 

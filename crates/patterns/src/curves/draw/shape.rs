@@ -3,7 +3,7 @@
 //! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their mean direction. Where
 //! it has a corner, the corner stays.
 
-use arabesque_core::{Cubic, Drawn, NormalEquations, Path, Prediction, Pull, Vector, straight};
+use arabesque_core::{Cubic, Drawn, NormalEquations, Path, Prediction, Pull, Vector, segment, straight};
 
 use crate::{
     curves::{
@@ -108,11 +108,7 @@ pub(crate) fn bent<const D: usize>(
     let frame = state.request.fields.frame(a);
     let chord = end - start;
     let rest = b - a - frame.to_output(chord);
-    let length2 = chord.norm2().max(f64::MIN_POSITIVE);
-    let place = |p: Vector<D>| {
-        let share = ((p - start).dot(chord) / length2).clamp(0.0, 1.0);
-        a + frame.to_output(p - start) + rest * share
-    };
+    let place = |p: Vector<D>| a + frame.to_output(p - start) + rest * segment::nearest_share((start, end), p);
     let mut cubics = path.map(place).cubics;
     if let Some(first) = cubics.first_mut().filter(|_| snapped[0]) {
         first[0] = a;
@@ -141,7 +137,7 @@ fn smooth<const D: usize>(net: &Net<D>, chain: &Chain, stretches: &mut [Vec<Cubi
             continue;
         }
         let mean = come * (1.0 / lc) + go * (1.0 / lg);
-        let mean = mean * (1.0 / mean.norm());
+        let mean = mean.unit();
         if let Some(c) = stretches[before].last_mut() {
             c[2] = c[3] - mean * (c[3] - c[2]).norm();
         }

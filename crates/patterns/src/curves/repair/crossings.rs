@@ -49,7 +49,7 @@ impl Tangle {
     pub(crate) fn allows<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
         let across = state.offset(a, b);
         let is_free = |s: u32, way: Vector<D>| {
-            state.links[s as usize].iter().all(|&o| cosine(state.offset(s, o), way) <= self.narrow)
+            state.links[s as usize].iter().all(|&o| state.offset(s, o).cosine(way) <= self.narrow)
         };
         is_free(a, across) && is_free(b, across * -1.0) && (!self.is_plane || !self.crosses_any(state, a, across, b))
     }
@@ -98,7 +98,7 @@ impl Tangle {
                 let (to_a, to_b) = (state.offset(s, a), state.offset(s, b));
                 let (near, far) = if to_a.norm2() <= to_b.norm2() { (a, b) } else { (b, a) };
                 let is_fixed = state.is_frozen(s) && state.is_frozen(far);
-                if !is_fixed && cosine(to_a, to_b) > self.narrow {
+                if !is_fixed && to_a.cosine(to_b) > self.narrow {
                     return Some((near, far));
                 }
             }
@@ -145,7 +145,7 @@ fn sharpest_angle<const D: usize>(net: &Net<D>) -> f64 {
     for node in &net.nodes {
         let ways: Vec<_> = node.arms.iter().map(|arm| net.nodes[arm.to as usize].position - node.position).collect();
         for (i, a) in ways.iter().enumerate() {
-            let angles = ways[..i].iter().map(|b| cosine(*a, *b).acos());
+            let angles = ways[..i].iter().map(|b| a.cosine(*b).acos());
             sharpest = angles.fold(sharpest, f64::min);
         }
     }
@@ -188,10 +188,6 @@ fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u3
 fn unlink<const D: usize>(state: &mut State<'_, D>, a: u32, b: u32) {
     state.links[a as usize].retain(|&o| o != b);
     state.links[b as usize].retain(|&o| o != a);
-}
-
-fn cosine<const D: usize>(a: Vector<D>, b: Vector<D>) -> f64 {
-    (a.dot(b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
 /// Whether two edges in the plane cross; `between`: from the middle of the first one to that of the second one.

@@ -1,6 +1,9 @@
 //! Clean-up: ends that the exemplar would not show are joined to what they just miss, or trimmed.
 
-use arabesque_core::{GridIndex, Matrix, Vector};
+use arabesque_core::{
+    GridIndex, Matrix, Vector,
+    pairing::{self, Wish},
+};
 
 use crate::{
     curves::{
@@ -79,11 +82,11 @@ fn extend<const D: usize>(
         let position = state.samples[s as usize].position;
         let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
         let before = state.links[s as usize][0];
-        let way = direction(state.offset(before, s));
+        let way = state.offset(before, s).unit_or_zero();
         let mut ahead: Vec<(f64, u32)> = Vec::new();
         state.index.within(position, SPAN * unit, |slot, offset| {
             let o = state.living[slot];
-            let cosine = way.dot(direction(offset));
+            let cosine = way.dot(offset.unit_or_zero());
             let cost = offset.norm() * (2.0 - cosine);
             let is_own = o == s || o == before || state.links[before as usize].contains(&o);
             let degree = state.links[o as usize].len();
@@ -133,33 +136,29 @@ fn bridge<const D: usize>(
 ) -> usize {
     let ends = false_ends(state, net, votes, loose);
     let places: Vec<_> = ends.iter().map(|&s| state.samples[s as usize].position).collect();
-    let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links[s as usize][0], s))).collect();
+    let ways: Vec<_> = ends.iter().map(|&s| state.offset(state.links[s as usize][0], s).unit_or_zero()).collect();
     let unit = net.spacing * state.extent.largest_spacing_scale;
     let index = GridIndex::new(&places, SPAN * unit, state.domain());
-    let mut wishes: Vec<(f64, usize, usize)> = Vec::new();
+    let mut wishes: Vec<Wish> = Vec::new();
     for (i, &s) in ends.iter().enumerate() {
         index.within(places[i], SPAN * unit, |j, offset| {
-            let across = direction(offset);
+            let across = offset.unit_or_zero();
             let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
             let is_new = !(state.is_frozen(s) && state.is_frozen(ends[j]));
             if j > i && is_new && out > FACING && back > FACING && state.share_style(s, ends[j]) {
-                wishes.push((offset.norm() / unit + ANGLE * (2.0 - out - back), i, j));
+                wishes.push((offset.norm() / unit + ANGLE * (2.0 - out - back), i as u32, j as u32));
             }
         });
     }
-    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut taken = vec![false; ends.len()];
-    let mut joined = 0;
-    for (_, i, j) in wishes {
-        let is_bad = |a: u32, b: u32| !tangle.allows(state, a, b) || loose.forbids(state, a, b);
-        if !taken[i] && !taken[j] && !is_bad(ends[i], ends[j]) {
-            (taken[i], taken[j]) = (true, true);
-            state.links[ends[i] as usize].push(ends[j]);
-            state.links[ends[j] as usize].push(ends[i]);
-            joined += 1;
+    pairing::pair_up(wishes, ends.len(), |i, j| {
+        let (a, b) = (ends[i as usize], ends[j as usize]);
+        let is_good = tangle.allows(state, a, b) && !loose.forbids(state, a, b);
+        if is_good {
+            state.links[a as usize].push(b);
+            state.links[b as usize].push(a);
         }
-    }
-    joined
+        is_good
+    })
 }
 
 /// Puts back samples that several strokes reach for: where the missing edges of three or more samples end at one place, or
@@ -211,7 +210,7 @@ fn restore<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
 fn is_gap<const D: usize>(state: &State<'_, D>, open: &[OpenArm<D>], group: &[usize]) -> bool {
     let way = |j: usize| {
         let arm = &open[j];
-        direction(state.domain().offset(state.samples[arm.sample as usize].position, arm.place))
+        state.domain().offset(state.samples[arm.sample as usize].position, arm.place).unit_or_zero()
     };
     matches!(group, [i, j] if way(*i).dot(way(*j)) < -FACING)
 }
@@ -256,34 +255,23 @@ fn join<const D: usize>(
     (loose, tangle): (&Loose, &Tangle),
     ends: &[u32],
 ) -> usize {
-    let mut wishes: Vec<(f64, u32, u32)> = ends.iter().flat_map(|&s| partners(state, net, votes, loose, s)).collect();
-    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut taken = vec![false; state.samples.len()];
-    let mut joined = 0;
-    for (_, a, b) in wishes {
-        if taken[a as usize] || taken[b as usize] || !tangle.allows(state, a, b) || loose.forbids(state, a, b) {
-            continue;
+    let wishes: Vec<Wish> = ends.iter().flat_map(|&s| partners(state, net, votes, loose, s)).collect();
+    pairing::pair_up(wishes, state.samples.len(), |a, b| {
+        let is_good = tangle.allows(state, a, b) && !loose.forbids(state, a, b);
+        if is_good {
+            state.links[a as usize].push(b);
+            state.links[b as usize].push(a);
         }
-        (taken[a as usize], taken[b as usize]) = (true, true);
-        state.links[a as usize].push(b);
-        state.links[b as usize].push(a);
-        joined += 1;
-    }
-    joined
+        is_good
+    })
 }
 
 /// What the end `s` could be joined to, with the cost in sampling distances.
-fn partners<const D: usize>(
-    state: &State<'_, D>,
-    net: &Net<D>,
-    votes: &Votes,
-    loose: &Loose,
-    s: u32,
-) -> Vec<(f64, u32, u32)> {
+fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose, s: u32) -> Vec<Wish> {
     let position = state.samples[s as usize].position;
     let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
     let Some(&before) = state.links[s as usize].first() else { return Vec::new() };
-    let way = direction(state.offset(before, s));
+    let way = state.offset(before, s).unit_or_zero();
     let branches = net.branches();
     // What is too long would only grow with another end of a stroke.
     let takes_ends = expected(state, net, votes, s) > EXPECTED || !loose.has_single();
@@ -300,7 +288,7 @@ fn partners<const D: usize>(
             return;
         }
         let wants = expected(state, net, votes, o) - degree as f64 > 0.4;
-        let turn = 1.0 - way.dot(direction(offset));
+        let turn = 1.0 - way.dot(offset.unit_or_zero());
         let cost = offset.norm() / unit + ANGLE * turn + if wants { 0.0 } else { NEW_JUNCTION };
         let is_crowded = degree >= 4 || (!wants && (degree >= 3 || (degree == 2 && !branches)));
         if cost <= REACH && !is_crowded {
@@ -308,10 +296,6 @@ fn partners<const D: usize>(
         }
     });
     found
-}
-
-fn direction<const D: usize>(v: Vector<D>) -> Vector<D> {
-    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
 }
 
 /// Takes away false ends that are a single edge long, and samples without any edge.

@@ -1,6 +1,9 @@
 //! Edge assignment: which samples are joined [Tu 2020 §4.3.4, eqs 17 to 22].
 
-use arabesque_core::{GridIndex, Vector};
+use arabesque_core::{
+    GridIndex, Vector,
+    pairing::{self, Wish},
+};
 
 use rayon::prelude::*;
 
@@ -99,7 +102,7 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
     let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
     let unit = net.spacing * state.extent.largest_spacing_scale;
     let index = GridIndex::new(&places, unit, state.domain());
-    let mut wishes: Vec<(f64, usize, usize)> = Vec::new();
+    let mut wishes: Vec<Wish> = Vec::new();
     for (i, arm) in open.iter().enumerate() {
         let p = state.samples[arm.sample as usize].position;
         let near = NEAR * net.spacing * state.request.fields.frame(p).spacing_scale;
@@ -108,22 +111,20 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
             let other = &open[j];
             let back = state.domain().offset(state.samples[other.sample as usize].position, arm.place).norm();
             if other.sample != arm.sample && back <= near && state.share_style(other.sample, arm.sample) {
-                wishes.push((back + offset.norm(), i.min(j), i.max(j)));
+                wishes.push((back + offset.norm(), i.min(j) as u32, i.max(j) as u32));
             }
         });
     }
-    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut used = vec![false; open.len()];
-    for (_, i, j) in wishes {
-        let (a, b) = (open[i].sample, open[j].sample);
+    pairing::pair_up(wishes, open.len(), |i, j| {
+        let (a, b) = (open[i as usize].sample, open[j as usize].sample);
         let is_fixed = state.is_frozen(a) && state.is_frozen(b);
-        if used[i] || used[j] || is_fixed || state.links[a as usize].contains(&b) {
-            continue;
+        let is_new = !is_fixed && !state.links[a as usize].contains(&b);
+        if is_new {
+            state.links[a as usize].push(b);
+            state.links[b as usize].push(a);
         }
-        (used[i], used[j]) = (true, true);
-        state.links[a as usize].push(b);
-        state.links[b as usize].push(a);
-    }
+        is_new
+    });
 }
 
 /// The edges that the source of `s` has, but for those that `s` has too.

@@ -1,6 +1,6 @@
 //! Orientation assignment: the directions in which strokes leave a sample [Tu 2020 §4.3.4, eq. 6, fig. 9].
 
-use arabesque_core::Vector;
+use arabesque_core::{Vector, pairing};
 use rayon::prelude::*;
 
 use crate::output::state::State;
@@ -79,20 +79,7 @@ fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>]) -> Vec<Vec
 
 /// For each entry the vote it is matched with: the largest sum of cosines, which is the smallest sum of angles for small ones.
 fn partners<const D: usize>(entries: &[Vector<D>], votes: &[Vector<D>]) -> Vec<Option<usize>> {
-    let mut pairs: Vec<(f64, usize, usize)> = Vec::with_capacity(entries.len() * votes.len());
-    for (e, entry) in entries.iter().enumerate() {
-        pairs.extend(votes.iter().enumerate().map(|(v, vote)| (entry.dot(*vote), e, v)));
-    }
-    pairs.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut partner = vec![None; entries.len()];
-    let mut taken = vec![false; votes.len()];
-    for (_, e, v) in pairs {
-        if partner[e].is_none() && !taken[v] {
-            partner[e] = Some(v);
-            taken[v] = true;
-        }
-    }
-    partner
+    pairing::pair_sides(entries.len(), votes.len(), |e, v| entries[e].dot(votes[v]))
 }
 
 /// Mean direction of the votes, and their spread: 0 for unanimous ones, 1 and more for none or contrary ones.

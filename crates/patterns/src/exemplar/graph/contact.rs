@@ -1,6 +1,6 @@
 //! Where lines touch one another.
 
-use arabesque_core::{Bounds, Domain, GridIndex, Vector};
+use arabesque_core::{Bounds, Domain, GridIndex, Vector, segment};
 
 use crate::exemplar::graph::line::Line;
 
@@ -153,9 +153,8 @@ fn nearest_by_line<const D: usize>(
     let mut near: Vec<(u32, u32, f64, f64)> = Vec::new();
     chords.index.within(p, reach + chords.longest, |j, _| {
         let chord = &chords.all[j];
-        let r = chord.b - chord.a;
-        let t = ((p - chord.a).dot(r) / r.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        near.push((chord.line, j as u32, t, (chord.a + r * t - p).norm()));
+        let ends = (chord.a, chord.b);
+        near.push((chord.line, j as u32, segment::nearest_share(ends, p), segment::distance(ends, p)));
     });
     near.sort_by_key(|n| (n.0, n.1));
     // Neighbouring chords are one passage of the line; only its nearest place counts.

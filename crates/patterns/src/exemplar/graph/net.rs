@@ -319,7 +319,7 @@ fn tangent<const D: usize>(measured: &Measured<D>, arc: f64, sign: f64, reach: f
     let inwards = arc + sign * step;
     let beyond = !measured.is_closed() && !(0.0..=measured.length()).contains(&inwards);
     let way = if beyond { p - measured.point(arc - sign * step) } else { measured.point(inwards) - p };
-    way * (1.0 / way.norm().max(f64::MIN_POSITIVE))
+    way.unit_or_zero()
 }
 
 #[cfg(test)]

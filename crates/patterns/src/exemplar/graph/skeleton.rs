@@ -3,7 +3,7 @@
 //! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the stroke is wide. Lines
 //! that run side by side do not meet, however close they are.
 
-use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View, spans_inside};
+use arabesque_core::{Curve, DisjointSets, Error, Measured, Path, Result, Vector, View, spans_inside};
 
 use crate::exemplar::graph::{
     contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
@@ -101,10 +101,10 @@ impl<const D: usize> Skeleton<D> {
     fn join(&mut self, contacts: &[Contact<D>], reach: &[f64]) {
         let points: Vec<_> = contacts.iter().flat_map(|c| [c.place, c.place]).collect();
         let sides: Vec<(u32, f64)> = contacts.iter().flat_map(|c| c.sides).collect();
-        let mut group = Groups::new(sides.len());
+        let mut group = DisjointSets::new(sides.len());
         (0..contacts.len()).for_each(|k| group.join(2 * k, 2 * k + 1));
         self.join_passages(&points, &sides, reach, &mut group);
-        for members in group.sets() {
+        for members in group.groups() {
             let centre = members.iter().fold(Vector::ZERO, |sum, &m| sum + points[m]) * (1.0 / members.len() as f64);
             let knot = self.knots.len() as u32;
             // Of a junction on the frame nobody sees all arms.
@@ -117,7 +117,7 @@ impl<const D: usize> Skeleton<D> {
     }
 
     /// Joins the touches of each line that lie close together, along it and in the plane.
-    fn join_passages(&self, points: &[Vector<D>], sides: &[(u32, f64)], reach: &[f64], group: &mut Groups) {
+    fn join_passages(&self, points: &[Vector<D>], sides: &[(u32, f64)], reach: &[f64], group: &mut DisjointSets) {
         let mut order: Vec<usize> = (0..sides.len()).collect();
         order.sort_by(|&a, &b| sides[a].0.cmp(&sides[b].0).then(sides[a].1.total_cmp(&sides[b].1)));
         for run in order.chunk_by(|&a, &b| sides[a].0 == sides[b].0) {
@@ -236,7 +236,7 @@ fn corners<const D: usize>(measured: &Measured<D>, reach: f64) -> Vec<f64> {
         let here = measured.point(arc);
         let before = here - measured.point(arc - reach);
         let after = measured.point(if last { reach } else { arc + reach }) - here;
-        let turn = before.dot(after) / (before.norm() * after.norm()).max(f64::MIN_POSITIVE);
+        let turn = before.cosine(after);
         if turn < CORNER {
             found.push(if last { 0.0 } else { arc });
         }
@@ -286,37 +286,4 @@ fn cut_at_corners<const D: usize>(path: Path<D>, view: &View<D>, side: f64, near
         pieces.push(measured.part(last, length));
     }
     pieces
-}
-
-/// Disjoint sets.
-struct Groups(Vec<usize>);
-
-impl Groups {
-    fn new(n: usize) -> Self {
-        Self((0..n).collect())
-    }
-
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
-    }
-
-    /// The sets, each by its smallest member.
-    fn sets(mut self) -> Vec<Vec<usize>> {
-        let mut sets = vec![Vec::new(); self.0.len()];
-        (0..self.0.len()).for_each(|i| {
-            let root = self.root(i);
-            sets[root].push(i);
-        });
-        sets.retain(|s| !s.is_empty());
-        sets
-    }
 }

@@ -1,9 +1,9 @@
 //! The edges of an outline in horizontal bands, so that a look-up meets few of them.
 
-use arabesque_core::{Outline, Vector};
+use arabesque_core::{Outline, Segment, Vector, ring};
 
-/// Start and end.
-pub(crate) type Edge = (Vector<2>, Vector<2>);
+/// An edge of an outline.
+pub(crate) type Edge = Segment<2>;
 
 /// Edges for each band; as many bands as this times fewer than edges, so that a band holds a handful.
 const EDGES_PER_BAND: usize = 2;
@@ -55,11 +55,8 @@ impl EdgeBands {
 
     /// Whether `p` is covered: an odd number of edges to its right.
     pub(crate) fn covers(&self, p: Vector<2>) -> bool {
-        let to_the_right = |(a, b): &&Edge| {
-            (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-        };
         let (band, _) = self.range(p[1], p[1]);
-        self.edges[self.starts[band]..self.starts[band + 1]].iter().filter(to_the_right).count() % 2 == 1
+        ring::covers(self.edges[self.starts[band]..self.starts[band + 1]].iter().copied(), p)
     }
 
     /// Number of entries, a measure of the work of a look-up.

@@ -1,6 +1,6 @@
 //! One outline, prepared for the question whether it meets another.
 
-use arabesque_core::{Bounds, Outline, Similarity, Vector};
+use arabesque_core::{Bounds, Outline, Similarity, Vector, segment};
 
 use crate::finish::clearance::edges::{Edge, EdgeBands};
 
@@ -99,7 +99,10 @@ impl Figure {
     pub(crate) fn gap(&self, other: &Self, place: &Similarity<2>) -> f64 {
         let moved = other.outline.transformed(place);
         let one_way = |points: &Outline<2>, edges: &Outline<2>| {
-            points.points().flat_map(|p| edges.edges().map(move |e| distance2(e, p))).fold(f64::INFINITY, f64::min)
+            points
+                .points()
+                .flat_map(|p| edges.edges().map(move |e| (segment::nearest(e, p) - p).norm2()))
+                .fold(f64::INFINITY, f64::min)
         };
         one_way(&self.outline, &moved).min(one_way(&moved, &self.outline)).sqrt()
     }
@@ -170,12 +173,6 @@ fn crossing((a, b): Edge, (c, d): Edge, eps: f64) -> Meeting {
     }
     let clear = |(s, t): (f64, f64)| s.abs() > eps && t.abs() > eps;
     if clear(ab) && clear(cd) { Meeting::Overlapping } else { Meeting::Touching }
-}
-
-fn distance2((a, b): Edge, p: Vector<2>) -> f64 {
-    let along = b - a;
-    let t = ((p - a).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    (a + along * t - p).norm2()
 }
 
 /// Corners of the convex hull, by the monotone chain of their order from left to right.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use arabesque_core::{Outline, Vector, ring_area};
+use arabesque_core::{Outline, Vector, ring};
 use rayon::prelude::*;
 
 use crate::finish::clearance::{
@@ -107,9 +107,9 @@ fn excess(violations: &[Violation]) -> f64 {
 /// Shortest way that parts two bodies, from the second one's side: the width of the largest piece of their overlap across its
 /// narrowest direction. `offset` leads from the first to the second.
 fn narrowest(common: &Outline<2>, offset: Vector<2>) -> Vector<2> {
-    let piece = common.rings.iter().max_by(|a, b| ring_area(a).abs().total_cmp(&ring_area(b).abs()));
+    let piece = common.rings.iter().max_by(|a, b| ring::area(a).abs().total_cmp(&ring::area(b).abs()));
     let piece: &[Vector<2>] = piece.map_or(&[], |ring| ring);
-    let unit = offset * (1.0 / offset.norm().max(f64::MIN_POSITIVE));
+    let unit = offset.unit_or_zero();
     let compass = (0..DIRECTIONS).map(|k| f64::from(k) / f64::from(DIRECTIONS) * std::f64::consts::PI);
     let directions =
         std::iter::once(unit).filter(|u| u.norm2() > 0.5).chain(compass.map(|a| Vector::xy(a.cos(), a.sin())));

@@ -6,6 +6,7 @@ use arabesque_core::{Error, Limits, Result};
 use roxmltree::{Document, Node as Xml, NodeId, ParsingOptions};
 
 use crate::svg::{
+    namespace::{SVG, XLINK},
     options::ReadOptions,
     parse::{
         css::Sheet,
@@ -13,10 +14,6 @@ use crate::svg::{
         notes::{Note, Notes},
     },
 };
-
-pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
-const XLINK: &str = "http://www.w3.org/1999/xlink";
-pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
 
 /// A parsed file.
 pub(crate) struct Source<'a> {

@@ -14,9 +14,12 @@ use crate::svg::{
         source::{Source, with_source},
         style::Property as P,
     },
-    read::{domain::by_id, exemplar::root},
-    shape::{extent::bounds, painted_area::Inker},
-    understand::{curves::line, select::is_closed},
+    read::document::{by_id, root},
+    shape::{
+        extent::bounds,
+        painted_area::Inker,
+        subpath::{is_closed, line},
+    },
 };
 
 /// The lines of a file.

@@ -7,50 +7,39 @@ use std::{
     rc::Rc,
 };
 
-use arabesque_core::{Bounds, Error, Outline, Result};
+use arabesque_core::{Error, Outline, Result};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
 use crate::svg::{
-    drawing::{Drawing, Page, Placed, Unit},
+    drawing::{Drawing, HostDocument, Page, Placed, Unit},
+    namespace::{INKSCAPE, NAMESPACE, SVG},
     options::{Method, ReadOptions},
     parse::{
         definitions::Definitions,
-        source::{SVG, Source, with_source},
+        source::{Source, with_source},
     },
     read::{
-        exemplar::{fragment, is_frame_mark, root},
+        document::root,
         placed::{Kept, Matcher, Sorter},
     },
     shape::{extent::bounds, painted_area::Inker},
-    understand::{item::Item, outlined_lines::trace, select::select, surroundings::Context},
-    write::result::NAMESPACE,
+    understand::{
+        fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
+        surroundings::Context,
+    },
 };
-
-/// What is left of a drawing, and the file around the hole.
-#[derive(Clone, Debug)]
-pub struct Rest {
-    /// What stays, for the engine to fit the new to. Its fragments are not drawn: they stand in the file.
-    pub placed: Placed,
-    /// Box around everything that the file draws.
-    pub content: Bounds<2>,
-    /// How many things are replaced or cut.
-    pub replaced: usize,
-    /// The file up to where new things are drawn.
-    pub(crate) head: String,
-    /// The file from there on.
-    pub(crate) tail: String,
-    /// What had to be written anew: the outside parts of strokes that are cut, and pieces of paths of which another piece is replaced.
-    pub(crate) moved: String,
-    /// Content of `<defs>` that this refers to.
-    pub(crate) definitions: String,
-}
 
 /// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
 ///
 /// # Errors
 /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
-pub fn read_rest(text: &str, drawing: &Drawing, area: &Outline<2>, options: &ReadOptions) -> Result<Rest> {
+pub fn read_host_document(
+    text: &str,
+    drawing: &Drawing,
+    area: &Outline<2>,
+    options: &ReadOptions,
+) -> Result<HostDocument> {
     with_source(text, options, |source| {
         let (root, page) = root(source)?;
         let inker = Inker::new(source);
@@ -78,7 +67,7 @@ pub fn read_rest(text: &str, drawing: &Drawing, area: &Outline<2>, options: &Rea
         kept.into_iter().for_each(|kept| placed.freeze(kept));
         placed.warnings = source.notes.warnings(source.name);
         let (head, tail) = around(source, text, &affected);
-        Ok(Rest { placed, content, replaced, head, tail, moved, definitions })
+        Ok(HostDocument { placed, content, replaced, head, tail, moved, definitions })
     })
 }
 
@@ -188,7 +177,7 @@ fn namespaces(source: &Source<'_>) -> String {
     let needed = [
         (None, SVG),
         (Some("xlink"), "http://www.w3.org/1999/xlink"),
-        (Some("inkscape"), crate::svg::parse::source::INKSCAPE),
+        (Some("inkscape"), INKSCAPE),
         (Some("arabesque"), NAMESPACE),
     ];
     let root = source.xml.root_element();
@@ -206,15 +195,15 @@ fn namespaces(source: &Source<'_>) -> String {
 mod tests {
     use super::*;
     use crate::svg::read::exemplar::read_exemplar;
-    use arabesque_core::Vector;
+    use arabesque_core::{Bounds, Vector};
 
-    fn rest(body: &str) -> Result<Rest> {
+    fn rest(body: &str) -> Result<HostDocument> {
         let text =
             format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><!-- mine -->{body}\n</svg>\n");
         let options = ReadOptions { method: Method::Auto, ..ReadOptions::new("r.svg") };
         let drawing = read_exemplar(&text, &options)?;
         let corners = [(40.0, 40.0), (60.0, 40.0), (60.0, 60.0), (40.0, 60.0)].map(|(x, y)| Vector::xy(x, y));
-        read_rest(&text, &drawing, &Outline { rings: vec![corners.to_vec()] }, &options)
+        read_host_document(&text, &drawing, &Outline { rings: vec![corners.to_vec()] }, &options)
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::svg::{
         source::with_source,
         style::Property as P,
     },
-    read::exemplar::root,
+    read::document::root,
     shape::{extent::bounds, flatten, painted_area::Inker, stroke::stroked},
 };
 

@@ -10,20 +10,21 @@ use crate::{
         drawing::{Drawing, Fragment, Page, Placed, Stroke, Unit},
         options::{Method, ReadOptions},
         parse::{definitions::Definitions, meta::Meta, source::with_source},
-        read::exemplar::{fragment, root},
+        read::document::root,
         shape::{
             cut_path::{Side, cut},
+            extent::bounds,
             painted_area::Inker,
         },
         understand::{
             classes::{self, WOBBLE},
             curves::{Curves, Gatherer},
+            fragment::fragment,
             item::{Item, Kind},
             select::select,
             signature::Signature,
             surroundings::Context,
         },
-        write::curves::stroke_markup,
     },
     text::number::Decimals,
 };
@@ -44,7 +45,7 @@ pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Resu
         let (root, page) = root(source)?;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
-        let content = crate::svg::shape::extent::bounds(&root, Affine::IDENTITY);
+        let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let mut definitions = Definitions::new(source, "kept");
         let mut placed = Placed::on(page);
@@ -169,7 +170,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
             return Ok(Kept::Removed);
         }
         let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1]));
-        let markup = rest.iter().map(|(path, _, stroke)| stroke_markup(path, stroke, decimals)).collect::<String>();
+        let markup = rest.iter().map(|(path, _, stroke)| stroke.markup(path, decimals)).collect::<String>();
         let markup =
             (is_touched || item.is_cut).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
         let drawn = rest.iter().map(|(path, curve, stroke)| self.matcher.stroke(path, curve.width, stroke, &item.meta));

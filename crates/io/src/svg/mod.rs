@@ -20,6 +20,7 @@ pub use namespace::NAMESPACE;
 pub use options::{Method, ReadOptions};
 pub use read::host_document::read_host_document as read_rest;
 pub use read::{
+    document::Document,
     domain::read_shape,
     exemplar::read_exemplar,
     flow::read_flow,

@@ -12,10 +12,9 @@ use crate::svg::{
         meta::Part,
         notes::Note,
         scene::{Content, Node},
-        source::with_source,
         style::Property as P,
     },
-    read::document::{by_id, parts, root},
+    read::document::{Document, Opened, by_id, parts},
     shape::{
         flatten::{self, flattened},
         painted_area::Inker,
@@ -23,17 +22,26 @@ use crate::svg::{
     },
 };
 
-/// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with the given id.
-///
-/// Stroke widths do not count. A shape without fill encloses by the even-odd rule, any other by its own rule. Where one shape covers
-/// the whole page and others do not, it is taken for a background.
+/// Reads an area from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG, nothing has that id, a line is open, or no area is enclosed;
-/// [`Error::Limit`] when the file is too large.
+/// As for [`Document::with`] and [`Document::shape`].
 pub fn read_shape(text: &str, id: Option<&str>, options: &ReadOptions) -> Result<(Shape, Page)> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.shape(id))
+}
+
+impl Document<'_> {
+    /// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with the given id.
+    ///
+    /// Stroke widths do not count. A shape without fill encloses by the even-odd rule, any other by its own rule. Where one shape covers
+    /// the whole page and others do not, it is taken for a background.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG, nothing has that id, a line is open, or no area is enclosed;
+    /// [`Error::Limit`] when the file is too large.
+    pub fn shape(&self, id: Option<&str>) -> Result<(Shape, Page)> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         let layers = parts(&root, Part::Domain);
         let (place, nodes) = match id {
@@ -45,7 +53,7 @@ pub fn read_shape(text: &str, id: Option<&str>, options: &ReadOptions) -> Result
         let shape = shape(&inker, &place, &nodes, frame)?;
         let view = page.unwrap_or(Page { view: shape.outline().bounds(), unit: Unit::Px, unit_per_user: 1.0 });
         Ok((shape, view))
-    })
+    }
 }
 
 /// A path with the transform to the root and the rule by which it encloses area.

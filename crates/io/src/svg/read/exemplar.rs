@@ -8,16 +8,9 @@ use kurbo::Affine;
 use crate::svg::{
     drawing::{Drawing, Job, Page, Stacking, Unit},
     options::{Method, ReadOptions},
-    parse::{
-        definitions::Definitions,
-        guard,
-        meta::Part,
-        notes::Note,
-        scene::Node,
-        source::{Source, with_source},
-    },
+    parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
     read::{
-        document::{parts, root},
+        document::{Document, Opened, parts},
         domain::shape,
         flow::strokes,
     },
@@ -37,27 +30,36 @@ use crate::svg::{
     },
 };
 
-/// Reads an exemplar, and the rest of the job where the file holds one.
+/// Reads an exemplar from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
-/// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
+/// As for [`Document::with`] and [`Document::exemplar`].
 pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.exemplar())
+}
+
+impl Document<'_> {
+    /// Reads an exemplar, and the rest of the job where the file holds one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
+    /// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
+    pub fn exemplar(&self) -> Result<Drawing> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
         let mut scope = scope(&inker, &root, page.as_ref())?;
-        scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&options.without));
-        let mut found = select(&inker, scope.frame, options.method, &scope.roots)?;
+        scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
+        let mut found = select(&inker, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
-        settle(source, &mut found.items, window, options.method)?;
+        settle(source, &mut found.items, window, self.options.method)?;
         let job = job(&inker, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
-        let is_curve = |item: &Item| item.kind == Kind::Curve && options.method != Method::Elements;
+        let is_curve = |item: &Item| item.kind == Kind::Curve && self.options.method != Method::Elements;
         let stacking = stacking(&found.items, is_curve);
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
@@ -75,7 +77,7 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
         let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
         let warnings = source.notes.warnings(source.name);
         Ok(Drawing { exemplar, fragments, strokes, stacking, background, definitions, page, job, warnings })
-    })
+    }
 }
 
 fn stacking(items: &[Item], is_curve: impl Fn(&Item) -> bool) -> Stacking {

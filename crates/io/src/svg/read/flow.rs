@@ -10,19 +10,27 @@ use crate::svg::{
     parse::{
         meta::Part,
         scene::{Content, Node},
-        source::with_source,
     },
-    read::document::{parts, root},
+    read::document::{Document, Opened, parts},
     shape::{flatten::flattened, painted_area::Inker, subpath::is_closed},
 };
 
-/// Reads every path of the file, or of its layer "Flow" where it has one, as a directed stroke in the file's user coordinates.
+/// Reads directed strokes from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG or holds no path with a length, [`Error::Limit`] when it is too large.
+/// As for [`Document::with`] and [`Document::flow`].
 pub fn read_flow(text: &str, options: &ReadOptions) -> Result<Vec<FlowStroke>> {
-    with_source(text, options, |source| {
-        let (root, _) = root(source)?;
+    Document::with(text, options, |document| document.flow())
+}
+
+impl Document<'_> {
+    /// Reads every path of the file, or of its layer "Flow" where it has one, as a directed stroke in the file's user coordinates.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG or holds no path with a length, [`Error::Limit`] when it is too large.
+    pub fn flow(&self) -> Result<Vec<FlowStroke>> {
+        let Opened { source, root, .. } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         let layers = parts(&root, Part::Flow);
         let nodes = if layers.is_empty() { vec![(Affine::IDENTITY, root)] } else { layers };
@@ -35,7 +43,7 @@ pub fn read_flow(text: &str, options: &ReadOptions) -> Result<Vec<FlowStroke>> {
             ));
         }
         Ok(strokes)
-    })
+    }
 }
 
 /// The strokes in some nodes.

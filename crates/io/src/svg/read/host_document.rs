@@ -15,12 +15,9 @@ use crate::svg::{
     drawing::{Drawing, HostDocument, Page, Placed, Unit},
     namespace::{INKSCAPE, NAMESPACE, SVG},
     options::{Method, ReadOptions},
-    parse::{
-        definitions::Definitions,
-        source::{Source, with_source},
-    },
+    parse::{definitions::Definitions, source::Source},
     read::{
-        document::root,
+        document::{Document, Opened},
         placed::{Kept, Matcher, Sorter},
     },
     shape::{extent::bounds, painted_area::Inker},
@@ -30,26 +27,35 @@ use crate::svg::{
     },
 };
 
-/// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
+/// Reads a drawing of which a part is filled anew from a text of which nothing else is read.
 ///
 /// # Errors
-/// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
+/// As for [`Document::with`] and [`Document::host`].
 pub fn read_host_document(
     text: &str,
     drawing: &Drawing,
     area: &Outline<2>,
     options: &ReadOptions,
 ) -> Result<HostDocument> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.host(drawing, area))
+}
+
+impl Document<'_> {
+    /// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
+    ///
+    /// # Errors
+    /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
+    pub fn host(&self, drawing: &Drawing, area: &Outline<2>) -> Result<HostDocument> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
         let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
-        let roots = [(Context::new(Affine::IDENTITY).without(&options.without), Rc::clone(&root))];
-        let mut found = select(&inker, page.view, options.method, &roots)?;
+        let roots = [(Context::new(Affine::IDENTITY).without(&self.options.without), Rc::clone(&root))];
+        let mut found = select(&inker, page.view, self.options.method, &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
-        if options.method != Method::Elements {
+        if self.options.method != Method::Elements {
             trace(source, &mut found.items, &page.view)?;
         }
         let mut sorter = Sorter {
@@ -66,9 +72,9 @@ pub fn read_host_document(
         let mut placed = Placed::on(page);
         kept.into_iter().for_each(|kept| placed.freeze(kept));
         placed.warnings = source.notes.warnings(source.name);
-        let (head, tail) = around(source, text, &affected);
+        let (head, tail) = around(source, &affected);
         Ok(HostDocument { placed, content, replaced, head, tail, moved, definitions })
-    })
+    }
 }
 
 fn is_changed(kept: &Kept) -> bool {
@@ -136,7 +142,8 @@ fn rewritten<'a, 's>(
 }
 
 /// The file without the affected nodes and without its recipe, as it is before and after the end of the root.
-fn around(source: &Source<'_>, text: &str, affected: &BTreeSet<u32>) -> (String, String) {
+fn around(source: &Source<'_>, affected: &BTreeSet<u32>) -> (String, String) {
+    let text = source.text;
     let mut gaps: Vec<Range<usize>> =
         affected.iter().filter_map(|id| source.xml.get_node(NodeId::new(*id))).map(|n| n.range()).collect();
     for recipe in source.xml.descendants().filter(|n| n.has_tag_name((NAMESPACE, "recipe"))) {

@@ -2,6 +2,8 @@
 
 use arabesque_core::{Bounds, Error, Grid, Limits, Matrix, OrientationField, Result, ScalarField, Vector};
 
+use crate::raster::png::is_png;
+
 /// Fields are smooth; larger pictures are averaged down to this many nodes along the longer side.
 const MOST_NODES: usize = 512;
 /// Colours less saturated than this have no hue worth following.
@@ -93,7 +95,7 @@ pub(crate) struct Raw {
 /// # Errors
 /// As [`Picture::read`].
 pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Raw> {
-    if !crate::raster::png::is_png(bytes) {
+    if !is_png(bytes) {
         let problem = format!("{} where a PNG picture was expected", kind_of(bytes));
         return Err(Error::input(name, problem, "save the picture as PNG"));
     }

@@ -6,6 +6,7 @@
 
 mod centreline;
 mod drawing;
+mod namespace;
 mod options;
 mod parse;
 mod read;
@@ -13,13 +14,18 @@ mod shape;
 mod understand;
 mod write;
 
-pub use drawing::{Drawing, Fragment, Job, Page, Placed, Stacking, Stroke, Unit};
+pub use drawing::HostDocument as Rest;
+pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke, Unit};
+pub use namespace::NAMESPACE;
 pub use options::{Method, ReadOptions};
+pub use read::host_document::read_host_document as read_rest;
 pub use read::{
-    domain::{read_flow, read_shape},
+    document::Document,
+    domain::read_shape,
     exemplar::read_exemplar,
+    flow::read_flow,
     guides::{Lines, read_lines},
-    host_document::{Rest, read_rest},
+    host_document::read_host_document,
     painted_areas::{Area, Areas, read_areas},
     placed::read_placed,
 };
@@ -29,7 +35,9 @@ pub use shape::{
 };
 pub use write::{
     areas::{Filled, areas_markup},
-    result::{Bend, NAMESPACE, Sheet, Style, Written, recipe_of, write_svg},
+    document::recipe_of,
+    result::write_svg,
     ribbon::{Cell, Embedded, Look, RibbonSheet, write_ribbons},
+    sheet::{Bend, Sheet, Style, Written},
     survey::write_survey,
 };

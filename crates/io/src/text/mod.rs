@@ -3,3 +3,4 @@
 pub mod number;
 pub mod path_data;
 pub mod suggest;
+pub(crate) mod xml;

@@ -5,7 +5,7 @@ use svgtypes::Color;
 
 use crate::svg::parse::{
     paint::{fraction, reference},
-    source::Source,
+    source::{Source, href},
 };
 
 /// Colour of a paint, sRGB in [0, 1]; of a gradient the mean of its stops; middle grey where nothing better is known.
@@ -31,7 +31,7 @@ fn of_gradient(source: &Source<'_>, id: &str) -> Option<[f64; 3]> {
             let n = stops.len() as f64;
             return Some(std::array::from_fn(|k| stops.iter().map(|c| c[k]).sum::<f64>() / n));
         }
-        crate::svg::parse::source::href(node)?;
+        href(node)?;
         node = source.target(node)?;
     }
     None

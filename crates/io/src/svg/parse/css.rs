@@ -1,6 +1,6 @@
 //! Style sheets: which rules apply to an element.
 
-use std::{cell::Cell, collections::BTreeSet};
+use std::{cell::Cell, collections::BTreeSet, rc::Rc};
 
 use roxmltree::Node as Xml;
 use simplecss::{AttributeOperator, Declaration, PseudoClass, Rule, StyleSheet};
@@ -8,15 +8,16 @@ use simplecss::{AttributeOperator, Declaration, PseudoClass, Rule, StyleSheet};
 /// Steps that selectors may take up the tree for a whole file; beyond it descendant rules no longer match.
 const STEPS: u64 = 200_000_000;
 
-/// The rules of a file, weakest first.
-pub(crate) struct Sheet<'a> {
-    rules: Vec<Rule<'a>>,
+/// The rules of a file, weakest first. A clone shares the rules, and counts its own steps from there.
+#[derive(Clone)]
+pub(crate) struct StyleRules<'a> {
+    rules: Rc<[Rule<'a>]>,
     /// Class names that some rule refers to.
-    styled: BTreeSet<String>,
+    styled: Rc<BTreeSet<String>>,
     steps: Cell<u64>,
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> StyleRules<'a> {
     /// Parses style sheet text. Rules that are not understood are skipped, as CSS demands.
     pub(crate) fn new(css: &'a str) -> Self {
         let mut rules = StyleSheet::parse(css).rules;
@@ -24,8 +25,8 @@ impl<'a> Sheet<'a> {
         rules.retain(|rule| {
             rule.selector.to_string().starts_with(|c: char| c.is_alphanumeric() || ".#[*:_".contains(c))
         });
-        let styled = rules.iter().flat_map(|rule| class_names(&rule.selector.to_string())).collect();
-        Self { rules, styled, steps: Cell::new(0) }
+        let styled: BTreeSet<String> = rules.iter().flat_map(|rule| class_names(&rule.selector.to_string())).collect();
+        Self { rules: rules.into(), styled: Rc::new(styled), steps: Cell::new(0) }
     }
 
     /// Declarations that apply to `node`, weakest first.
@@ -94,7 +95,7 @@ mod tests {
 
     fn fills(css: &str, svg: &str) -> Vec<String> {
         let xml = roxmltree::Document::parse(svg).unwrap();
-        let sheet = Sheet::new(css);
+        let sheet = StyleRules::new(css);
         let last = xml.descendants().rfind(Xml::is_element).unwrap();
         sheet.declarations(last).map(|d| d.value.to_owned()).collect()
     }
@@ -114,7 +115,7 @@ mod tests {
 
     #[test]
     fn classes_in_selectors_are_known() {
-        let sheet = Sheet::new("g.st0 > path, .st1.st-2 {fill:red}");
+        let sheet = StyleRules::new("g.st0 > path, .st1.st-2 {fill:red}");
         assert!(["st0", "st1", "st-2"].iter().all(|c| sheet.styles_class(c)));
         assert!(!sheet.styles_class("leaf"));
     }

@@ -10,14 +10,16 @@ use kurbo::Rect;
 use roxmltree::{Node as Xml, NodeId};
 use svgtypes::Length;
 
-use crate::svg::parse::{
-    geometry::{self, Geometry},
-    length::{Axis, Viewport},
-    markup::{number, push_attribute},
-    notes::Note,
-    paint::reference,
-    source::{Source, clip_text, href},
-    style::{Own, Style, computed},
+use crate::{
+    svg::parse::{
+        geometry::{self, Geometry},
+        length::{Axis, Viewport},
+        notes::Note,
+        paint::reference,
+        source::{Source, clip_text, href},
+        style::{Own, Style, computed},
+    },
+    text::xml::{number, push_attribute},
 };
 
 /// The definitions of one file that are referred to, by their new ids.

@@ -7,11 +7,13 @@ use kurbo::{BezPath, Point, Shape as _};
 use roxmltree::Node as Xml;
 use svgtypes::{Length, PointsParser, SimplePathSegment, SimplifyingPathParser};
 
-use crate::svg::parse::{
-    length::{Axis, Viewport},
-    markup::{escaped, number},
-    notes::Note,
-    source::{Source, clip_text, href},
+use crate::{
+    svg::parse::{
+        length::{Axis, Viewport},
+        notes::Note,
+        source::{Source, clip_text, href},
+    },
+    text::xml::{escaped, number},
 };
 
 /// A shape in its own coordinates.

@@ -6,6 +6,7 @@ use svgtypes::{AspectRatio, Length, LengthUnit, ViewBox};
 
 use crate::svg::{
     drawing::{Page, Unit},
+    namespace::INKSCAPE,
     parse::{
         notes::Note,
         source::{Source, clip_text},
@@ -152,7 +153,7 @@ fn view_box(source: &Source<'_>, node: Xml<'_, '_>) -> Result<Option<Bounds<2>>>
 }
 
 fn note_old_inkscape(source: &Source<'_>, root: Xml<'_, '_>) {
-    let version = root.attribute((crate::svg::parse::source::INKSCAPE, "version")).unwrap_or_default();
+    let version = root.attribute((INKSCAPE, "version")).unwrap_or_default();
     let mut numbers = version.split(|c: char| !c.is_ascii_digit()).map(|n| n.parse::<u32>().unwrap_or(0));
     let (major, minor) = (numbers.next(), numbers.next().unwrap_or(0));
     if major == Some(0) && minor < 92 && !version.is_empty() {

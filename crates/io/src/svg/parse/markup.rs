@@ -4,43 +4,15 @@ use std::fmt::Write as _;
 
 use kurbo::Affine;
 
-use crate::svg::parse::{
-    definitions::Definitions,
-    paint::reference,
-    scene::{Content, Node},
-    style::Style,
+use crate::{
+    svg::parse::{
+        definitions::Definitions,
+        paint::reference,
+        scene::{Content, Node},
+        style::Style,
+    },
+    text::xml::{number, push_attribute},
 };
-
-/// A number in the shortest form with seven decimals, more where it is small.
-pub(crate) fn number(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 {
-        return format!("{value:e}");
-    }
-    let text = format!("{value:.7}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".into() } else { text.into() }
-}
-
-/// Text made safe for an attribute in double quotes.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '"' => safe.push_str("&quot;"),
-            // Control characters are no XML.
-            c if c.is_control() => safe.push(' '),
-            c => safe.push(c),
-        }
-    }
-    safe
-}
-
-/// Appends ` name="value"`.
-pub(crate) fn push_attribute(out: &mut String, name: &str, value: &str) {
-    let _ = write!(out, " {name}=\"{}\"", escaped(value));
-}
 
 /// Appends a transform attribute unless it changes nothing.
 pub(crate) fn push_transform(out: &mut String, name: &str, transform: Affine) {
@@ -118,23 +90,5 @@ pub(crate) fn push_node(out: &mut String, node: &Node, definitions: &mut Definit
 fn push_class(out: &mut String, node: &Node) {
     if let Some(class) = &node.meta.class {
         push_attribute(out, "class", class);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        assert_eq!(
-            [1.0, -0.0, 0.5, 1e-9, 1.0 / 3.0, 1200.0].map(number),
-            ["1", "0", "0.5", "1e-9", "0.3333333", "1200"]
-        );
-    }
-
-    #[test]
-    fn attribute_text_cannot_break_out() {
-        assert_eq!(escaped("a\"<b>&\n"), "a&quot;&lt;b>&amp; ");
     }
 }

@@ -2,9 +2,12 @@
 
 use roxmltree::{Node as Xml, NodeId};
 
-use crate::svg::parse::{
-    notes::Note,
-    source::{INKSCAPE, Source, clip_text, href},
+use crate::svg::{
+    namespace::INKSCAPE,
+    parse::{
+        notes::Note,
+        source::{Source, clip_text, href},
+    },
 };
 
 /// What the author says an item is, with `data-arabesque`.

@@ -132,7 +132,7 @@ impl Note {
 }
 
 /// The warnings of one file so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Notes(RefCell<BTreeMap<Note, (usize, Vec<String>)>>);
 
 /// Examples that are named for each kind.

@@ -2,7 +2,7 @@
 
 use svgtypes::{Paint, PaintFallback};
 
-use crate::svg::parse::markup::number;
+use crate::text::xml::number;
 
 /// A number between 0 and 1, or a percentage.
 pub(crate) fn fraction(text: &str) -> f64 {

@@ -14,7 +14,7 @@ use crate::svg::parse::{
     meta::{Meta, meta},
     notes::Note,
     source::{Source, clip_text},
-    style::{Own, Style, computed},
+    style::{Own, Property, Style, computed},
 };
 
 /// One thing of the drawing.
@@ -173,9 +173,7 @@ fn drawn_tag(source: &Source<'_>, xml: Xml<'_, '_>) -> Option<&'static str> {
 }
 
 fn shape(source: &Source<'_>, xml: Xml<'_, '_>, node: &Node) -> Result<Option<Geometry>> {
-    if node.style.get(crate::svg::parse::style::Property::Visibility) != "visible"
-        || !geometry::is_shape(xml.tag_name().name())
-    {
+    if node.style.get(Property::Visibility) != "visible" || !geometry::is_shape(xml.tag_name().name()) {
         return Ok(None);
     }
     if node.style.has_markers() {

@@ -1,38 +1,37 @@
 //! A parsed SVG file with everything needed to look things up in it.
 
-use std::{cell::Cell, collections::BTreeMap};
+use std::{cell::Cell, collections::BTreeMap, rc::Rc};
 
 use arabesque_core::{Error, Limits, Result};
 use roxmltree::{Document, Node as Xml, NodeId, ParsingOptions};
 
 use crate::svg::{
+    namespace::{SVG, XLINK},
     options::ReadOptions,
     parse::{
-        css::Sheet,
+        css::StyleRules,
         guard,
         notes::{Note, Notes},
     },
 };
 
-pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
-const XLINK: &str = "http://www.w3.org/1999/xlink";
-pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
-
-/// A parsed file.
+/// A parsed file. A clone shares what was parsed, and goes on from the notes and counts so far by itself.
+#[derive(Clone)]
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) limits: &'a Limits,
+    pub(crate) text: &'a str,
     pub(crate) xml: &'a Document<'a>,
-    pub(crate) sheet: Sheet<'a>,
+    pub(crate) sheet: StyleRules<'a>,
     pub(crate) notes: Notes,
-    ids: BTreeMap<&'a str, NodeId>,
+    ids: Rc<BTreeMap<&'a str, NodeId>>,
     /// Path segments read so far, against the limit.
     segments: Cell<usize>,
     /// Scene nodes made so far, against the limit.
     nodes: Cell<usize>,
 }
 
-/// Parses `text` and hands it to `work`.
+/// Parses `text` and hands it to `work`: what was parsed borrows the text, so it cannot outlive this call.
 pub(crate) fn with_source<T>(
     text: &str,
     options: &ReadOptions,
@@ -50,10 +49,11 @@ pub(crate) fn with_source<T>(
     let source = Source {
         name,
         limits,
+        text,
         xml: &xml,
-        sheet: Sheet::new(&css),
+        sheet: StyleRules::new(&css),
         notes: Notes::default(),
-        ids: ids(&xml),
+        ids: Rc::new(ids(&xml)),
         segments: Cell::new(0),
         nodes: Cell::new(0),
     };

@@ -5,12 +5,14 @@ use std::{rc::Rc, str::FromStr};
 use roxmltree::Node as Xml;
 use svgtypes::{Length, LengthListParser};
 
-use crate::svg::parse::{
-    length::{Axis, Viewport},
-    markup::number,
-    notes::Note,
-    paint::{fraction, paint},
-    source::{Source, clip_text},
+use crate::{
+    svg::parse::{
+        length::{Axis, Viewport},
+        notes::Note,
+        paint::{fraction, paint},
+        source::{Source, clip_text},
+    },
+    text::xml::number,
 };
 
 /// An inherited property: index into [`PROPERTIES`].
@@ -145,6 +147,11 @@ impl Style {
 pub(crate) struct Own(Vec<(&'static str, Rc<str>)>);
 
 impl Own {
+    /// Whether a container with these does something to its content that its items cannot do alone.
+    pub(crate) fn has_effects(&self) -> bool {
+        ["mask", "filter", "mix-blend-mode"].iter().any(|e| self.get(e).is_some_and(|v| v != "none" && v != "normal"))
+    }
+
     /// The value of a property, where it is set.
     pub(crate) fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(n, _)| *n == name).map(|(_, value)| &**value)

@@ -1,42 +1,47 @@
-//! Areas and strokes: shapes that say where to fill, where not, and which way the pattern flows.
+//! Shapes that say where to fill and where not.
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, Error, FillRule, FlowStroke, Outline, Result, Shape};
+use arabesque_core::{Bounds, Error, FillRule, Outline, Result, Shape};
 use kurbo::{Affine, BezPath};
 
-use crate::{
-    svg::{
-        drawing::{Job, Page, Unit},
-        options::ReadOptions,
-        parse::{
-            meta::Part,
-            notes::Note,
-            scene::{Content, Node},
-            source::{Source, with_source},
-            style::Property as P,
-        },
-        read::exemplar::{parts, root},
-        shape::{
-            flatten::{self, flattened},
-            painted_area::Inker,
-        },
-        understand::select::is_closed,
+use crate::svg::{
+    drawing::{Page, Unit},
+    options::ReadOptions,
+    parse::{
+        meta::Part,
+        notes::Note,
+        scene::{Content, Node},
+        style::Property as P,
     },
-    text::suggest::nearest,
+    read::document::{Document, Opened, by_id, parts},
+    shape::{
+        flatten::{self, flattened},
+        painted_area::Inker,
+        subpath::is_closed,
+    },
 };
 
-/// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with the given id.
-///
-/// Stroke widths do not count. A shape without fill encloses by the even-odd rule, any other by its own rule. Where one shape covers
-/// the whole page and others do not, it is taken for a background.
+/// Reads an area from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG, nothing has that id, a line is open, or no area is enclosed;
-/// [`Error::Limit`] when the file is too large.
+/// As for [`Document::with`] and [`Document::shape`].
 pub fn read_shape(text: &str, id: Option<&str>, options: &ReadOptions) -> Result<(Shape, Page)> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.shape(id))
+}
+
+impl Document<'_> {
+    /// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with the given id.
+    ///
+    /// Stroke widths do not count. A shape without fill encloses by the even-odd rule, any other by its own rule. Where one shape covers
+    /// the whole page and others do not, it is taken for a background.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG, nothing has that id, a line is open, or no area is enclosed;
+    /// [`Error::Limit`] when the file is too large.
+    pub fn shape(&self, id: Option<&str>) -> Result<(Shape, Page)> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         let layers = parts(&root, Part::Domain);
         let (place, nodes) = match id {
@@ -48,64 +53,7 @@ pub fn read_shape(text: &str, id: Option<&str>, options: &ReadOptions) -> Result
         let shape = shape(&inker, &place, &nodes, frame)?;
         let view = page.unwrap_or(Page { view: shape.outline().bounds(), unit: Unit::Px, unit_per_user: 1.0 });
         Ok((shape, view))
-    })
-}
-
-/// Reads every path of the file, or of its layer "Flow" where it has one, as a directed stroke in the file's user coordinates.
-///
-/// # Errors
-/// [`Error::Input`] when the text is no usable SVG or holds no path with a length, [`Error::Limit`] when it is too large.
-pub fn read_flow(text: &str, options: &ReadOptions) -> Result<Vec<FlowStroke>> {
-    with_source(text, options, |source| {
-        let (root, _) = root(source)?;
-        let inker = Inker::new(source);
-        let layers = parts(&root, Part::Flow);
-        let nodes = if layers.is_empty() { vec![(Affine::IDENTITY, root)] } else { layers };
-        let strokes = strokes(&inker, &nodes)?;
-        if strokes.is_empty() {
-            return Err(Error::input(
-                source.name,
-                "no path found",
-                "draw one or more lines that the pattern should follow",
-            ));
-        }
-        Ok(strokes)
-    })
-}
-
-/// The layers of a whole job beside the exemplar.
-pub(crate) fn job(inker: &Inker<'_, '_>, root: &Rc<Node>) -> Result<Job> {
-    let area = |part, name| {
-        let nodes = parts(root, part);
-        let place = format!("{}: layer \"{name}\"", inker.source.name);
-        if nodes.is_empty() { Ok(None) } else { shape(inker, &place, &nodes, None).map(Some) }
-    };
-    Ok(Job {
-        domain: area(Part::Domain, "Domain")?,
-        avoid: area(Part::Avoid, "Avoid")?,
-        flow: strokes(inker, &parts(root, Part::Flow))?,
-    })
-}
-
-/// The node with an id or a label, and the transform from its parent to the root.
-pub(crate) fn by_id(source: &Source<'_>, root: &Rc<Node>, id: &str) -> Result<(Affine, Rc<Node>)> {
-    fn walk(node: &Rc<Node>, parent: Affine, id: &str, known: &mut Vec<String>) -> Option<(Affine, Rc<Node>)> {
-        if node.meta.id.as_deref() == Some(id) || node.meta.label.as_deref() == Some(id) {
-            return Some((parent, Rc::clone(node)));
-        }
-        known.extend(node.meta.id.iter().chain(&node.meta.label).cloned());
-        let world = parent * node.transform;
-        node.children().iter().find_map(|child| walk(child, world, id, known))
     }
-    let mut known = Vec::new();
-    walk(root, Affine::IDENTITY, id, &mut known).ok_or_else(|| {
-        let advice = match (nearest(id, known.iter().map(String::as_str)), known.is_empty()) {
-            (Some(near), _) => format!("did you mean \"{near}\"?"),
-            (None, true) => "give the shape an id".to_owned(),
-            (None, false) => format!("use one of its ids, such as {}", known[..known.len().min(8)].join(", ")),
-        };
-        Error::input(source.name, format!("nothing visible has the id \"{id}\""), advice)
-    })
 }
 
 /// A path with the transform to the root and the rule by which it encloses area.
@@ -117,7 +65,13 @@ struct Border {
     name: String,
 }
 
-fn shape(inker: &Inker<'_, '_>, place: &str, nodes: &[(Affine, Rc<Node>)], frame: Option<Bounds<2>>) -> Result<Shape> {
+/// The area that all shapes in some nodes enclose, `place` for messages; what covers the `frame` is left out where there are others.
+pub(crate) fn shape(
+    inker: &Inker<'_, '_>,
+    place: &str,
+    nodes: &[(Affine, Rc<Node>)],
+    frame: Option<Bounds<2>>,
+) -> Result<Shape> {
     let mut borders = Vec::new();
     for (parent, node) in nodes {
         collect(inker, node, *parent, None, &mut borders)?;
@@ -187,30 +141,4 @@ fn is_nearly_closed(elements: &[kurbo::PathEl]) -> bool {
     let points = flattened(elements);
     let size = Bounds::around(points).size().norm();
     is_closed(elements) || matches!(ends, (Some(a), Some(b)) if elements.len() > 2 && a.distance(b) <= 1e-3 * size)
-}
-
-fn strokes(inker: &Inker<'_, '_>, nodes: &[(Affine, Rc<Node>)]) -> Result<Vec<FlowStroke>> {
-    fn walk(inker: &Inker<'_, '_>, node: &Node, parent: Affine, found: &mut Vec<FlowStroke>) -> Result<()> {
-        let world = parent * node.transform;
-        if let Content::Shape(geometry) = &node.content {
-            inker.check(node, geometry, world)?;
-            let path = world * geometry.path.clone();
-            for elements in path.subpaths() {
-                let mut points = flattened(elements);
-                if is_closed(elements) {
-                    points.extend(points.first().copied());
-                }
-                let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-                if length > inker.source.limits.extent {
-                    found.push(points);
-                }
-            }
-        }
-        node.children().iter().try_for_each(|child| walk(inker, child, world, found))
-    }
-    let mut found = Vec::new();
-    for (parent, node) in nodes {
-        walk(inker, node, *parent, &mut found)?;
-    }
-    Ok(found)
 }

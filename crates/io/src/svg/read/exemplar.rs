@@ -2,23 +2,18 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role, Vector};
+use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role};
 use kurbo::Affine;
 
 use crate::svg::{
-    drawing::{Drawing, Fragment, Page, Stacking, Unit},
+    drawing::{Drawing, Job, Page, Stacking, Unit},
     options::{Method, ReadOptions},
-    parse::{
-        definitions::Definitions,
-        guard,
-        length::{self, Viewport},
-        markup::{push_node, push_transform},
-        meta::Part,
-        notes::Note,
-        scene::{self, Node},
-        source::{Source, with_source},
+    parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
+    read::{
+        document::{Document, Opened, parts},
+        domain::shape,
+        flow::strokes,
     },
-    read::domain,
     shape::{
         extent::{self, bounds},
         painted_area::Inker,
@@ -26,7 +21,8 @@ use crate::svg::{
     understand::{
         classes::{self, Classes},
         curves::{Curves, Gatherer},
-        frame,
+        fragment::{fragment, push_placed},
+        frame::{self, frame_mark, is_frame_mark},
         item::{Item, Kind, Origin, Selection},
         outlined_lines::trace,
         select::select,
@@ -34,27 +30,36 @@ use crate::svg::{
     },
 };
 
-/// Reads an exemplar, and the rest of the job where the file holds one.
+/// Reads an exemplar from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
-/// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
+/// As for [`Document::with`] and [`Document::exemplar`].
 pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.exemplar())
+}
+
+impl Document<'_> {
+    /// Reads an exemplar, and the rest of the job where the file holds one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
+    /// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
+    pub fn exemplar(&self) -> Result<Drawing> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
         let mut scope = scope(&inker, &root, page.as_ref())?;
-        scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&options.without));
-        let mut found = select(&inker, scope.frame, options.method, &scope.roots)?;
+        scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
+        let mut found = select(&inker, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
-        settle(source, &mut found.items, window, options.method)?;
-        let job = domain::job(&inker, &root)?;
+        settle(source, &mut found.items, window, self.options.method)?;
+        let job = job(&inker, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
-        let is_curve = |item: &Item| item.kind == Kind::Curve && options.method != Method::Elements;
+        let is_curve = |item: &Item| item.kind == Kind::Curve && self.options.method != Method::Elements;
         let stacking = stacking(&found.items, is_curve);
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
@@ -72,21 +77,13 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
         let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
         let warnings = source.notes.warnings(source.name);
         Ok(Drawing { exemplar, fragments, strokes, stacking, background, definitions, page, job, warnings })
-    })
+    }
 }
 
 fn stacking(items: &[Item], is_curve: impl Fn(&Item) -> bool) -> Stacking {
     let curve = items.iter().position(&is_curve);
     let element = items.iter().position(|item| !is_curve(item));
     if element < curve && element.is_some() { Stacking::CurvesAbove } else { Stacking::ElementsAbove }
-}
-
-/// The drawing and its page, `None` where the file states no size.
-pub(crate) fn root(source: &Source<'_>) -> Result<(Rc<Node>, Option<Page>)> {
-    let page = length::page(source)?;
-    let size = page.map_or(Vector::xy(100.0, 100.0), |p| p.view.size());
-    let root = scene::build(source, Viewport { width: size[0], height: size[1] })?;
-    Ok((Rc::new(root), page))
 }
 
 /// Where the elements are looked for.
@@ -137,40 +134,6 @@ fn content(node: &Node, parent: Affine) -> Bounds<2> {
     }
 }
 
-/// The nodes that play a part in the job, with the transforms from their parents to the root.
-pub(crate) fn parts(root: &Rc<Node>, part: Part) -> Vec<(Affine, Rc<Node>)> {
-    fn walk(node: &Rc<Node>, parent: Affine, part: Part, found: &mut Vec<(Affine, Rc<Node>)>) {
-        if node.meta.part == Some(part) {
-            found.push((parent, Rc::clone(node)));
-            return;
-        }
-        let world = parent * node.transform;
-        node.children().iter().for_each(|child| walk(child, world, part, found));
-    }
-    let mut found = Vec::new();
-    walk(root, Affine::IDENTITY, part, &mut found);
-    found
-}
-
-/// The box of a rectangle called "frame".
-fn frame_mark(node: &Node, parent: Affine) -> Option<Bounds<2>> {
-    let world = parent * node.transform;
-    if is_called_frame(node) {
-        return Some(extent::outline_bounds(node, parent)).filter(|b| b.measure() > 0.0);
-    }
-    node.children().iter().find_map(|child| frame_mark(child, world))
-}
-
-fn is_called_frame(node: &Node) -> bool {
-    let names = [&node.meta.label, &node.meta.id];
-    node.meta.tag == "rect" && names.iter().any(|n| n.as_ref().is_some_and(|n| n.eq_ignore_ascii_case("frame")))
-}
-
-/// Whether an item is the rectangle that states the frame.
-pub(crate) fn is_frame_mark(item: &Item) -> bool {
-    item.parts.len() == 1 && item.parts.iter().all(|(_, node)| is_called_frame(node))
-}
-
 /// Drops what lies outside, and refuses what cannot be handled.
 fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method: Method) -> Result<()> {
     items.retain(|item| {
@@ -188,17 +151,9 @@ fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method:
         refuse_networks(source, items, &window)?;
     }
     for item in items.iter().filter(|item| item.kind == Kind::Large) {
-        source.notes.add(Note::LargeElement, || name(source, item));
+        source.notes.add(Note::LargeElement, || item.name(source));
     }
     Ok(())
-}
-
-/// What a person calls an item: its label or id, else its place in the file.
-pub(crate) fn name(source: &Source<'_>, item: &Item) -> String {
-    let meta = &item.meta;
-    let own = meta.label.as_ref().or(meta.id.as_ref()).map(|n| format!("\"{n}\""));
-    let line = || source.xml.get_node(meta.xml).map(|xml| source.xml.text_pos_at(xml.range().start).row);
-    own.unwrap_or_else(|| format!("<{}> in line {}", meta.tag, line().unwrap_or(1)))
 }
 
 /// Refuses lines that the drawing program has turned into one outline, which are too large for an element.
@@ -207,7 +162,7 @@ fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> R
     if networks.is_empty() {
         return Ok(());
     }
-    let named: Vec<_> = networks.iter().take(5).map(|item| name(source, item)).collect();
+    let named: Vec<_> = networks.iter().take(5).map(|item| item.name(source)).collect();
     let more = if networks.len() > named.len() { ", ..." } else { "" };
     let (count, s) = (networks.len(), if networks.len() == 1 { "" } else { "s" });
     Err(Error::Unsupported {
@@ -255,46 +210,24 @@ fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> 
     (items.iter().zip(roles).zip(&classes.members).map(element).collect(), classes)
 }
 
-/// Markup of an item, with what it refers to queued in the definitions.
-pub(crate) fn fragment(item: &Item, definitions: &mut Definitions<'_, '_>) -> Fragment {
-    let mut markup = String::new();
-    let wrap = item.parts.len() > 1 || item.opacity < 1.0;
-    if wrap {
-        markup.push_str("<g");
-        if item.opacity < 1.0 {
-            crate::svg::parse::markup::push_attribute(
-                &mut markup,
-                "opacity",
-                &crate::svg::parse::markup::number(item.opacity),
-            );
-        }
-        markup.push('>');
-    }
-    for (parent, node) in &item.parts {
-        push_placed(&mut markup, *parent, node, definitions);
-    }
-    if wrap {
-        markup.push_str("</g>");
-    }
-    let label = item.meta.label.clone().or_else(|| item.meta.id.clone());
-    Fragment { markup, layer: item.layer.as_deref().map(str::to_owned), label }
-}
-
-fn push_placed(out: &mut String, parent: Affine, node: &Node, definitions: &mut Definitions<'_, '_>) {
-    if parent == Affine::IDENTITY {
-        return push_node(out, node, definitions);
-    }
-    out.push_str("<g");
-    push_transform(out, "transform", parent);
-    out.push('>');
-    push_node(out, node, definitions);
-    out.push_str("</g>");
-}
-
 fn background(found: &Selection, definitions: &mut Definitions<'_, '_>) -> Option<String> {
     let mut markup = String::new();
     for (parent, node) in &found.background {
         push_placed(&mut markup, *parent, node, definitions);
     }
     (!markup.is_empty()).then_some(markup)
+}
+
+/// The layers of a whole job beside the exemplar.
+fn job(inker: &Inker<'_, '_>, root: &Rc<Node>) -> Result<Job> {
+    let area = |part, name| {
+        let nodes = parts(root, part);
+        let place = format!("{}: layer \"{name}\"", inker.source.name);
+        if nodes.is_empty() { Ok(None) } else { shape(inker, &place, &nodes, None).map(Some) }
+    };
+    Ok(Job {
+        domain: area(Part::Domain, "Domain")?,
+        avoid: area(Part::Avoid, "Avoid")?,
+        flow: strokes(inker, &parts(root, Part::Flow))?,
+    })
 }

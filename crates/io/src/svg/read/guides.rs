@@ -11,12 +11,15 @@ use crate::svg::{
     parse::{
         meta::{Mark, Meta},
         scene::{Content, Node},
-        source::{Source, with_source},
+        source::Source,
         style::Property as P,
     },
-    read::{domain::by_id, exemplar::root},
-    shape::{extent::bounds, painted_area::Inker},
-    understand::{curves::line, select::is_closed},
+    read::document::{Document, Opened, by_id},
+    shape::{
+        extent::bounds,
+        painted_area::Inker,
+        subpath::{is_closed, line},
+    },
 };
 
 /// The lines of a file.
@@ -30,14 +33,23 @@ pub struct Lines {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads every path and shape of the file, or of the item (a shape, a group or a layer) with the given id or label. Each subpath is a
-/// line of its own; paint does not count. A fill that covers the whole page is a background, where the file holds anything else.
+/// Reads the lines to lay a pattern along from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`Error::Input`] when the text is no usable SVG, nothing has that id, or no line has a length; [`Error::Limit`] when it is too large.
+/// As for [`Document::with`] and [`Document::guides`].
 pub fn read_lines(text: &str, id: Option<&str>, options: &ReadOptions) -> Result<Lines> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.guides(id))
+}
+
+impl Document<'_> {
+    /// Reads every path and shape of the file, or of the item (a shape, a group or a layer) with the given id or label. Each subpath is a
+    /// line of its own; paint does not count. A fill that covers the whole page is a background, where the file holds anything else.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG, nothing has that id, or no line has a length; [`Error::Limit`] when it is too large.
+    pub fn guides(&self, id: Option<&str>) -> Result<Lines> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         let (place, start) = match id {
             Some(id) => (format!("{}#{id}", source.name), by_id(source, &root, id)?),
@@ -60,7 +72,7 @@ pub fn read_lines(text: &str, id: Option<&str>, options: &ReadOptions) -> Result
         }
         warnings.extend(source.notes.warnings(source.name));
         Ok(Lines { paths, page, warnings })
-    })
+    }
 }
 
 /// Walks a drawing and gathers its paths.

@@ -7,60 +7,55 @@ use std::{
     rc::Rc,
 };
 
-use arabesque_core::{Bounds, Error, Outline, Result};
+use arabesque_core::{Error, Outline, Result};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
 use crate::svg::{
-    drawing::{Drawing, Page, Placed, Unit},
+    drawing::{Drawing, HostDocument, Page, Placed, Unit},
+    namespace::{INKSCAPE, NAMESPACE, SVG},
     options::{Method, ReadOptions},
-    parse::{
-        definitions::Definitions,
-        source::{SVG, Source, with_source},
-    },
+    parse::{definitions::Definitions, source::Source},
     read::{
-        exemplar::{fragment, is_frame_mark, root},
+        document::{Document, Opened},
         placed::{Kept, Matcher, Sorter},
     },
     shape::{extent::bounds, painted_area::Inker},
-    understand::{item::Item, outlined_lines::trace, select::select, surroundings::Context},
-    write::result::NAMESPACE,
+    understand::{
+        fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
+        surroundings::Context,
+    },
 };
 
-/// What is left of a drawing, and the file around the hole.
-#[derive(Clone, Debug)]
-pub struct Rest {
-    /// What stays, for the engine to fit the new to. Its fragments are not drawn: they stand in the file.
-    pub placed: Placed,
-    /// Box around everything that the file draws.
-    pub content: Bounds<2>,
-    /// How many things are replaced or cut.
-    pub replaced: usize,
-    /// The file up to where new things are drawn.
-    pub(crate) head: String,
-    /// The file from there on.
-    pub(crate) tail: String,
-    /// What had to be written anew: the outside parts of strokes that are cut, and pieces of paths of which another piece is replaced.
-    pub(crate) moved: String,
-    /// Content of `<defs>` that this refers to.
-    pub(crate) definitions: String,
-}
-
-/// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
+/// Reads a drawing of which a part is filled anew from a text of which nothing else is read.
 ///
 /// # Errors
-/// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
-pub fn read_rest(text: &str, drawing: &Drawing, area: &Outline<2>, options: &ReadOptions) -> Result<Rest> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+/// As for [`Document::with`] and [`Document::host`].
+pub fn read_host_document(
+    text: &str,
+    drawing: &Drawing,
+    area: &Outline<2>,
+    options: &ReadOptions,
+) -> Result<HostDocument> {
+    Document::with(text, options, |document| document.host(drawing, area))
+}
+
+impl Document<'_> {
+    /// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
+    ///
+    /// # Errors
+    /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
+    pub fn host(&self, drawing: &Drawing, area: &Outline<2>) -> Result<HostDocument> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
         let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
-        let roots = [(Context::new(Affine::IDENTITY).without(&options.without), Rc::clone(&root))];
-        let mut found = select(&inker, page.view, options.method, &roots)?;
+        let roots = [(Context::new(Affine::IDENTITY).without(&self.options.without), Rc::clone(&root))];
+        let mut found = select(&inker, page.view, self.options.method, &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
-        if options.method != Method::Elements {
+        if self.options.method != Method::Elements {
             trace(source, &mut found.items, &page.view)?;
         }
         let mut sorter = Sorter {
@@ -77,9 +72,9 @@ pub fn read_rest(text: &str, drawing: &Drawing, area: &Outline<2>, options: &Rea
         let mut placed = Placed::on(page);
         kept.into_iter().for_each(|kept| placed.freeze(kept));
         placed.warnings = source.notes.warnings(source.name);
-        let (head, tail) = around(source, text, &affected);
-        Ok(Rest { placed, content, replaced, head, tail, moved, definitions })
-    })
+        let (head, tail) = around(source, &affected);
+        Ok(HostDocument { placed, content, replaced, head, tail, moved, definitions })
+    }
 }
 
 fn is_changed(kept: &Kept) -> bool {
@@ -147,7 +142,8 @@ fn rewritten<'a, 's>(
 }
 
 /// The file without the affected nodes and without its recipe, as it is before and after the end of the root.
-fn around(source: &Source<'_>, text: &str, affected: &BTreeSet<u32>) -> (String, String) {
+fn around(source: &Source<'_>, affected: &BTreeSet<u32>) -> (String, String) {
+    let text = source.text;
     let mut gaps: Vec<Range<usize>> =
         affected.iter().filter_map(|id| source.xml.get_node(NodeId::new(*id))).map(|n| n.range()).collect();
     for recipe in source.xml.descendants().filter(|n| n.has_tag_name((NAMESPACE, "recipe"))) {
@@ -188,7 +184,7 @@ fn namespaces(source: &Source<'_>) -> String {
     let needed = [
         (None, SVG),
         (Some("xlink"), "http://www.w3.org/1999/xlink"),
-        (Some("inkscape"), crate::svg::parse::source::INKSCAPE),
+        (Some("inkscape"), INKSCAPE),
         (Some("arabesque"), NAMESPACE),
     ];
     let root = source.xml.root_element();
@@ -206,15 +202,15 @@ fn namespaces(source: &Source<'_>) -> String {
 mod tests {
     use super::*;
     use crate::svg::read::exemplar::read_exemplar;
-    use arabesque_core::Vector;
+    use arabesque_core::{Bounds, Vector};
 
-    fn rest(body: &str) -> Result<Rest> {
+    fn rest(body: &str) -> Result<HostDocument> {
         let text =
             format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><!-- mine -->{body}\n</svg>\n");
         let options = ReadOptions { method: Method::Auto, ..ReadOptions::new("r.svg") };
         let drawing = read_exemplar(&text, &options)?;
         let corners = [(40.0, 40.0), (60.0, 40.0), (60.0, 60.0), (40.0, 60.0)].map(|(x, y)| Vector::xy(x, y));
-        read_rest(&text, &drawing, &Outline { rings: vec![corners.to_vec()] }, &options)
+        read_host_document(&text, &drawing, &Outline { rings: vec![corners.to_vec()] }, &options)
     }
 
     #[test]

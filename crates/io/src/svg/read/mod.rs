@@ -2,8 +2,10 @@
 //! file that a result is written into.
 
 pub(crate) mod crop;
+pub(crate) mod document;
 pub(crate) mod domain;
 pub(crate) mod exemplar;
+pub(crate) mod flow;
 pub(crate) mod guides;
 pub(crate) mod host_document;
 pub(crate) mod painted_areas;

@@ -11,10 +11,9 @@ use crate::svg::{
         geometry::Painted,
         paint::{fraction, reference},
         scene::{Content, Node},
-        source::with_source,
         style::Property as P,
     },
-    read::exemplar::root,
+    read::document::{Document, Opened},
     shape::{extent::bounds, flatten, painted_area::Inker, stroke::stroked},
 };
 
@@ -40,13 +39,22 @@ pub struct Areas {
     pub warnings: Vec<Warning>,
 }
 
-/// Takes a drawing apart. Clips are applied; a gradient or pattern becomes its mean colour, with a warning.
+/// Takes a drawing apart whose text nothing else is read of.
 ///
 /// # Errors
-/// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+/// As for [`Document::with`] and [`Document::painted_areas`].
 pub fn read_areas(text: &str, options: &ReadOptions) -> Result<Areas> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.painted_areas())
+}
+
+impl Document<'_> {
+    /// Takes a drawing apart. Clips are applied; a gradient or pattern becomes its mean colour, with a warning.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+    pub fn painted_areas(&self) -> Result<Areas> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
         let mut taker = Taker { inker: &inker, areas: Vec::new(), gradients: 0, pictures: 0, effects: 0 };
@@ -55,7 +63,7 @@ pub fn read_areas(text: &str, options: &ReadOptions) -> Result<Areas> {
         let mut warnings = taker.warnings(source.name);
         warnings.extend(source.notes.warnings(source.name));
         Ok(Areas { areas: taker.areas, page, warnings })
-    })
+    }
 }
 
 /// What holds for everything inside a node.

@@ -9,21 +9,22 @@ use crate::{
     svg::{
         drawing::{Drawing, Fragment, Page, Placed, Stroke, Unit},
         options::{Method, ReadOptions},
-        parse::{definitions::Definitions, meta::Meta, source::with_source},
-        read::exemplar::{fragment, root},
+        parse::{definitions::Definitions, meta::Meta},
+        read::document::{Document, Opened},
         shape::{
             cut_path::{Side, cut},
+            extent::bounds,
             painted_area::Inker,
         },
         understand::{
             classes::{self, WOBBLE},
             curves::{Curves, Gatherer},
+            fragment::fragment,
             item::{Item, Kind},
             select::select,
             signature::Signature,
             surroundings::Context,
         },
-        write::curves::stroke_markup,
     },
     text::number::Decimals,
 };
@@ -31,20 +32,29 @@ use crate::{
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.
 const COLOUR: f64 = 0.2;
 
-/// Reads what stays where it is, and matches it to the elements and curves of `drawing`.
-///
-/// Copies made by arabesque say what they are copies of (`data-arabesque-source`, `data-arabesque-curve`); other elements are matched by
-/// name, colour and outline, other strokes by their paint. What matches nothing becomes an obstacle. Nothing at all in the file is no
-/// error: there is nothing to keep.
+/// Reads what stays where it is from a text of which nothing else is read.
 ///
 /// # Errors
-/// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+/// As for [`Document::with`] and [`Document::placed`].
 pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Result<Placed> {
-    with_source(text, options, |source| {
-        let (root, page) = root(source)?;
+    Document::with(text, options, |document| document.placed(drawing))
+}
+
+impl Document<'_> {
+    /// Reads what stays where it is, and matches it to the elements and curves of `drawing`.
+    ///
+    /// Copies made by arabesque say what they are copies of (`data-arabesque-source`, `data-arabesque-curve`); other elements are matched by
+    /// name, colour and outline, other strokes by their paint. What matches nothing becomes an obstacle. Nothing at all in the file is no
+    /// error: there is nothing to keep.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+    pub fn placed(&self, drawing: &Drawing) -> Result<Placed> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
         let inker = Inker::new(source);
         inker.check_all(&root, Affine::IDENTITY)?;
-        let content = crate::svg::shape::extent::bounds(&root, Affine::IDENTITY);
+        let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let mut definitions = Definitions::new(source, "kept");
         let mut placed = Placed::on(page);
@@ -61,7 +71,7 @@ pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Resu
         placed.definitions = definitions.finish();
         placed.warnings = source.notes.warnings(source.name);
         Ok(placed)
-    })
+    }
 }
 
 impl Placed {
@@ -169,7 +179,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
             return Ok(Kept::Removed);
         }
         let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1]));
-        let markup = rest.iter().map(|(path, _, stroke)| stroke_markup(path, stroke, decimals)).collect::<String>();
+        let markup = rest.iter().map(|(path, _, stroke)| stroke.markup(path, decimals)).collect::<String>();
         let markup =
             (is_touched || item.is_cut).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
         let drawn = rest.iter().map(|(path, curve, stroke)| self.matcher.stroke(path, curve.width, stroke, &item.meta));

@@ -97,7 +97,7 @@ mod tests {
 
     fn circle(x: f64, y: f64, r: f64) -> Path<2> {
         use kurbo::Shape as _;
-        crate::svg::understand::curves::line(&kurbo::Circle::new((x, y), r).to_path(1e-6), true, 1e-9)
+        crate::svg::shape::subpath::line(&kurbo::Circle::new((x, y), r).to_path(1e-6), true, 1e-9)
     }
 
     #[test]

@@ -8,3 +8,4 @@ pub(crate) mod flatten;
 pub(crate) mod painted_area;
 pub(crate) mod simplify;
 pub(crate) mod stroke;
+pub(crate) mod subpath;

@@ -14,10 +14,7 @@ use crate::svg::{
         adjacency::{Budget, Edge, Sets, edge_distance, meeting, winding},
         painted_area::Inker,
     },
-    understand::{
-        item::{Item, Kind, Origin},
-        join::merged,
-    },
+    understand::item::{Item, Kind, Origin},
 };
 
 /// Pairs of edges that are looked at in one file.
@@ -53,7 +50,7 @@ pub(crate) fn join_lines(
 /// What tiles show together: one net, or, where they are taken apart, lines and other things.
 fn whole(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>, tolerance: f64) -> Result<Option<Vec<Item>>> {
     let all: Vec<usize> = (0..tiles.len()).collect();
-    if let Some(net) = lined(merged(tiles, &all, frame), frame).filter(|net| net.kind == Kind::Large) {
+    if let Some(net) = lined(Item::merged(tiles, &all, frame), frame).filter(|net| net.kind == Kind::Large) {
         return Ok(Some(vec![net]));
     }
     if tiles.iter().all(|tile| tile.compound.is_none()) {
@@ -65,7 +62,7 @@ fn whole(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>, tolerance: f64
     let mut place = vec![0; items.len()];
     for group in touching(&items, tolerance) {
         group.iter().for_each(|&i| place[i] = found.len());
-        let one = merged(&items, &group, frame);
+        let one = Item::merged(&items, &group, frame);
         let area = one.outline.area();
         let item = lined(one.clone(), frame).inspect(|_| lines += area).unwrap_or(one);
         // What is no net now is a thing of its own, and no scrap of one.
@@ -102,7 +99,7 @@ fn apart(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>) -> Result<Piec
         compound.note_losses(inker);
         let mut place = BTreeMap::new();
         for &k in which {
-            if let Some(item) = compound.item(inker, vec![k], frame)? {
+            if let Some(item) = Item::of_pieces(compound, inker, vec![k], frame)? {
                 place.insert(k, pieces.items.len());
                 pieces.items.push(item);
             }
@@ -133,7 +130,7 @@ fn nested(items: &[Item], homes: &[(usize, usize)], frame: Bounds<2>) -> Vec<Ite
             true
         },
     );
-    sets.groups().iter().map(|group| merged(items, group, frame)).collect()
+    sets.groups().iter().map(|group| Item::merged(items, group, frame)).collect()
 }
 
 /// Items in groups that seams connect.

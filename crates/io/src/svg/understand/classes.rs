@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use arabesque_core::{Class, Similarity};
 
 use crate::svg::{
-    parse::{css::Sheet, meta::Meta},
+    parse::{css::StyleRules, meta::Meta},
     understand::{item::Item, signature::Signature},
 };
 
@@ -27,7 +27,7 @@ pub(crate) struct Classes {
 }
 
 /// Sorts items into classes. Items that are cut take part by name and paint only: their outlines are not their own.
-pub(crate) fn classify(items: &[Item], is_whole: &[bool], sheet: &Sheet<'_>) -> Classes {
+pub(crate) fn classify(items: &[Item], is_whole: &[bool], sheet: &StyleRules<'_>) -> Classes {
     let signatures: Vec<Option<Signature>> = items.iter().map(|item| Signature::new(&item.outline)).collect();
     let names = shared_names(items, sheet);
     let mut labels: Vec<Option<Label>> = names.into_iter().map(|n| n.map(Label::Name)).collect();
@@ -54,7 +54,7 @@ enum Label {
 }
 
 /// For each item the first of its names that another item has too.
-fn shared_names(items: &[Item], sheet: &Sheet<'_>) -> Vec<Option<String>> {
+fn shared_names(items: &[Item], sheet: &StyleRules<'_>) -> Vec<Option<String>> {
     let names: Vec<Vec<String>> = items.iter().map(|item| names_of(&item.meta, sheet)).collect();
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for name in names.iter().flatten() {
@@ -68,7 +68,7 @@ fn shared_names(items: &[Item], sheet: &Sheet<'_>) -> Vec<Option<String>> {
 }
 
 /// The names of an item that may tell its kind: what a `<use>` shows, classes without a style, the label.
-pub(crate) fn names_of(meta: &Meta, sheet: &Sheet<'_>) -> Vec<String> {
+pub(crate) fn names_of(meta: &Meta, sheet: &StyleRules<'_>) -> Vec<String> {
     let shown = meta.shows.as_deref().map(|s| s.trim_start_matches('#').to_owned());
     let classes = meta.class.as_deref().unwrap_or_default().split_whitespace();
     let classes = classes.filter(|c| !sheet.styles_class(c)).map(str::to_owned);

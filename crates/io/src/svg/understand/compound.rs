@@ -16,9 +16,7 @@ use crate::svg::{
     },
     shape::{extent::bounds, flatten, painted_area::Inker},
     understand::{
-        item::{Item, Kind, Origin},
         pieces::{self, Piece},
-        select::{HALF, has_effects},
         surroundings::Context,
     },
 };
@@ -29,7 +27,7 @@ pub(crate) struct Compound {
     /// The shape without its own clip and without the groups around it.
     bare: Node,
     /// What these and the containers around them do.
-    context: Context,
+    pub(crate) context: Context,
     pub(crate) pieces: Vec<Piece>,
     /// Box around each piece.
     pub(crate) boxes: Vec<Bounds<2>>,
@@ -78,30 +76,12 @@ impl Compound {
     }
 
     /// What draws some of the pieces.
-    fn node(&self, which: &[usize]) -> Node {
+    pub(crate) fn node(&self, which: &[usize]) -> Node {
         let Content::Shape(geometry) = &self.bare.content else { return self.bare.clone() };
         let all: Vec<_> = geometry.path.subpaths().collect();
         let subpaths: Vec<usize> = which.iter().flat_map(|&k| self.pieces[k].subpaths.iter().copied()).collect();
         let chosen = Geometry::from_path(pieces::chosen(&all, &subpaths));
         Node { content: Content::Shape(Rc::new(chosen)), ..self.bare.clone() }
-    }
-
-    /// Some of the pieces as an item.
-    ///
-    /// # Errors
-    /// As for ink that cannot be found.
-    pub(crate) fn item(
-        self: &Rc<Self>,
-        inker: &Inker<'_, '_>,
-        which: Vec<usize>,
-        frame: Bounds<2>,
-    ) -> Result<Option<Item>> {
-        let node = Rc::new(self.node(&which));
-        let share = bounds(&node, self.context.parent).measure() / frame.measure();
-        let kind = if share < HALF { Kind::Element } else { Kind::Large };
-        let item = Item::taken(inker, &node, &self.context, kind, Origin::Piece)?;
-        let compound = (which.len() > 1).then(|| (Rc::clone(self), which));
-        Ok(item.map(|item| Item { compound, ..item }))
     }
 
     /// Notes what is lost when its pieces become separate.
@@ -131,7 +111,7 @@ fn unwrap(inker: &Inker<'_, '_>, (node, leaf): (&Rc<Node>, &Rc<Node>), inside: &
             return Ok(effects);
         }
         inside.opacity *= at.own.get("opacity").map_or(1.0, fraction);
-        if has_effects(&at.own) {
+        if at.own.has_effects() {
             effects = Some(at.meta.id.clone().unwrap_or_default());
         }
         let [child] = at.children() else { return Ok(effects) };

@@ -2,29 +2,33 @@
 
 use std::{collections::BTreeMap, fmt::Write as _, rc::Rc};
 
-use arabesque_core::{Bounds, Class, Curve, Outline, Path, Result, Vector, straight};
-use kurbo::{Affine, BezPath, PathEl, PathSeg};
+use arabesque_core::{Bounds, Class, Curve, Outline, Path, Result};
+use kurbo::{Affine, BezPath};
 
-use crate::svg::{
-    centreline::Centrelines,
-    drawing::Stroke,
-    parse::{
-        colour,
-        definitions::Definitions,
-        markup::{number, push_attribute},
-        meta::Meta,
-        notes::Note,
-        paint::{fraction, reference},
-        scene::{Content, Node},
-        style::Property as P,
+use crate::{
+    svg::{
+        centreline::Centrelines,
+        drawing::Stroke,
+        parse::{
+            colour,
+            definitions::Definitions,
+            guard::too_much,
+            meta::Meta,
+            notes::Note,
+            paint::{fraction, reference},
+            scene::{Content, Node},
+            style::Property as P,
+        },
+        shape::{
+            cut_path::{Side, cut},
+            duplicates::Seen,
+            painted_area::Inker,
+            stroke::growth,
+            subpath::{is_closed, line},
+        },
+        understand::{classes::names_of, item::Item},
     },
-    shape::{
-        cut_path::{Side, cut},
-        duplicates::Seen,
-        painted_area::Inker,
-        stroke::growth,
-    },
-    understand::{classes::names_of, item::Item, select::is_closed},
+    text::xml::{number, push_attribute},
 };
 
 /// The curves of a drawing.
@@ -177,11 +181,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         if found <= source.limits.elements {
             return Ok(());
         }
-        Err(crate::svg::parse::guard::too_much(
-            format!("{}: curves", source.name),
-            found,
-            source.limits.elements as u64,
-        ))
+        Err(too_much(format!("{}: curves", source.name), found, source.limits.elements as u64))
     }
 
     /// How a shape's stroke is painted, in the units of the root.
@@ -279,48 +279,7 @@ fn is_even(transform: Affine) -> bool {
     (p - q).abs() <= 0.01 * p.max(q) && (a * c + b * d).abs() <= 0.01 * p * q
 }
 
-/// A subpath as cubics; segments no longer than `least` are left out.
-pub(crate) fn line(path: &BezPath, closed: bool, least: f64) -> Path<2> {
-    let at = |p: kurbo::Point| Vector::xy(p.x, p.y);
-    let mut cubics = Vec::new();
-    for segment in path.segments() {
-        let cubic = match segment {
-            PathSeg::Line(l) => straight(at(l.p0), at(l.p1)),
-            other => {
-                let c = other.to_cubic();
-                [c.p0, c.p1, c.p2, c.p3].map(at)
-            }
-        };
-        if (1..4).any(|k| (cubic[k] - cubic[0]).norm() > least) {
-            cubics.push(cubic);
-        }
-    }
-    join_ends(&mut cubics, closed, least);
-    Path { closed: closed && !cubics.is_empty(), cubics }
-}
-
-/// Lets each cubic start exactly where the one before ends, and the first where the last ends on a closed path.
-fn join_ends(cubics: &mut Vec<[Vector<2>; 4]>, closed: bool, least: f64) {
-    for k in 1..cubics.len() {
-        cubics[k][0] = cubics[k - 1][3];
-    }
-    let (Some(first), Some(last)) = (cubics.first().map(|c| c[0]), cubics.last().map(|c| c[3])) else { return };
-    if !closed || first == last {
-        return;
-    }
-    if (first - last).norm() > least.max(1e-9) {
-        cubics.push(straight(last, first));
-    } else if let Some(end) = cubics.last_mut() {
-        end[3] = first;
-    }
-}
-
 /// Length of the chords of a path.
 fn length(path: &Path<2>) -> f64 {
     path.cubics.iter().flat_map(|c| c.windows(2)).map(|w| (w[1] - w[0]).norm()).sum()
-}
-
-/// Whether a shape's subpaths all end where they start.
-pub(crate) fn is_all_closed(path: &BezPath) -> bool {
-    path.subpaths().all(|elements: &[PathEl]| is_closed(elements))
 }

@@ -1,9 +1,11 @@
 //! The frame of an exemplar, and what lies on it.
 
 use arabesque_core::{Bounds, Outline, Role, Vector};
+use kurbo::Affine;
 
 use crate::svg::{
-    shape::extent::longer,
+    parse::scene::Node,
+    shape::extent::{longer, outline_bounds},
     understand::item::{Item, Kind},
 };
 
@@ -63,6 +65,25 @@ pub(crate) fn around(items: &[Item]) -> Bounds<2> {
     let spacing = (tight.measure() / items.len() as f64).sqrt();
     let diameter = items.iter().map(|item| item.outline.bounds().measure().sqrt()).sum::<f64>() / items.len() as f64;
     tight.grown((0.5 * (spacing - diameter)).max(0.0))
+}
+
+/// The box of a rectangle called "frame".
+pub(crate) fn frame_mark(node: &Node, parent: Affine) -> Option<Bounds<2>> {
+    let world = parent * node.transform;
+    if is_called_frame(node) {
+        return Some(outline_bounds(node, parent)).filter(|b| b.measure() > 0.0);
+    }
+    node.children().iter().find_map(|child| frame_mark(child, world))
+}
+
+fn is_called_frame(node: &Node) -> bool {
+    let names = [&node.meta.label, &node.meta.id];
+    node.meta.tag == "rect" && names.iter().any(|n| n.as_ref().is_some_and(|n| n.eq_ignore_ascii_case("frame")))
+}
+
+/// Whether an item is the rectangle that states the frame.
+pub(crate) fn is_frame_mark(item: &Item) -> bool {
+    item.parts.len() == 1 && item.parts.iter().all(|(_, node)| is_called_frame(node))
 }
 
 #[cfg(test)]

@@ -2,18 +2,21 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Outline, Result};
+use arabesque_core::{Bounds, FillRule, Outline, Result};
 use kurbo::Affine;
 
 use crate::svg::{
     centreline::Centrelines,
-    parse::{meta::Meta, notes::Note, scene::Node},
+    parse::{meta::Meta, notes::Note, scene::Node, source::Source},
     shape::{
         extent::{bounds, longer, sole_shape},
         painted_area::{Ink, Inker},
     },
     understand::{compound::Compound, surroundings::Context},
 };
+
+/// Share of the frame from which on something is too large for an element.
+pub(crate) const HALF: f64 = 0.5;
 
 /// What a selected item is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +99,56 @@ impl Item {
             item.note_unseen(inker);
         }
         Ok(is_seen.then_some(item))
+    }
+
+    /// Some pieces of a compound path.
+    ///
+    /// # Errors
+    /// As for ink that cannot be found.
+    pub(crate) fn of_pieces(
+        compound: &Rc<Compound>,
+        inker: &Inker<'_, '_>,
+        which: Vec<usize>,
+        frame: Bounds<2>,
+    ) -> Result<Option<Self>> {
+        let node = Rc::new(compound.node(&which));
+        let share = bounds(&node, compound.context.parent).measure() / frame.measure();
+        let kind = if share < HALF { Kind::Element } else { Kind::Large };
+        let item = Self::taken(inker, &node, &compound.context, kind, Origin::Piece)?;
+        let compound = (which.len() > 1).then(|| (Rc::clone(compound), which));
+        Ok(item.map(|item| Self { compound, ..item }))
+    }
+
+    /// The items of a group as one.
+    pub(crate) fn merged(items: &[Self], group: &[usize], frame: Bounds<2>) -> Self {
+        let mut all = items[group[0]].clone();
+        if group.len() == 1 {
+            return all;
+        }
+        for &i in &group[1..] {
+            all.parts.extend(items[i].parts.iter().map(|(t, n)| (*t, Rc::clone(n))));
+            all.ink.append(items[i].ink.clone());
+            all.is_cut |= items[i].is_cut;
+        }
+        all.compound = None;
+        let rings: Vec<_> = group.iter().flat_map(|&i| items[i].outline.rings.iter().cloned()).collect();
+        all.outline = Outline::union(&rings, FillRule::NonZero);
+        let strokes = group.iter().any(|&i| items[i].kind == Kind::Curve);
+        let large = all.outline.bounds().measure() >= 0.5 * frame.measure();
+        all.kind = match (strokes, large) {
+            (true, _) => Kind::Curve,
+            (false, true) => Kind::Large,
+            (false, false) => Kind::Element,
+        };
+        all
+    }
+
+    /// What a person calls it: its label or id, else its place in the file.
+    pub(crate) fn name(&self, source: &Source<'_>) -> String {
+        let meta = &self.meta;
+        let own = meta.label.as_ref().or(meta.id.as_ref()).map(|n| format!("\"{n}\""));
+        let line = || source.xml.get_node(meta.xml).map(|xml| source.xml.text_pos_at(xml.range().start).row);
+        own.unwrap_or_else(|| format!("<{}> in line {}", meta.tag, line().unwrap_or(1)))
     }
 
     /// Says why nothing of it is seen.

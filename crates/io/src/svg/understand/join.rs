@@ -1,8 +1,6 @@
 //! Joining what belongs together: strokes that touch, and pieces of one colour that abut.
 
-use std::rc::Rc;
-
-use arabesque_core::{Bounds, FillRule, Outline, Result};
+use arabesque_core::{Bounds, Result};
 
 use crate::svg::{
     options::Method,
@@ -14,7 +12,7 @@ use crate::svg::{
     },
     understand::{
         abutting,
-        item::{Item, Kind, Origin, Selection},
+        item::{Item, Origin, Selection},
     },
 };
 
@@ -39,7 +37,7 @@ pub(crate) fn join(found: Selection, inker: &Inker<'_, '_>, frame: Bounds<2>, me
     };
     let items = if items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
         let groups = connected(&items, may_join, tolerance, inker);
-        groups.into_iter().map(|group| merged(&items, &group, frame)).collect()
+        groups.into_iter().map(|group| Item::merged(&items, &group, frame)).collect()
     } else {
         items
     };
@@ -75,28 +73,4 @@ fn connected(
         },
     );
     sets.groups()
-}
-
-/// The items of a group as one.
-pub(crate) fn merged(items: &[Item], group: &[usize], frame: Bounds<2>) -> Item {
-    let mut all = items[group[0]].clone();
-    if group.len() == 1 {
-        return all;
-    }
-    for &i in &group[1..] {
-        all.parts.extend(items[i].parts.iter().map(|(t, n)| (*t, Rc::clone(n))));
-        all.ink.append(items[i].ink.clone());
-        all.is_cut |= items[i].is_cut;
-    }
-    all.compound = None;
-    let rings: Vec<_> = group.iter().flat_map(|&i| items[i].outline.rings.iter().cloned()).collect();
-    all.outline = Outline::union(&rings, FillRule::NonZero);
-    let strokes = group.iter().any(|&i| items[i].kind == Kind::Curve);
-    let large = all.outline.bounds().measure() >= 0.5 * frame.measure();
-    all.kind = match (strokes, large) {
-        (true, _) => Kind::Curve,
-        (false, true) => Kind::Large,
-        (false, false) => Kind::Element,
-    };
-    all
 }

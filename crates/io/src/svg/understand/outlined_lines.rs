@@ -12,7 +12,6 @@ use crate::svg::{
         scene::{Content, Node},
         source::Source,
     },
-    read::exemplar::name,
     understand::item::{Item, Kind, Origin},
 };
 
@@ -39,7 +38,7 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
                 what: format!(
                     "{}: {}, filled and marked as a curve but no line of one width",
                     source.name,
-                    name(source, item)
+                    item.name(source)
                 ),
                 advice: "give it a stroke and no fill, or mark it data-arabesque=\"element\"".into(),
             });
@@ -55,7 +54,7 @@ fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> bool {
     }
     if item.lines.is_some() {
         item.kind = Kind::Curve;
-        source.notes.add(Note::Traced, || name(source, item));
+        source.notes.add(Note::Traced, || item.name(source));
     }
     item.lines.is_some()
 }

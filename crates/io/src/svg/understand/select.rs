@@ -23,23 +23,22 @@ use crate::svg::{
         notes::Note,
         paint::fraction,
         scene::{Content, Node},
-        style::Own,
     },
     shape::{
+        adjacency::Sets,
         extent::{bounds, clusters, longer, sole_shape},
         flatten,
         painted_area::Inker,
+        subpath::is_all_closed,
     },
     understand::{
         compound::Compound,
-        curves::is_all_closed,
-        item::{Item, Kind, Origin, Selection},
+        item::{HALF, Item, Kind, Origin, Selection},
+        join::join,
         surroundings::Context,
     },
 };
 
-/// Share of the frame from which on something is too large for an element.
-pub(crate) const HALF: f64 = 0.5;
 /// Share of the frame from which on a group of distant things is a container.
 const ROOMY: f64 = 0.1;
 /// Widest gap inside one thing, as a share of the smaller neighbour.
@@ -80,7 +79,7 @@ pub(crate) fn select(
                 if method == Method::Auto {
                     promote(&mut selector.found.items);
                 }
-                return crate::svg::understand::join::join(selector.found, inker, frame, method);
+                return join(selector.found, inker, frame, method);
             }
         }
     }
@@ -126,7 +125,7 @@ impl Selector<'_, '_, '_> {
         if opacity == 0.0 {
             return Ok(());
         }
-        if has_effects(&node.own) {
+        if node.own.has_effects() {
             self.inker.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());
         }
         let name = node.meta.label.as_ref().or(node.meta.id.as_ref());
@@ -255,14 +254,14 @@ impl Selector<'_, '_, '_> {
     /// Takes the pieces of a compound path, those in the hole of another with it.
     fn split(&mut self, compound: &Rc<Compound>) -> Result<()> {
         compound.note_losses(self.inker);
-        let mut sets = crate::svg::shape::adjacency::Sets::new(compound.pieces.len());
+        let mut sets = Sets::new(compound.pieces.len());
         for (k, p) in compound.pieces.iter().enumerate() {
             if let Some(home) = p.within.filter(|&home| self.share(&compound.boxes[home]) < HALF) {
                 sets.join(k, home);
             }
         }
         for group in sets.groups() {
-            self.found.items.extend(compound.item(self.inker, group, self.frame)?);
+            self.found.items.extend(Item::of_pieces(compound, self.inker, group, self.frame)?);
         }
         Ok(())
     }
@@ -271,11 +270,6 @@ impl Selector<'_, '_, '_> {
         let all = compound.boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b));
         self.share(&all) < ROOMY && clusters(&compound.boxes, GAP) == 1
     }
-}
-
-/// Whether a container does something to its content that its items cannot do alone.
-pub(crate) fn has_effects(own: &Own) -> bool {
-    ["mask", "filter", "mix-blend-mode"].iter().any(|e| own.get(e).is_some_and(|v| v != "none" && v != "normal"))
 }
 
 /// Whether a fill covers more than a line.
@@ -287,13 +281,4 @@ fn is_filled(leaf: &Node, geometry: &Geometry) -> bool {
     let rings = flatten::rings(&geometry.path);
     let area: f64 = rings.iter().map(|r| arabesque_core::ring_area(r).abs()).sum();
     area > 1e-9 * (extent.width() + extent.height()).powi(2)
-}
-
-/// Whether a subpath ends where it starts.
-pub(crate) fn is_closed(elements: &[kurbo::PathEl]) -> bool {
-    if matches!(elements.last(), Some(kurbo::PathEl::ClosePath)) {
-        return true;
-    }
-    let ends = (elements.first().and_then(|e| e.end_point()), elements.last().and_then(|e| e.end_point()));
-    elements.len() > 2 && matches!(ends, (Some(a), Some(b)) if a.distance(b) < 1e-9)
 }

@@ -6,11 +6,11 @@ use arabesque_core::{Domain, Error, Outline, Result, Vector, Warning};
 
 use crate::{
     svg::write::{
-        flat::wrapped,
-        result::Sheet,
-        text::{escape, outline_data, rectangle},
+        pieces::wrapped,
+        sheet::Sheet,
+        text::{outline_data, rectangle},
     },
-    text::number::Decimals,
+    text::{number::Decimals, xml::escape},
 };
 
 /// Repeats beyond this number would make a file that nobody can open.

@@ -2,14 +2,11 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use arabesque_core::{Bounds, Drawn, Path, Vector};
+use arabesque_core::{Bounds, Drawn, Vector};
 
 use crate::{
-    svg::{
-        drawing::Stroke,
-        write::{result::Sheet, text::escape},
-    },
-    text::{number::Decimals, path_data::path_data},
+    svg::{drawing::Stroke, parse::meta::part, write::sheet::Sheet},
+    text::{number::Decimals, path_data::path_data, xml::escape},
 };
 
 /// Widths that differ by less than this share are the same.
@@ -37,7 +34,7 @@ pub(crate) fn curves(
             "<g inkscape:groupmode=\"layer\" inkscape:label=\"{}\" id=\"{prefix}-style-{style}\"{}{}>",
             escape(&label(stroke, &exemplar.styles[style].name)),
             stroke.paint,
-            lengths(stroke, 1.0, decimals)
+            stroke.lengths(1.0, decimals)
         );
         for (index, drawn) in members {
             let bounds = drawn.path.bounds().grown(0.5 * stroke.width * drawn.scale);
@@ -52,7 +49,7 @@ pub(crate) fn curves(
 
 /// The name of the layer that strokes came from, else that of their style; names that would make the layer part of a job are not handed on.
 fn label(stroke: &Stroke, style: &str) -> String {
-    let layer = stroke.layer.as_deref().filter(|name| crate::svg::parse::meta::part(name).is_none());
+    let layer = stroke.layer.as_deref().filter(|name| part(name).is_none());
     layer.unwrap_or(style).to_owned()
 }
 
@@ -73,28 +70,8 @@ fn path(
         drawn.source
     );
     if (drawn.scale - 1.0).abs() > SAME_WIDTH {
-        out.push_str(&lengths(stroke, drawn.scale, decimals));
+        out.push_str(&stroke.lengths(drawn.scale, decimals));
     }
     out.push_str(&stroke.effects);
     out.push_str("/>\n");
-}
-
-/// A path painted like `stroke`, as an element of its own.
-pub(crate) fn stroke_markup(path: &Path<2>, stroke: &Stroke, decimals: Decimals) -> String {
-    let (data, lengths) = (path_data(path, decimals), lengths(stroke, 1.0, decimals));
-    format!("<path d=\"{data}\"{}{lengths}{}/>", stroke.paint, stroke.effects)
-}
-
-/// Width and dashes of a stroke, as attributes.
-fn lengths(stroke: &Stroke, scale: f64, decimals: Decimals) -> String {
-    let fine = decimals.plus(2);
-    let mut out = format!(" stroke-width=\"{}\"", fine.format(stroke.width * scale));
-    if !stroke.dashes.is_empty() {
-        let dashes: Vec<_> = stroke.dashes.iter().map(|d| fine.format(d * scale)).collect();
-        let _ = write!(out, " stroke-dasharray=\"{}\"", dashes.join(" "));
-        if stroke.dash_offset != 0.0 {
-            let _ = write!(out, " stroke-dashoffset=\"{}\"", fine.format(stroke.dash_offset * scale));
-        }
-    }
-    out
 }

@@ -11,14 +11,11 @@ use crate::{
         write::{
             cut::{Cutter, Remainder},
             pieces::{PaintedPath, Piece, take_apart},
-            result::Style,
-            text::escape,
+            sheet::Style,
         },
     },
-    text::number::Decimals,
+    text::{number::Decimals, xml::escape},
 };
-
-pub(crate) use crate::svg::write::pieces::wrapped;
 
 /// How an element gets from the exemplar to the page.
 pub(crate) enum Warp<'a> {

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, str::FromStr};
 use arabesque_core::{Error, Result};
 use kurbo::{Affine, BezPath, Shape as _};
 
-use crate::svg::write::text::escape;
+use crate::text::xml::escape;
 
 /// Attributes of one node, sorted by name.
 type Attributes = BTreeMap<String, String>;

@@ -1,114 +1,33 @@
 //! Writing results as SVG.
 //!
 //! The page keeps the units of the exemplar, layers carry Inkscape's labels, each exemplar element that is used stands once in `<defs>` and
-//! is placed by `<use>`; or every element is written out in place ([`Style::Expanded`]). The recipe travels in `<metadata>`.
+//! is placed by `<use>`; or every element is written out in place ([`Style::Expanded`](crate::svg::Style::Expanded)). The recipe travels in `<metadata>`.
 
-use std::{collections::BTreeSet, fmt::Write as _};
+use std::fmt::Write as _;
 
-use arabesque_core::{Border, Bounds, Domain, Drawn, Outline, Placement, Result, Vector, Warning};
+use arabesque_core::Result;
 
-use crate::{
-    svg::{
-        drawing::{Drawing, Page, Placed, Stacking},
-        read::host_document::Rest,
-        write::{
-            background::background,
-            curves::curves,
-            flat::{Flattener, Warp},
-            kept::free_prefix,
-            text::{escape, matrix, outline_data, rectangle, unit_name},
-        },
+use crate::svg::{
+    drawing::{HostDocument, Stacking},
+    write::{
+        background::background,
+        document::{DECLARATION, PREFIXES, Root, length_decimals},
+        sheet::{Sheet, Written},
+        writer::Writer,
     },
-    text::number::Decimals,
 };
-
-/// Namespace of the elements and attributes that only arabesque understands.
-pub const NAMESPACE: &str = "urn:arabesque:1";
-
-/// How placed elements are written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Style {
-    /// Each exemplar element once in `<defs>`, placed by `<use>`.
-    #[default]
-    Linked,
-    /// Every element written out in page coordinates, for cutters and plotters.
-    Expanded,
-}
-
-/// Bends deformed elements: `(placement, point of the exemplar) -> point of the output`.
-pub type Bend<'a> = dyn Fn(usize, Vector<2>) -> Vector<2> + 'a;
-
-/// Everything that one SVG file is made of.
-pub struct Sheet<'a> {
-    /// How the elements look.
-    pub drawing: &'a Drawing,
-    /// Where they lie.
-    pub placements: &'a [Placement<2>],
-    /// The strokes.
-    pub curves: &'a [Drawn<2>],
-    /// The looks of frozen placements and of what else is kept.
-    pub kept: Option<&'a Placed>,
-    /// The drawing of which a part is made anew: then the result is that file with the new in it.
-    pub host: Option<&'a Rest>,
-    /// Page of the result.
-    pub page: Page,
-    /// The filled domain, in page coordinates.
-    pub domain: &'a Domain<2>,
-    /// The outline of the domain where it is a shape.
-    pub shape: Option<&'a Outline<2>>,
-    /// Whether elements are cut at the border.
-    pub border: Border,
-    /// How deformed placements are bent; without it they are drawn rigid.
-    pub bend: Option<&'a Bend<'a>>,
-    /// Linked or expanded.
-    pub style: Style,
-    /// The recipe, as TOML.
-    pub recipe: Option<&'a str>,
-}
-
-/// An SVG text and what could not be written as asked.
-#[derive(Clone, Debug)]
-pub struct Written {
-    /// The file.
-    pub text: String,
-    /// Elements that stayed links or were clipped instead of cut.
-    pub warnings: Vec<Warning>,
-}
 
 /// Writes a result.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Input`] when the markup of an element cannot be taken apart for expanding or bending.
 pub fn write_svg(sheet: &Sheet<'_>) -> Result<Written> {
-    let extent = sheet.page.view.size();
-    let mut writer = Writer {
-        sheet,
-        decimals: Decimals::for_extent(extent[0].max(extent[1])),
-        prefix: free_prefix(sheet),
-        out: String::new(),
-        warnings: Vec::new(),
-    };
+    let mut writer = Writer::new(sheet);
     writer.document()?;
     Ok(Written { text: writer.out, warnings: writer.warnings })
 }
 
-/// The recipe in an SVG text that [`write_svg`] wrote.
-pub fn recipe_of(text: &str) -> Option<String> {
-    let document = roxmltree::Document::parse(text).ok()?;
-    let node = document.descendants().find(|n| n.has_tag_name((NAMESPACE, "recipe")))?;
-    Some(node.children().filter_map(|n| n.text()).collect())
-}
-
-/// A file on its way.
-pub(crate) struct Writer<'a> {
-    pub(crate) sheet: &'a Sheet<'a>,
-    decimals: Decimals,
-    pub(crate) prefix: String,
-    pub(crate) out: String,
-    warnings: Vec<Warning>,
-}
-
-impl<'a> Writer<'a> {
+impl Writer<'_> {
     fn document(&mut self) -> Result<()> {
         if let Some(host) = self.sheet.host {
             return self.hosted(host);
@@ -130,67 +49,35 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
+    /// Declaration and start tag.
     fn root(&mut self) {
-        let (view, size) = (self.sheet.page.view, self.sheet.page.view.size());
-        let d = self.decimals;
-        let per_user = self.sheet.page.unit_per_user;
-        let unit = unit_name(self.sheet.page.unit);
-        let lengths = Decimals::for_extent(size[0].max(size[1]) * per_user);
-        let _ = write!(
-            self.out,
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" \
-             xmlns:xlink=\"http://www.w3.org/1999/xlink\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
-             xmlns:arabesque=\"{NAMESPACE}\" version=\"1.1\" width=\"{}{unit}\" height=\"{}{unit}\" viewBox=\"{} {} {} {}\">\n",
-            lengths.format(size[0] * per_user),
-            lengths.format(size[1] * per_user),
-            d.format(view.min[0]),
-            d.format(view.min[1]),
-            d.format(size[0]),
-            d.format(size[1]),
-        );
+        let page = self.sheet.page;
+        let root = Root {
+            page,
+            decimals: self.decimals,
+            lengths: length_decimals(&page),
+            prefixes: &PREFIXES,
+            attributes: " version=\"1.1\"",
+        };
+        self.out.push_str(DECLARATION);
+        self.out.push_str(&root.start_tag());
     }
 
-    pub(crate) fn metadata(&mut self) {
-        if let Some(recipe) = self.sheet.recipe {
-            // "]]>" would end the section: it is cut in two.
-            let safe = recipe.replace("]]>", "]]]]><![CDATA[>");
-            let _ =
-                write!(self.out, "<metadata>\n<arabesque:recipe><![CDATA[{safe}]]></arabesque:recipe>\n</metadata>\n");
-        }
-    }
-
-    pub(crate) fn definitions(&mut self) {
-        self.out.push_str("<defs>\n");
-        let of_kept = self.sheet.kept.map(|k| &k.definitions);
-        let of_host = self.sheet.host.map(|h| &h.definitions);
-        for text in [Some(&self.sheet.drawing.definitions), of_kept, of_host].into_iter().flatten() {
-            if !text.trim().is_empty() {
-                self.out.push_str(text.trim_end());
-                self.out.push('\n');
-            }
-        }
-        if let Some(shape) = self.sheet.shape {
-            let _ = writeln!(
+    /// The new at the end of the file that it belongs to.
+    fn hosted(&mut self, host: &HostDocument) -> Result<()> {
+        self.out.push_str(&host.head);
+        self.metadata();
+        self.definitions();
+        if !host.moved.is_empty() {
+            let _ = write!(
                 self.out,
-                "<clipPath id=\"{}-domain\"><path d=\"{}\" clip-rule=\"evenodd\"/></clipPath>",
-                self.prefix,
-                outline_data(shape, self.decimals)
+                "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept\" id=\"{}-kept\">\n{}</g>\n",
+                self.prefix, host.moved
             );
         }
-        if self.sheet.style == Style::Linked {
-            for source in self.linked_sources() {
-                let markup = &self.sheet.drawing.fragments[source].markup;
-                let _ = writeln!(self.out, "<g id=\"{}-element-{source}\">{markup}</g>", self.prefix);
-            }
-        }
-        self.out.push_str("</defs>\n");
-    }
-
-    /// The exemplar elements that are placed by `<use>`, each once.
-    fn linked_sources(&self) -> BTreeSet<usize> {
-        let is_new = |p: &&Placement<2>| !self.is_hosted(p) && self.kept_markup(p).is_none();
-        let own = self.sheet.placements.iter().filter(|p| !self.is_bent(p)).filter(is_new);
-        own.map(|p| p.source).collect()
+        self.elements()?;
+        self.out.push_str(&host.tail);
+        Ok(())
     }
 
     fn background(&mut self) -> Result<()> {
@@ -204,152 +91,17 @@ impl<'a> Writer<'a> {
         );
         Ok(())
     }
-
-    pub(crate) fn elements(&mut self) -> Result<()> {
-        let _ = write!(
-            self.out,
-            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\" id=\"{}-output\"",
-            self.prefix
-        );
-        if self.clips_by_reference() {
-            let _ = write!(self.out, " clip-path=\"url(#{}-domain)\"", self.prefix);
-        }
-        self.out.push_str(">\n");
-        let cut = self.cut_outline();
-        let clip = self.sheet.shape.map(|_| format!("{}-domain", self.prefix));
-        let flattener = Flattener::new(self.sheet.drawing, cut.as_ref(), clip.as_deref(), self.decimals);
-        if self.sheet.drawing.stacking == Stacking::ElementsAbove {
-            self.curves();
-        }
-        let mut clipped = 0;
-        let sheet = self.sheet;
-        let is_new = |p: &Placement<2>| sheet.host.is_none() || p.frozen.is_none();
-        for (index, placement) in sheet.placements.iter().enumerate().filter(|(_, p)| is_new(p)) {
-            for (copy, shift) in self.copies(placement).into_iter().enumerate() {
-                let id = if copy == 0 {
-                    format!("{}-{index}", self.prefix)
-                } else {
-                    format!("{}-{index}-{copy}", self.prefix)
-                };
-                clipped += self.element(&flattener, index, &id, shift)?;
-            }
-        }
-        if self.sheet.drawing.stacking == Stacking::CurvesAbove {
-            self.curves();
-        }
-        self.out.push_str("</g>\n");
-        if clipped > 0 {
-            self.warnings.push(Warning::new(
-                format!("{clipped} pieces (pictures, text, linked parts, or pieces with gradients, clips or filters) were not flattened"),
-                "convert them to plain paths in the exemplar where the receiving machine needs that",
-            ));
-        }
-        Ok(())
-    }
-
-    fn curves(&mut self) {
-        let text = curves(self.sheet, &self.prefix, self.decimals.minus(1), &|bounds| self.shifts(bounds));
-        self.out.push_str(&text);
-    }
-
-    /// Writes one copy of one placement; returns how many of its pieces could not be flattened.
-    fn element(&mut self, flattener: &Flattener<'_>, index: usize, id: &str, shift: Vector<2>) -> Result<usize> {
-        let placement = &self.sheet.placements[index];
-        let exemplar = &self.sheet.drawing.exemplar;
-        let class = escape(&exemplar.classes[exemplar.elements[placement.source].class].name);
-        let data = format!("data-arabesque-source=\"{}\" data-arabesque-class=\"{class}\"", placement.source);
-        if let Some(markup) = self.kept_markup(placement) {
-            let _ = writeln!(
-                self.out,
-                "<g id=\"{id}\" {data} data-arabesque-kept=\"true\"{}>{markup}</g>",
-                self.shifted(shift)
-            );
-            return Ok(0);
-        }
-        let bent = self.is_bent(placement);
-        if self.sheet.style == Style::Linked && !bent {
-            let matrix = matrix(placement, shift, self.decimals);
-            let _ = writeln!(
-                self.out,
-                "<use id=\"{id}\" href=\"#{}-element-{}\" transform=\"{matrix}\" {data}/>",
-                self.prefix, placement.source
-            );
-            return Ok(0);
-        }
-        let bend = |p: Vector<2>| match self.sheet.bend {
-            Some(bend) => bend(index, p) + shift,
-            None => placement.transform.apply(p) + shift,
-        };
-        let mut moved = placement.transform;
-        moved.translation += shift;
-        let warp = if bent { Warp::Bent(&bend, moved) } else { Warp::Rigid(moved) };
-        let flat = flattener.element(placement.source, &warp, self.sheet.style)?;
-        if !flat.markup.is_empty() {
-            let _ = writeln!(self.out, "<g id=\"{id}\" {data}>{}</g>", flat.markup);
-        }
-        Ok(flat.kept_whole)
-    }
-
-    pub(crate) fn shifted(&self, shift: Vector<2>) -> String {
-        if shift == Vector::ZERO {
-            return String::new();
-        }
-        format!(" transform=\"translate({} {})\"", self.decimals.format(shift[0]), self.decimals.format(shift[1]))
-    }
-
-    fn is_bent(&self, placement: &Placement<2>) -> bool {
-        self.sheet.bend.is_some() && !placement.control.is_empty()
-    }
-
-    fn clips_by_reference(&self) -> bool {
-        self.sheet.border == Border::Clip && self.sheet.shape.is_some() && self.sheet.style == Style::Linked
-    }
-
-    /// What expanded elements are cut with: nothing on a torus, whose copies must stay whole to meet across the seam.
-    fn cut_outline(&self) -> Option<Outline<2>> {
-        if self.sheet.border != Border::Clip || self.sheet.style == Style::Linked {
-            return None;
-        }
-        match (self.sheet.shape, self.sheet.domain) {
-            (Some(shape), _) => Some(shape.clone()),
-            (None, Domain::Box(b)) => Some(rectangle(b)),
-            (None, _) => None,
-        }
-    }
-
-    /// The shifts under which a placement is seen.
-    fn copies(&self, placement: &Placement<2>) -> Vec<Vector<2>> {
-        if !matches!(self.sheet.domain, Domain::Torus(_)) {
-            return vec![Vector::ZERO];
-        }
-        let outline = &self.sheet.drawing.exemplar.elements[placement.source].outline;
-        self.shifts(&Bounds::around(outline.points().map(|p| placement.transform.apply(p))))
-    }
-
-    /// The shifts under which a box is seen: none, or on a torus one for every tile that it reaches into.
-    pub(crate) fn shifts(&self, bounds: &Bounds<2>) -> Vec<Vector<2>> {
-        let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
-        if bounds.is_empty() {
-            return vec![Vector::ZERO];
-        }
-        let size = tile.size();
-        let range = |k: usize| {
-            let first = ((tile.min[k] - bounds.max[k]) / size[k]).ceil() as i64;
-            let last = ((tile.max[k] - bounds.min[k]) / size[k]).floor() as i64;
-            first..=last
-        };
-        let mut shifts: Vec<_> = range(1).flat_map(|y| range(0).map(move |x| (x, y))).collect();
-        shifts.sort_by_key(|&(x, y)| (x != 0 || y != 0, y, x));
-        shifts.into_iter().map(|(x, y)| Vector::xy(x as f64 * size[0], y as f64 * size[1])).collect()
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use arabesque_core::{Border, Bounds, Domain, Exemplar, Placement, Similarity, Vector};
+
     use super::*;
-    use crate::svg::drawing::Unit;
-    use crate::svg::drawing::{Fragment, Job};
-    use arabesque_core::{Exemplar, Similarity};
+    use crate::svg::{
+        drawing::{Drawing, Fragment, Job, Page, Unit},
+        write::{document::recipe_of, sheet::Style, text::rectangle},
+    };
 
     /// Two dots at (2, 2) and (8, 8) in a 10 x 10 frame.
     fn drawing() -> Drawing {

@@ -7,12 +7,10 @@ use arabesque_core::Vector;
 use crate::{
     svg::{
         drawing::Page,
-        write::{
-            result::NAMESPACE,
-            text::{escape, unit_name},
-        },
+        namespace::NAMESPACE,
+        write::document::{DECLARATION, PREFIXES, Root, length_decimals, recipe_element},
     },
-    text::number::Decimals,
+    text::{number::Decimals, xml::escape},
 };
 
 /// How far cells reach under their neighbours so that no gap shows between them, in pixels of the picture as shown.
@@ -68,12 +66,8 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
     let decimals = Decimals::for_extent(size[0].max(size[1]));
     let mut out = root(sheet, decimals);
     if let Some(recipe) = sheet.recipe {
-        // "]]>" would end the section: it is cut in two.
-        let safe = recipe.replace("]]>", "]]]]><![CDATA[>");
-        let _ = writeln!(
-            out,
-            "  <metadata><arabesque:recipe xmlns:arabesque=\"{NAMESPACE}\"><![CDATA[{safe}]]></arabesque:recipe></metadata>"
-        );
+        let declared = format!(" xmlns:arabesque=\"{NAMESPACE}\"");
+        let _ = writeln!(out, "  <metadata>{}</metadata>", recipe_element(recipe, &declared));
     }
     out.push_str("  <defs>\n");
     for (k, picture) in sheet.pictures.iter().enumerate() {
@@ -118,21 +112,15 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
     out
 }
 
-fn root(sheet: &RibbonSheet<'_>, d: Decimals) -> String {
-    let (view, size, per_user) = (sheet.page.view, sheet.page.view.size(), sheet.page.unit_per_user);
-    let unit = unit_name(sheet.page.unit);
-    let lengths = Decimals::for_extent(size[0].max(size[1]) * per_user);
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" \
-         xmlns:xlink=\"http://www.w3.org/1999/xlink\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
-         version=\"1.1\" width=\"{}{unit}\" height=\"{}{unit}\" viewBox=\"{} {} {} {}\">\n",
-        lengths.format(size[0] * per_user),
-        lengths.format(size[1] * per_user),
-        d.format(view.min[0]),
-        d.format(view.min[1]),
-        d.format(size[0]),
-        d.format(size[1]),
-    )
+fn root(sheet: &RibbonSheet<'_>, decimals: Decimals) -> String {
+    let root = Root {
+        page: sheet.page,
+        decimals,
+        lengths: length_decimals(&sheet.page),
+        prefixes: &PREFIXES[..2],
+        attributes: " version=\"1.1\"",
+    };
+    format!("{DECLARATION}{}", root.start_tag())
 }
 
 fn matrix_text([a, b, c, d, e, f]: &[f64; 6], decimals: Decimals) -> String {
@@ -173,7 +161,7 @@ mod tests {
     use arabesque_core::Bounds;
 
     use super::*;
-    use crate::svg::{drawing::Unit, write::result::recipe_of};
+    use crate::svg::{drawing::Unit, write::document::recipe_of};
 
     #[test]
     fn sides_move_outwards_whatever_the_direction() {

@@ -6,10 +6,13 @@ use arabesque_core::Role;
 
 use crate::{
     svg::{
-        drawing::Drawing,
-        write::text::{escape, outline_data, rectangle, unit_name},
+        drawing::{Drawing, Page},
+        write::{
+            document::{PREFIXES, Root},
+            text::{outline_data, rectangle},
+        },
     },
-    text::{number::Decimals, path_data::path_data},
+    text::{number::Decimals, path_data::path_data, xml::escape},
 };
 
 /// Colours of the classes; further classes start again.
@@ -23,20 +26,10 @@ pub fn write_survey(drawing: &Drawing) -> String {
         exemplar.elements.iter().fold(drawing.page.view.union(&exemplar.window), |b, e| b.union(&e.outline.bounds()));
     let size = view.size();
     let d = Decimals::for_extent(size[0].max(size[1]));
-    let per_user = drawing.page.unit_per_user;
-    let unit = unit_name(drawing.page.unit);
     let line = (0.02 * exemplar.spacing()).min(0.003 * size[0].max(size[1]));
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         width=\"{}{unit}\" height=\"{}{unit}\" viewBox=\"{} {} {} {}\">\n<defs>{}</defs>\n<g opacity=\"0.3\">\n",
-        d.format(size[0] * per_user),
-        d.format(size[1] * per_user),
-        d.format(view.min[0]),
-        d.format(view.min[1]),
-        d.format(size[0]),
-        d.format(size[1]),
-        drawing.definitions
-    );
+    let page = Page { view, ..drawing.page };
+    let mut out = Root { page, decimals: d, lengths: d, prefixes: &PREFIXES[..1], attributes: "" }.start_tag();
+    let _ = write!(out, "<defs>{}</defs>\n<g opacity=\"0.3\">\n", drawing.definitions);
     out.extend(drawing.background.iter().chain(drawing.fragments.iter().map(|f| &f.markup)).map(|m| format!("{m}\n")));
     faded_curves(&mut out, drawing, d);
     let _ = writeln!(out, "</g>\n<g fill=\"none\" stroke-width=\"{}\">", d.plus(2).format(line));

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use arabesque_core::{Bounds, Outline, Placement, Vector};
 
-use crate::{svg::drawing::Unit, text::number::Decimals};
+use crate::text::number::Decimals;
 
 /// The transform of a placement, as an attribute value.
 pub(crate) fn matrix(placement: &Placement<2>, shift: Vector<2>, d: Decimals) -> String {
@@ -35,36 +35,4 @@ pub(crate) fn outline_data(outline: &Outline<2>, d: Decimals) -> String {
         data.push('Z');
     }
     data
-}
-
-/// The unit as SVG writes it.
-pub(crate) fn unit_name(unit: Unit) -> &'static str {
-    match unit {
-        Unit::Px => "",
-        Unit::Mm => "mm",
-        Unit::Cm => "cm",
-        Unit::In => "in",
-        Unit::Pt => "pt",
-        Unit::Pc => "pc",
-        Unit::Q => "Q",
-    }
-}
-
-/// Text as an attribute value.
-pub(crate) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' | '\r' | '\t' => {
-                let _ = write!(out, "&#{};", u32::from(c));
-            }
-            c if c < ' ' || c == '\u{FFFE}' || c == '\u{FFFF}' => out.push('\u{FFFD}'),
-            c => out.push(c),
-        }
-    }
-    out
 }

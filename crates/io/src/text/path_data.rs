@@ -1,6 +1,6 @@
 //! Paths of cubics as SVG path data, with few characters.
 
-use arabesque_core::{Cubic, Path, Vector};
+use arabesque_core::{Cubic, Path, Vector, segment};
 
 use crate::text::number::Decimals;
 
@@ -55,7 +55,8 @@ fn merged<const D: usize>(path: &Path<D>, tolerance: f64) -> Vec<Segment<D>> {
         }
         match &mut line {
             Some((start, between))
-                if between.len() < MERGED && between.iter().all(|p| off_chord(*p, *start, c[3]) <= tolerance) =>
+                if between.len() < MERGED
+                    && between.iter().all(|p| segment::distance((*start, c[3]), *p) <= tolerance) =>
             {
                 between.push(c[3]);
                 if let Some(Segment::Line(end)) = segments.last_mut() {
@@ -73,14 +74,7 @@ fn merged<const D: usize>(path: &Path<D>, tolerance: f64) -> Vec<Segment<D>> {
 
 /// Whether a cubic runs along its chord within `tolerance`, forwards only.
 pub(crate) fn is_straight<const D: usize>(c: &Cubic<D>, tolerance: f64) -> bool {
-    off_chord(c[1], c[0], c[3]) <= tolerance && off_chord(c[2], c[0], c[3]) <= tolerance
-}
-
-/// Distance of `p` from the line segment from `a` to `b`.
-fn off_chord<const D: usize>(p: Vector<D>, a: Vector<D>, b: Vector<D>) -> f64 {
-    let along = b - a;
-    let share = ((p - a).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    (p - (a + along * share)).norm()
+    c[1..3].iter().all(|&p| segment::distance((c[0], c[3]), p) <= tolerance)
 }
 
 fn push<const D: usize>(data: &mut String, points: &[Vector<D>], decimals: Decimals) {

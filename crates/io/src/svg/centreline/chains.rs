@@ -1,6 +1,6 @@
 //! Tracks chained through the nodes where one runs on straight into another.
 
-use arabesque_core::Vector;
+use arabesque_core::{Vector, pairing};
 
 use super::{
     graph::Graph,
@@ -40,21 +40,20 @@ fn partners(graph: &Graph, tracks: &[Track], width: f64) -> Vec<Option<usize>> {
     for lines in graph.incidence() {
         let ends: Vec<usize> = lines.iter().map(|&(k, ends)| 2 * k + usize::from(ends)).collect();
         let ways: Vec<Vector<2>> = ends.iter().map(|&e| outward(&tracks[e / 2], e % 2 == 1, width)).collect();
-        let mut pairs = Vec::new();
+        let mut wishes = Vec::new();
         for i in 0..ends.len() {
             for j in 0..i {
-                let turn = (-ways[i]).cross(ways[j]).atan2((-ways[i]).dot(ways[j])).abs();
+                let turn = (-ways[i]).angle_to(ways[j]).abs();
                 if turn < STRAIGHT_ON {
-                    pairs.push((turn, j, i));
+                    wishes.push((turn, i as u32, j as u32));
                 }
             }
         }
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, i, j) in pairs {
-            if partner[ends[i]].is_none() && partner[ends[j]].is_none() {
-                (partner[ends[i]], partner[ends[j]]) = (Some(ends[j]), Some(ends[i]));
-            }
-        }
+        pairing::pair_up(wishes, ends.len(), |i, j| {
+            let (i, j) = (ends[i as usize], ends[j as usize]);
+            (partner[i], partner[j]) = (Some(j), Some(i));
+            true
+        });
     }
     partner
 }
@@ -68,7 +67,7 @@ fn outward(track: &Track, from_end: bool, width: f64) -> Vector<2> {
     let at = |k: usize| track.stations[if from_end { n - 1 - k } else { k }].at;
     let far = (1..n).find(|&k| (at(k) - at(0)).norm() >= LEVER * width).unwrap_or(n - 1);
     let d = at(far) - at(0);
-    d * (1.0 / d.norm().max(f64::MIN_POSITIVE))
+    d.unit_or_zero()
 }
 
 fn walk(tracks: &[Track], partner: &[Option<usize>], used: &mut [bool], start: usize) -> (Vec<Station>, bool) {

@@ -1,6 +1,6 @@
 //! Corners of a chain of stations: found by the turn between the straight lines before and after.
 
-use arabesque_core::Vector;
+use arabesque_core::{Vector, arc_lengths, segment};
 
 use super::{
     nodes::{Straight, crossing, through},
@@ -44,13 +44,8 @@ pub(super) fn with_corners(chain: &[Station], closed: bool, width: f64) -> Vec<(
 
 /// Arc length at every station, and the whole length of a closed chain last.
 fn arcs(chain: &[Station], closed: bool) -> Vec<f64> {
-    let mut arcs = vec![0.0];
-    let closing = chain.last().zip(chain.first()).map(|(a, b)| (b.at - a.at).norm());
-    let steps = chain.windows(2).map(|w| (w[1].at - w[0].at).norm()).chain(closing.filter(|_| closed));
-    for step in steps {
-        arcs.push(arcs.last().copied().unwrap_or(0.0) + step);
-    }
-    arcs
+    let closing = chain.first().filter(|_| closed);
+    arc_lengths(&chain.iter().chain(closing).map(|station| station.at).collect::<Vec<_>>())
 }
 
 /// Turn and place of the corner at station `k`, where there is one.
@@ -58,7 +53,7 @@ fn corner(chain: &[Station], arcs: &[f64], (k, closed): (usize, bool), width: f6
     let before = side(chain, arcs, (k, closed), (width, -1))?;
     let after = side(chain, arcs, (k, closed), (width, 1))?;
     let (before, after) = ((before.0, -before.1), after);
-    let turn = before.1.cross(after.1).atan2(before.1.dot(after.1)).abs();
+    let turn = before.1.angle_to(after.1).abs();
     if turn < TURN {
         return None;
     }
@@ -101,9 +96,7 @@ fn nearest(chain: &[Station], closed: bool, k: usize, p: Vector<2>) -> f64 {
     let mut least = f64::INFINITY;
     for j in from..to {
         let (a, b) = (chain[j % n].at, chain[(j + 1) % n].at);
-        let along = b - a;
-        let share = ((p - a).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        least = least.min((p - (a + along * share)).norm());
+        least = least.min(segment::distance((a, b), p));
     }
     least
 }

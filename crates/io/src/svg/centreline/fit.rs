@@ -1,6 +1,6 @@
 //! Points to paths: straight runs as one segment, the rest as few smooth cubics.
 
-use arabesque_core::{Cubic, Path, Vector, cubic_at, straight};
+use arabesque_core::{Cubic, Path, Vector, arc_lengths, cubic_at, polyline_length, straight};
 
 /// Largest deviation of a fitted cubic, in widths.
 const DEVIATION: f64 = 0.04;
@@ -25,7 +25,7 @@ pub(super) fn fitted(points: &[(Vector<2>, bool)], closed: bool, width: f64) -> 
     let smooth_seam = closed && points.first().is_some_and(|p| !p.1);
     let line: Vec<Vector<2>> = points.iter().map(|p| p.0).collect();
     let n = line.len();
-    let seam = (smooth_seam && n > 3).then(|| unit(line[1] - line[n - 2]));
+    let seam = (smooth_seam && n > 3).then(|| (line[1] - line[n - 2]).unit_or_zero());
     let mut cuts: Vec<usize> = (1..n.saturating_sub(1)).filter(|&k| points[k].1).collect();
     cuts.insert(0, 0);
     cuts.push(n.saturating_sub(1));
@@ -42,7 +42,7 @@ fn most_bent(points: &[(Vector<2>, bool)]) -> usize {
     let n = points.len();
     let bend = |k: usize| {
         let (a, b) = (points[k].0 - points[(k + n - 1) % n].0, points[(k + 1) % n].0 - points[k].0);
-        a.cross(b).atan2(a.dot(b)).abs()
+        a.angle_to(b).abs()
     };
     (0..n).max_by(|&a, &b| bend(a).total_cmp(&bend(b)).then(b.cmp(&a))).unwrap_or(0)
 }
@@ -60,7 +60,7 @@ fn stretch(line: &[Vector<2>], ways: [Option<Vector<2>>; 2], width: f64) -> Vec<
     let runs = runs(line, width);
     let (mut from, mut way) = (0, ways[0]);
     for (a, b) in runs {
-        let along = unit(line[b] - line[a]);
+        let along = (line[b] - line[a]).unit_or_zero();
         if a > from {
             cubics.extend(smooth(&line[from..=a], [way, Some(along)], width));
         }
@@ -99,7 +99,7 @@ fn runs(line: &[Vector<2>], width: f64) -> Vec<(usize, usize)> {
         from = to;
     }
     let bent = |k: usize| {
-        let way = |k: usize| unit(line[found[k].1] - line[found[k].0]);
+        let way = |k: usize| (line[found[k].1] - line[found[k].0]).unit_or_zero();
         let same = |i: usize, j: usize| found[j].0 - found[i].1 <= 2 && way(i).dot(way(j)) > SAME_BEND.cos();
         (k > 0 && same(k - 1, k)) || (k + 1 < found.len() && same(k, k + 1))
     };
@@ -109,15 +109,11 @@ fn runs(line: &[Vector<2>], width: f64) -> Vec<(usize, usize)> {
 /// Whether the points run from the first to the last within `tolerance` of the line between them, not beyond it.
 fn is_straight(line: &[Vector<2>], tolerance: f64) -> bool {
     let (Some(&a), Some(&b)) = (line.first(), line.last()) else { return true };
-    let (way, length) = (unit(b - a), (b - a).norm());
+    let (way, length) = ((b - a).unit_or_zero(), (b - a).norm());
     line.iter().all(|&p| {
         let along = way.dot(p - a).clamp(0.0, length);
         (a + way * along - p).norm() <= tolerance
     })
-}
-
-fn unit(v: Vector<2>) -> Vector<2> {
-    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
 }
 
 /// Direction at the start of a line, from the parabola through its first points about a width apart.
@@ -127,9 +123,9 @@ fn start_way(line: &[Vector<2>], width: f64) -> Vector<2> {
     let (u, v) = (line[i] - line[0], line[j] - line[0]);
     let (s, t) = (u.norm(), v.norm());
     if j <= i || s <= 0.0 || t <= s {
-        return unit(v);
+        return v.unit_or_zero();
     }
-    unit(u * (t / s) - v * (s / t))
+    (u * (t / s) - v * (s / t)).unit_or_zero()
 }
 
 /// Fits cubics to a smooth line by least squares, and splits where one will not do.
@@ -150,7 +146,7 @@ fn smooth(line: &[Vector<2>], ways: [Option<Vector<2>>; 2], width: f64) -> Vec<C
     }
     // Never at the very ends, so that halving bounds the depth.
     let split = worst.clamp((n / 8).max(1), n - 1 - (n / 8).max(1));
-    let way = unit(line[split + 1] - line[split - 1]);
+    let way = (line[split + 1] - line[split - 1]).unit_or_zero();
     let mut cubics = smooth(&line[..=split], [Some(start), Some(way)], width);
     cubics.extend(smooth(&line[split..], [Some(way), Some(end)], width));
     cubics
@@ -174,10 +170,7 @@ fn best_cubic(line: &[Vector<2>], start: Vector<2>, end: Vector<2>) -> (Cubic<2>
 }
 
 fn chord_lengths(line: &[Vector<2>]) -> Vec<f64> {
-    let mut sums = vec![0.0];
-    for w in line.windows(2) {
-        sums.push(sums.last().copied().unwrap_or(0.0) + (w[1] - w[0]).norm());
-    }
+    let sums = arc_lengths(line);
     let total = sums.last().copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
     sums.into_iter().map(|s| s / total).collect()
 }
@@ -212,7 +205,7 @@ fn least_squares(line: &[Vector<2>], parameters: &[f64], start: Vector<2>, end: 
         x0 += s.dot(rest);
         x1 += e.dot(rest);
     }
-    let length = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum::<f64>();
+    let length = polyline_length(line);
     let determinant = c00 * c11 - c01 * c01;
     let (mut i, mut j) = ((x0 * c11 - x1 * c01) / determinant, (c00 * x1 - c01 * x0) / determinant);
     let useful = |h: f64| h.is_finite() && h > 1e-3 * length && h < 2.0 * length;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::Vector;
+use arabesque_core::{Vector, polyline_length};
 
 use super::raster::Raster;
 
@@ -20,7 +20,7 @@ pub(super) struct Line {
 
 impl Line {
     pub(super) fn length(&self) -> f64 {
-        let open: f64 = self.points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+        let open = polyline_length(&self.points);
         let seam = self.points.last().zip(self.points.first()).map_or(0.0, |(a, b)| (*b - *a).norm());
         if self.nodes.is_none() { open + seam } else { open }
     }

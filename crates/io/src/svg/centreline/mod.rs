@@ -100,7 +100,7 @@ fn is_spur(line: &Line, border: &Border, width: f64) -> bool {
     if length < 0.8 * width || length > 2.0 * width || (end - start).norm() < 0.5 * length {
         return length < 0.8 * width;
     }
-    let way = (end - start) * (1.0 / (end - start).norm());
+    let way = (end - start).unit();
     let side = Vector::xy(-way[1], way[0]);
     let at = start + (end - start) * 0.8;
     let across: f64 = [side, -side].iter().map(|&d| border.reach(at, d, width).unwrap_or(width)).sum();

@@ -1,6 +1,6 @@
 //! Where the lines meet and end, from the directions in which they run there.
 
-use arabesque_core::{Bounds, Vector};
+use arabesque_core::{Bounds, Vector, segment};
 
 use super::{
     border::Border,
@@ -48,10 +48,10 @@ fn meeting_point(lines: &[Straight], guess: Vector<2>) -> Vector<2> {
     Vector::xy((yy * rx - xy * ry) / determinant, (xx * ry - xy * rx) / determinant)
 }
 
-/// Where two lines cross; `None` for parallel ones.
+/// Where two lines cross; `None` for nearly parallel ones.
 pub(super) fn crossing(a: Straight, b: Straight) -> Option<Vector<2>> {
-    let turn = a.1.cross(b.1);
-    (turn.abs() > 1e-3).then(|| a.0 + a.1 * ((b.0 - a.0).cross(b.1) / turn))
+    let [along, _] = segment::lines_cross(a, b).filter(|_| a.1.cross(b.1).abs() > 1e-3)?;
+    Some(a.0 + a.1 * along)
 }
 
 /// The sound stations of a track near one of its ends, away from the end.

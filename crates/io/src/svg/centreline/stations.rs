@@ -1,6 +1,6 @@
 //! Places along the lines of a graph, moved to the middle between the borders on both sides.
 
-use arabesque_core::{Bounds, Vector};
+use arabesque_core::{Bounds, Vector, polyline_length};
 
 use super::{
     border::Border,
@@ -111,7 +111,7 @@ pub(super) fn evenly(points: &[Vector<2>], closed: bool, step: f64) -> Vec<Vecto
     if closed {
         line.extend(points.first());
     }
-    let length: f64 = line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let length = polyline_length(&line);
     let n = (length / step).round().max(2.0) as usize;
     let (mut result, mut passed) = (Vec::with_capacity(n + 1), 0.0);
     for w in line.windows(2) {
@@ -137,7 +137,7 @@ impl Track {
             Some(_) => (k.saturating_sub(1), (k + 1).min(n - 1)),
         };
         let d = self.stations[after].at - self.stations[before].at;
-        d * (1.0 / d.norm().max(f64::MIN_POSITIVE))
+        d.unit_or_zero()
     }
 
     /// Turn of the line between three stations before and three after.
@@ -147,7 +147,7 @@ impl Track {
             None => (self.way((k + n - 3 % n) % n), self.way((k + 3) % n)),
             Some(_) => (self.way(k.saturating_sub(3)), self.way((k + 3).min(n - 1))),
         };
-        before.cross(after).atan2(before.dot(after)).abs()
+        before.angle_to(after).abs()
     }
 
     /// Width and offset of the middle at a station.

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Error, FlowStroke, Result};
+use arabesque_core::{Error, FlowStroke, Result, polyline_length};
 use kurbo::Affine;
 
 use crate::svg::{
@@ -58,7 +58,7 @@ pub(crate) fn strokes(inker: &Inker<'_, '_>, nodes: &[(Affine, Rc<Node>)]) -> Re
                 if is_closed(elements) {
                     points.extend(points.first().copied());
                 }
-                let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+                let length = polyline_length(&points);
                 if length > inker.source.limits.extent {
                     found.push(points);
                 }

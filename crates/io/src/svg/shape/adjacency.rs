@@ -1,47 +1,6 @@
-//! Which things touch: sweeps over boxes, edges that meet, connected sets.
+//! Which things touch: sweeps over boxes, and edges that meet.
 
-use arabesque_core::{Bounds, Vector};
-
-/// Sets that grow together.
-#[derive(Clone, Debug)]
-pub(crate) struct Sets(Vec<usize>);
-
-impl Sets {
-    /// `count` sets of one member each.
-    pub(crate) fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    /// The smallest member of the set of `i`.
-    pub(crate) fn of(&mut self, i: usize) -> usize {
-        let mut root = i;
-        while self.0[root] != root {
-            root = self.0[root];
-        }
-        let mut at = i;
-        while self.0[at] != root {
-            at = std::mem::replace(&mut self.0[at], root);
-        }
-        root
-    }
-
-    /// Makes the sets of `i` and `j` one.
-    pub(crate) fn join(&mut self, i: usize, j: usize) {
-        let (i, j) = (self.of(i), self.of(j));
-        self.0[i.max(j)] = i.min(j);
-    }
-
-    /// The members of each set, both in rising order.
-    pub(crate) fn groups(mut self) -> Vec<Vec<usize>> {
-        let mut groups = vec![Vec::new(); self.0.len()];
-        for i in 0..self.0.len() {
-            let root = self.of(i);
-            groups[root].push(i);
-        }
-        groups.retain(|g| !g.is_empty());
-        groups
-    }
-}
+use arabesque_core::{Bounds, Segment, Vector, segment};
 
 /// Calls `visit(i, j)`, i before j in the sweep, for each pair of boxes that meet once each is grown by its reach.
 /// Stops when `visit` returns `false`.
@@ -62,7 +21,7 @@ pub(crate) fn meeting(boxes: &[Bounds<2>], reach: impl Fn(usize) -> f64, mut vis
 }
 
 /// An edge between two points.
-pub(crate) type Edge = (Vector<2>, Vector<2>);
+pub(crate) type Edge = Segment<2>;
 
 /// How many pairs of edges may still be looked at.
 #[derive(Debug)]
@@ -106,36 +65,18 @@ pub(crate) fn edge_distance(p: Edge, q: Edge) -> f64 {
     ends.into_iter().map(|(v, e)| point_distance(v, e)).fold(f64::INFINITY, f64::min)
 }
 
-fn point_distance(v: Vector<2>, (a, b): Edge) -> f64 {
-    let along = b - a;
-    let t = ((v - a).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    (v - a - along * t).norm()
-}
-
-/// The edges of a closed polygon.
-pub(crate) fn edges(ring: &[Vector<2>]) -> Vec<Edge> {
-    (0..ring.len()).map(|k| (ring[k], ring[(k + 1) % ring.len()])).collect()
-}
-
-/// How often a ring turns around `p`.
-pub(crate) fn winding(ring: &[Vector<2>], p: Vector<2>) -> i32 {
-    let mut turns = 0;
-    for (a, b) in edges(ring) {
-        if (a[1] <= p[1]) != (b[1] <= p[1]) {
-            let right = (b - a).cross(p - a) > 0.0;
-            turns += match (b[1] > a[1], right) {
-                (true, true) => 1,
-                (false, false) => -1,
-                _ => 0,
-            };
-        }
-    }
-    turns
+/// As `segment::distance`, but with another rounding, on which the joints of touching shapes depend.
+fn point_distance(v: Vector<2>, edge: Edge) -> f64 {
+    (v - edge.0 - (edge.1 - edge.0) * segment::nearest_share(edge, v)).norm()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn edges(ring: &[Vector<2>]) -> Vec<Edge> {
+        arabesque_core::ring::edges(ring).collect()
+    }
 
     fn square(x: f64, y: f64, side: f64) -> Vec<Vector<2>> {
         vec![Vector::xy(x, y), Vector::xy(x + side, y), Vector::xy(x + side, y + side), Vector::xy(x, y + side)]
@@ -164,14 +105,5 @@ mod tests {
         assert_eq!(edges_meet(&a, &b, 0.05, &mut budget), Some(false));
         assert_eq!(edges_meet(&a, &edges(&square(0.5, 0.5, 1.0)), 0.0, &mut budget), Some(true));
         assert_eq!(edges_meet(&a, &a, 0.0, &mut Budget(9)), None);
-    }
-
-    #[test]
-    fn winding_tells_inside_and_direction() {
-        let mut ring = square(0.0, 0.0, 2.0);
-        assert_eq!(winding(&ring, Vector::xy(1.0, 1.0)), 1);
-        assert_eq!(winding(&ring, Vector::xy(3.0, 1.0)), 0);
-        ring.reverse();
-        assert_eq!(winding(&ring, Vector::xy(1.0, 1.0)), -1);
     }
 }

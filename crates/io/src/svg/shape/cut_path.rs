@@ -1,6 +1,6 @@
 //! Cutting paths of cubics at the border of an area, their shape kept.
 
-use arabesque_core::{Bounds, Cubic, Outline, Path, Vector, cubic_at, cubic_part};
+use arabesque_core::{Bounds, Cubic, Outline, Path, Segment, Vector, cubic_at, cubic_part, segment};
 use kurbo::{CubicBez, Line, PathSeg};
 
 /// Which part of a path is wanted.
@@ -51,12 +51,12 @@ pub fn cut(path: &Path<2>, area: &Outline<2>, side: Side) -> Option<Vec<Path<2>>
 }
 
 /// Parameters at which a cubic crosses the edges, in rising order, with 0 before and 1 after them.
-fn crossings(cubic: &Cubic<2>, edges: &[((Vector<2>, Vector<2>), Bounds<2>)]) -> Vec<f64> {
+fn crossings(cubic: &Cubic<2>, edges: &[(Segment<2>, Bounds<2>)]) -> Vec<f64> {
     let extent = Bounds::around(cubic.iter().copied());
     let mut cuts = vec![0.0, 1.0];
     for ((a, b), _) in edges.iter().filter(|(_, around)| around.intersects(&extent)) {
         if is_linear(cubic) {
-            cuts.extend(line_crossing(cubic[0], cubic[3], *a, *b));
+            cuts.extend(line_crossing((cubic[0], cubic[3]), (*a, *b)));
         } else {
             let [p0, p1, p2, p3] = cubic.map(|p| kurbo::Point::new(p[0], p[1]));
             let edge = Line::new((a[0], a[1]), (b[0], b[1]));
@@ -77,13 +77,10 @@ fn is_linear(c: &Cubic<2>) -> bool {
     off(c[1], 1.0 / 3.0) && off(c[2], 2.0 / 3.0)
 }
 
-/// The share of the line from `p` to `q` at which it crosses the one from `a` to `b`.
-fn line_crossing(p: Vector<2>, q: Vector<2>, a: Vector<2>, b: Vector<2>) -> Option<f64> {
-    let (along, edge) = (q - p, b - a);
-    let denominator = along.cross(edge);
-    let t = (a - p).cross(edge) / denominator;
-    let u = (a - p).cross(along) / denominator;
-    (denominator != 0.0 && (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u)).then_some(t)
+/// The share of a line at which it crosses an edge, the ends of either included.
+fn line_crossing(line: Segment<2>, edge: Segment<2>) -> Option<f64> {
+    let [t, u] = segment::crossing(line, edge)?;
+    ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u)).then_some(t)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Measured, Path, Vector};
+use arabesque_core::{Bounds, Measured, Path, Vector, segment};
 
 /// Strokes nearer to each other than this share of the diagonal of the window lie on top of each other.
 const NEAR: f64 = 1e-4;
@@ -58,12 +58,7 @@ impl Seen {
 
 /// Distance of a point from the chords of a line.
 fn distance(p: Vector<2>, line: &Measured<2>) -> f64 {
-    let chord = |w: &[Vector<2>]| {
-        let way = w[1] - w[0];
-        let share = ((p - w[0]).dot(way) / way.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        (w[0] + way * share - p).norm()
-    };
-    line.points().windows(2).map(chord).fold(f64::INFINITY, f64::min)
+    line.points().windows(2).map(|w| segment::distance((w[0], w[1]), p)).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, Vector};
+use arabesque_core::{Bounds, DisjointSets, Vector};
 use kurbo::Affine;
 
 use crate::svg::{
@@ -11,10 +11,7 @@ use crate::svg::{
         scene::{Content, Node},
         style::Property as P,
     },
-    shape::{
-        adjacency::{Sets, meeting},
-        stroke::growth,
-    },
+    shape::{adjacency::meeting, stroke::growth},
 };
 
 /// Box around the control points of what can be seen of a node, strokes included; `parent` leads from its parent to the root.
@@ -59,7 +56,7 @@ pub(crate) fn clusters(boxes: &[Bounds<2>], share: f64) -> usize {
         let d = (0..2).map(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0));
         d.map(|v| v * v).sum::<f64>().sqrt()
     };
-    let mut sets = Sets::new(boxes.len());
+    let mut sets = DisjointSets::new(boxes.len());
     meeting(
         boxes,
         |i| share * longer(&boxes[i]),

@@ -1,6 +1,6 @@
 //! Filled paths as polygons.
 
-use arabesque_core::{FillRule, Outline, Ring, Vector, ring_area};
+use arabesque_core::{FillRule, Outline, Ring, Vector, ring};
 use kurbo::{Affine, BezPath, PathEl};
 
 /// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
@@ -28,7 +28,7 @@ pub(crate) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
         [] => Outline::default(),
         [ring] if is_convex(ring) => {
             let mut ring = ring.clone();
-            if ring_area(&ring) < 0.0 {
+            if ring::area(&ring) < 0.0 {
                 ring.reverse();
             }
             Outline { rings: vec![ring] }

@@ -1,6 +1,6 @@
 //! Fewer nodes for the same line: what lies between two corners is fitted anew.
 
-use arabesque_core::{Cubic, Path, Vector, cubic_at, straight};
+use arabesque_core::{Cubic, Path, Vector, cubic_at, segment, straight};
 use kurbo::{BezPath, CubicBez, PathSeg, Point, fit_to_cubic, simplify::SimplifyBezPath};
 
 use crate::text::path_data::is_straight;
@@ -44,7 +44,7 @@ pub fn simplified(path: &Path<2>, tolerance: f64) -> Path<2> {
 /// The angle between the end of one cubic and the start of the next.
 fn turn(a: &Cubic<2>, b: &Cubic<2>) -> f64 {
     let (u, v) = (direction([a[3], a[2], a[1], a[0]]) * -1.0, direction(*b));
-    u.cross(v).atan2(u.dot(v)).abs()
+    u.angle_to(v).abs()
 }
 
 /// The direction in which a cubic leaves its first point.
@@ -146,13 +146,7 @@ const COMPARED: usize = 6;
 /// Whether no point of `old` is farther than `tolerance` from `new`.
 fn deviates_at_most(old: &[Cubic<2>], new: &[Cubic<2>], tolerance: f64) -> bool {
     let line = Path { cubics: new.to_vec(), closed: false }.flatten(0.2 * tolerance);
-    let near = |p: Vector<2>| {
-        line.windows(2).any(|w| {
-            let along = w[1] - w[0];
-            let share = ((p - w[0]).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            (p - (w[0] + along * share)).norm() <= tolerance
-        })
-    };
+    let near = |p: Vector<2>| line.windows(2).any(|w| segment::distance((w[0], w[1]), p) <= tolerance);
     let samples = |c: &Cubic<2>| {
         let ends = if is_straight(c, 0.01 * tolerance) { 1 } else { COMPARED };
         (1..=ends).all(|k| near(cubic_at(c, k as f64 / ends as f64)))

@@ -6,12 +6,12 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Bounds, Result, Vector};
+use arabesque_core::{Bounds, DisjointSets, Result, Vector, ring};
 
 use crate::svg::{
     centreline::centrelines,
     shape::{
-        adjacency::{Budget, Edge, Sets, edge_distance, meeting, winding},
+        adjacency::{Budget, Edge, edge_distance, meeting},
         painted_area::Inker,
     },
     understand::item::{Item, Kind, Origin},
@@ -116,9 +116,9 @@ fn nested(items: &[Item], homes: &[(usize, usize)], frame: Bounds<2>) -> Vec<Ite
     let may_hold = |home: usize| items[home].kind == Kind::Element;
     let is_around = |home: usize, k: usize| {
         let point = items[k].outline.points().next();
-        may_hold(home) && point.is_some_and(|p| items[home].outline.rings.iter().any(|ring| winding(ring, p) != 0))
+        may_hold(home) && point.is_some_and(|p| items[home].outline.rings.iter().any(|r| ring::winding(r, p) != 0))
     };
-    let mut sets = Sets::new(items.len());
+    let mut sets = DisjointSets::new(items.len());
     homes.iter().filter(|(_, home)| may_hold(*home)).for_each(|&(k, home)| sets.join(k, home));
     meeting(
         &boxes,
@@ -149,7 +149,7 @@ fn grouped(items: &[Item], tolerance: f64, test: impl Fn(Edge, Edge) -> bool) ->
     let colours: Vec<String> = items.iter().map(|item| item.ink.colours_key()).collect();
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
-    let mut sets = Sets::new(items.len());
+    let mut sets = DisjointSets::new(items.len());
     let mut budget = Budget(EDGE_PAIRS);
     meeting(
         &boxes,

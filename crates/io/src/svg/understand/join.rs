@@ -1,12 +1,12 @@
 //! Joining what belongs together: strokes that touch, and pieces of one colour that abut.
 
-use arabesque_core::{Bounds, Result};
+use arabesque_core::{Bounds, DisjointSets, Result};
 
 use crate::svg::{
     options::Method,
     parse::notes::Note,
     shape::{
-        adjacency::{Budget, Edge, Sets, edges_meet, meeting},
+        adjacency::{Budget, Edge, edges_meet, meeting},
         extent::longer,
         painted_area::Inker,
     },
@@ -52,7 +52,7 @@ fn connected(
 ) -> Vec<Vec<usize>> {
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
-    let mut sets = Sets::new(items.len());
+    let mut sets = DisjointSets::new(items.len());
     let mut budget = Budget(EDGE_PAIRS);
     meeting(
         &boxes,

@@ -3,11 +3,11 @@
 //! Subpaths whose borders meet belong together; so does a subpath that lies in the filled area of others. What lies in a hole
 //! is a piece of its own, and knows the piece that it lies in.
 
-use arabesque_core::{Bounds, FillRule, Ring, ring_area};
+use arabesque_core::{Bounds, DisjointSets, FillRule, Ring, ring};
 use kurbo::{BezPath, PathEl};
 
 use crate::svg::shape::{
-    adjacency::{Budget, Edge, Sets, edges, edges_meet, meeting, winding},
+    adjacency::{Budget, Edge, edges_meet, meeting},
     flatten::flattened,
 };
 
@@ -27,8 +27,8 @@ pub(crate) struct Piece {
 pub(crate) fn pieces(path: &BezPath, rule: FillRule) -> Option<Vec<Piece>> {
     let rings: Vec<Ring<2>> = path.subpaths().map(flattened).collect();
     let boxes: Vec<_> = rings.iter().map(|r| Bounds::around(r.iter().copied())).collect();
-    let outlines: Vec<Vec<Edge>> = rings.iter().map(|r| edges(r)).collect();
-    let mut sets = Sets::new(rings.len());
+    let outlines: Vec<Vec<Edge>> = rings.iter().map(|r| ring::edges(r).collect()).collect();
+    let mut sets = DisjointSets::new(rings.len());
     let mut budget = Budget(EDGE_PAIRS);
     let mut tangled = false;
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); rings.len()];
@@ -59,13 +59,13 @@ pub(crate) fn pieces(path: &BezPath, rule: FillRule) -> Option<Vec<Piece>> {
 }
 
 /// Joins each ring that lies in a filled area to that area. Returns for every ring in a hole the innermost ring around it.
-fn nest(rings: &[Ring<2>], around: &[Vec<usize>], rule: FillRule, sets: &mut Sets) -> Vec<Option<usize>> {
-    let areas: Vec<f64> = rings.iter().map(|r| ring_area(r).abs()).collect();
+fn nest(rings: &[Ring<2>], around: &[Vec<usize>], rule: FillRule, sets: &mut DisjointSets) -> Vec<Option<usize>> {
+    let areas: Vec<f64> = rings.iter().map(|r| ring::area(r).abs()).collect();
     let mut homes = vec![None; rings.len()];
-    for (inner, ring) in rings.iter().enumerate() {
-        let Some(&p) = ring.first() else { continue };
+    for (inner, points) in rings.iter().enumerate() {
+        let Some(&p) = points.first() else { continue };
         let turns: Vec<(usize, i32)> =
-            around[inner].iter().map(|&o| (o, winding(&rings[o], p))).filter(|(_, w)| *w != 0).collect();
+            around[inner].iter().map(|&o| (o, ring::winding(&rings[o], p))).filter(|(_, w)| *w != 0).collect();
         let Some(&(nearest, _)) = turns.iter().min_by(|a, b| areas[a.0].total_cmp(&areas[b.0]).then(a.0.cmp(&b.0)))
         else {
             continue;
@@ -84,7 +84,7 @@ fn nest(rings: &[Ring<2>], around: &[Vec<usize>], rule: FillRule, sets: &mut Set
     homes
 }
 
-fn gather(sets: Sets, homes: &[Option<usize>]) -> Vec<Piece> {
+fn gather(sets: DisjointSets, homes: &[Option<usize>]) -> Vec<Piece> {
     let groups = sets.groups();
     let mut piece_of = vec![0; homes.len()];
     for (k, group) in groups.iter().enumerate() {

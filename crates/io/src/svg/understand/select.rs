@@ -11,7 +11,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, FillRule, Outline, Result};
+use arabesque_core::{Bounds, DisjointSets, FillRule, Outline, Result, ring};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
@@ -25,7 +25,6 @@ use crate::svg::{
         scene::{Content, Node},
     },
     shape::{
-        adjacency::Sets,
         extent::{bounds, clusters, longer, sole_shape},
         flatten,
         painted_area::Inker,
@@ -254,7 +253,7 @@ impl Selector<'_, '_, '_> {
     /// Takes the pieces of a compound path, those in the hole of another with it.
     fn split(&mut self, compound: &Rc<Compound>) -> Result<()> {
         compound.note_losses(self.inker);
-        let mut sets = Sets::new(compound.pieces.len());
+        let mut sets = DisjointSets::new(compound.pieces.len());
         for (k, p) in compound.pieces.iter().enumerate() {
             if let Some(home) = p.within.filter(|&home| self.share(&compound.boxes[home]) < HALF) {
                 sets.join(k, home);
@@ -279,6 +278,6 @@ fn is_filled(leaf: &Node, geometry: &Geometry) -> bool {
     }
     let extent = geometry.path.control_box();
     let rings = flatten::rings(&geometry.path);
-    let area: f64 = rings.iter().map(|r| arabesque_core::ring_area(r).abs()).sum();
+    let area: f64 = rings.iter().map(|r| ring::area(r).abs()).sum();
     area > 1e-9 * (extent.width() + extent.height()).powi(2)
 }

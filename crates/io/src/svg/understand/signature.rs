@@ -130,7 +130,7 @@ fn radial_profile(outline: &Outline<2>, centre: Vector<2>) -> [f64; DIRECTIONS] 
     for (a, b) in outline.edges() {
         let (a, b) = (a - centre, b - centre);
         let start = a[1].atan2(a[0]) * per_radian;
-        let span = a.cross(b).atan2(a.dot(b)) * per_radian;
+        let span = a.angle_to(b) * per_radian;
         let (low, high) = if span < 0.0 { (start + span, start) } else { (start, start + span) };
         for k in low.ceil() as i64..=high.floor() as i64 {
             let angle = k as f64 / per_radian;

@@ -1,6 +1,6 @@
 //! Cutting painted paths at the border of the domain.
 
-use arabesque_core::{FillRule, Outline, Ring, Shape, Vector};
+use arabesque_core::{FillRule, Outline, Ring, Shape, Vector, segment};
 use kurbo::{BezPath, PathEl};
 
 /// The border that elements are cut at.
@@ -99,13 +99,9 @@ impl Cutter {
 
     /// Where the segment from `a` to `b` crosses the border, as shares of it.
     fn crossings(&self, a: Vector<2>, b: Vector<2>) -> Vec<f64> {
-        let along = b - a;
-        let share = |(c, d): (Vector<2>, Vector<2>)| {
-            let edge = d - c;
-            let denominator = along.cross(edge);
-            let t = (c - a).cross(edge) / denominator;
-            let u = (c - a).cross(along) / denominator;
-            (denominator != 0.0 && t > 0.0 && t < 1.0 && (0.0..=1.0).contains(&u)).then_some(t)
+        let share = |edge| {
+            let [t, u] = segment::crossing((a, b), edge)?;
+            (t > 0.0 && t < 1.0 && (0.0..=1.0).contains(&u)).then_some(t)
         };
         self.shape.outline().edges().filter_map(share).collect()
     }

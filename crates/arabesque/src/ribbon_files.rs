@@ -1,9 +1,8 @@
 //! Ribbons as files.
 
-use arabesque_core::{Bounds, Error, Result, Vector};
+use arabesque_core::{Bounds, Decimals, Error, Result, Vector};
 use arabesque_io::{
     gltf::{self, Part},
-    number::Decimals,
     obj_strip, png, ribbon_json,
     strip::Strip,
     svg::{Area, Cell, Embedded, Filled, Look, Page, RibbonSheet, areas_markup, write_ribbons},

@@ -38,8 +38,7 @@ pub use limits::Limits;
 pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
 pub use random::{Stage, Stream};
 pub use region::{
-    Domain, FillRule, Outline, Region, Ring, Shape,
-    ring::{self, area as ring_area},
+    Domain, FillRule, Outline, Region, Ring, Shape, ring,
     segment::{self, Segment},
 };
 pub use run::{

@@ -15,4 +15,4 @@ pub use json::ribbon as ribbon_json;
 pub use mesh::{gltf, obj, obj::strips as obj_strip, strip};
 pub use raster::{field as picture, image, mask, png};
 pub use table::csv;
-pub use text::{number, path_data, suggest as nearest};
+pub use text::{path_data, suggest as nearest};

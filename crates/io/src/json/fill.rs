@@ -1,9 +1,9 @@
 //! JSON: placements and strokes with their sources, and how the run went.
 
-use arabesque_core::{Bounds, Drawn, EnergyPoint, Exemplar, Measured, Outcome, Placement, StopReason};
+use arabesque_core::{Bounds, Decimals, Drawn, EnergyPoint, Exemplar, Measured, Outcome, Placement, StopReason};
 use serde::Serialize;
 
-use crate::text::{number::Decimals, path_data::path_data};
+use crate::text::path_data::path_data;
 
 /// What the file says beside the placements.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,7 @@
 //! JSON: the pieces of ribbons with their texture coordinates.
 
-use arabesque_core::{Patch, Result, Warning};
+use arabesque_core::{Decimals, Patch, Result, Warning};
 use serde::Serialize;
-
-use crate::text::number::Decimals;
 
 /// One ribbon.
 #[derive(Clone, Debug)]

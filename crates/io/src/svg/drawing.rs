@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Bounds, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
+use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
 
-use crate::text::{number::Decimals, path_data::path_data};
+use crate::text::path_data::path_data;
 
 /// Physical unit of a page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

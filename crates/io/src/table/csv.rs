@@ -6,9 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Error, Exemplar, Limits, Placement, Result, Vector};
-
-use crate::text::number::Decimals;
+use arabesque_core::{Bounds, Decimals, Error, Exemplar, Limits, Placement, Result, Vector};
 
 /// Points of a file, by dimension.
 #[derive(Clone, Debug)]

@@ -1,8 +1,6 @@
 //! Paths of cubics as SVG path data, with few characters.
 
-use arabesque_core::{Cubic, Path, Vector, segment};
-
-use crate::text::number::Decimals;
+use arabesque_core::{Cubic, Decimals, Path, Vector, segment};
 
 /// Path data of a path: straight segments as `L`, those in one line merged, all others as `C`, a closed path with `Z`.
 ///

@@ -6,9 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Class, Curve, Drawn, Error, Exemplar, Limits, Path, Result, Vector, Warning};
+use arabesque_core::{Bounds, Class, Curve, Decimals, Drawn, Error, Exemplar, Limits, Path, Result, Vector, Warning};
 
-use crate::{table::csv, text::number::Decimals};
+use crate::table::csv;
 
 /// The style of polylines that no `o` or `g` precedes.
 const ONLY_STYLE: &str = "curve";

@@ -1,6 +1,8 @@
 //! OBJ: textured strips.
 
-use crate::{mesh::gltf::Part, table::csv, text::number::Decimals};
+use arabesque_core::Decimals;
+
+use crate::{mesh::gltf::Part, table::csv};
 
 /// Comment that files of strips start with.
 pub const TITLE: &str = "# ribbons as textured strips";

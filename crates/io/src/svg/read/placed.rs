@@ -2,31 +2,30 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Similarity, Vector};
+use arabesque_core::{
+    Bounds, Decimals, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Similarity, Vector,
+};
 use kurbo::Affine;
 
-use crate::{
-    svg::{
-        drawing::{Drawing, Fragment, Page, Placed, Stroke, Unit},
-        options::{Method, ReadOptions},
-        parse::{definitions::Definitions, meta::Meta},
-        read::document::{Document, Opened},
-        shape::{
-            cut_path::{Side, cut},
-            extent::bounds,
-            painted_area::Inker,
-        },
-        understand::{
-            classes::{self, WOBBLE},
-            curves::{Curves, Gatherer},
-            fragment::fragment,
-            item::{Item, Kind},
-            select::select,
-            signature::Signature,
-            surroundings::Context,
-        },
+use crate::svg::{
+    drawing::{Drawing, Fragment, Page, Placed, Stroke, Unit},
+    options::{Method, ReadOptions},
+    parse::{definitions::Definitions, meta::Meta},
+    read::document::{Document, Opened},
+    shape::{
+        cut_path::{Side, cut},
+        extent::bounds,
+        painted_area::Inker,
     },
-    text::number::Decimals,
+    understand::{
+        classes::{self, WOBBLE},
+        curves::{Curves, Gatherer},
+        fragment::fragment,
+        item::{Item, Kind},
+        select::select,
+        signature::Signature,
+        surroundings::Context,
+    },
 };
 
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.

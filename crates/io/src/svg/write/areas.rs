@@ -2,12 +2,9 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Outline, Path, Vector};
+use arabesque_core::{Decimals, Outline, Path, Vector};
 
-use crate::{
-    svg::shape::simplify::simplified,
-    text::{number::Decimals, path_data::path_data},
-};
+use crate::{svg::shape::simplify::simplified, text::path_data::path_data};
 
 /// An area filled with one colour.
 #[derive(Clone, Debug)]

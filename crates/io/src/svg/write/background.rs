@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Domain, Error, Outline, Result, Vector, Warning};
+use arabesque_core::{Decimals, Domain, Error, Outline, Result, Vector, Warning};
 
 use crate::{
     svg::write::{
@@ -10,7 +10,7 @@ use crate::{
         sheet::Sheet,
         text::{outline_data, rectangle},
     },
-    text::{number::Decimals, xml::escape},
+    text::xml::escape,
 };
 
 /// Repeats beyond this number would make a file that nobody can open.

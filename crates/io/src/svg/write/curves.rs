@@ -2,11 +2,11 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use arabesque_core::{Bounds, Drawn, Vector};
+use arabesque_core::{Bounds, Decimals, Drawn, Vector};
 
 use crate::{
     svg::{drawing::Stroke, parse::meta::part, write::sheet::Sheet},
-    text::{number::Decimals, path_data::path_data, xml::escape},
+    text::{path_data::path_data, xml::escape},
 };
 
 /// Widths that differ by less than this share are the same.

@@ -1,11 +1,10 @@
 //! The frame of an SVG document: the start tag of its root, and the recipe that it carries.
 
-use crate::{
-    svg::{
-        drawing::Page,
-        namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
-    },
-    text::number::Decimals,
+use arabesque_core::Decimals;
+
+use crate::svg::{
+    drawing::Page,
+    namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
 };
 
 /// What files start with.

@@ -2,7 +2,7 @@
 
 use std::{cell::OnceCell, fmt::Write as _};
 
-use arabesque_core::{FillRule, Outline, Result, Similarity, Vector};
+use arabesque_core::{Decimals, FillRule, Outline, Result, Similarity, Vector};
 use kurbo::{Affine, BezPath, CubicBez, ParamCurve, PathEl, PathSeg, Point};
 
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
             sheet::Style,
         },
     },
-    text::{number::Decimals, xml::escape},
+    text::xml::escape,
 };
 
 /// How an element gets from the exemplar to the page.

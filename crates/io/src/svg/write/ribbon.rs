@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::Vector;
+use arabesque_core::{Decimals, Vector};
 
 use crate::{
     svg::{
@@ -10,7 +10,7 @@ use crate::{
         namespace::NAMESPACE,
         write::document::{DECLARATION, PREFIXES, Root, length_decimals, recipe_element},
     },
-    text::{number::Decimals, xml::escape},
+    text::xml::escape,
 };
 
 /// How far cells reach under their neighbours so that no gap shows between them, in pixels of the picture as shown.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::Role;
+use arabesque_core::{Decimals, Role};
 
 use crate::{
     svg::{
@@ -12,7 +12,7 @@ use crate::{
             text::{outline_data, rectangle},
         },
     },
-    text::{number::Decimals, path_data::path_data, xml::escape},
+    text::{path_data::path_data, xml::escape},
 };
 
 /// Colours of the classes; further classes start again.

@@ -2,9 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Bounds, Outline, Placement, Vector};
-
-use crate::text::number::Decimals;
+use arabesque_core::{Bounds, Decimals, Outline, Placement, Vector};
 
 /// The transform of a placement, as an attribute value.
 pub(crate) fn matrix(placement: &Placement<2>, shift: Vector<2>, d: Decimals) -> String {

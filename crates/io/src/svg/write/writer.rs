@@ -2,15 +2,12 @@
 
 use std::{collections::BTreeSet, fmt::Write as _};
 
-use arabesque_core::{Bounds, Domain, Placement, Vector, Warning};
+use arabesque_core::{Bounds, Decimals, Domain, Placement, Vector, Warning};
 
-use crate::{
-    svg::write::{
-        document::recipe_element,
-        sheet::{Sheet, Style},
-        text::outline_data,
-    },
-    text::number::Decimals,
+use crate::svg::write::{
+    document::recipe_element,
+    sheet::{Sheet, Style},
+    text::outline_data,
 };
 
 /// A file on its way.

@@ -1,13 +1,11 @@
 //! The mean distance scale of an exemplar of any kind.
 
-use arabesque_core::{Bounds, Exemplar, Measured, Path};
+use arabesque_core::{Bounds, Exemplar, Measured, Path, net_line_spacing};
 
 /// A path that leaves the window is looked at in at least so many places.
 const FEWEST_STEPS: usize = 500;
 
 /// Mean distance of elements, or of the lines of a net, whichever is smaller.
-///
-/// A square net of lines `s` apart has a length of `2 / s` for each unit of area, a cubic one `3 / s^2` for each unit of volume.
 pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
     let of_elements = exemplar.spacing();
     if exemplar.curves.is_empty() {
@@ -15,8 +13,7 @@ pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
     }
     let size = exemplar.window.size().norm();
     let length: f64 = exemplar.curves.iter().map(|c| length_inside(&c.path, &exemplar.window, 1e-3 * size)).sum();
-    let of_curves =
-        (D as f64 * exemplar.window.measure() / length.max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0)).min(size);
+    let of_curves = net_line_spacing::<D>(exemplar.window.measure(), length).min(size);
     if exemplar.elements.is_empty() { of_curves } else { of_elements.min(of_curves) }
 }
 

@@ -18,24 +18,34 @@ mod field;
 mod image;
 mod index;
 mod limits;
+mod numerics;
 pub mod options;
 mod random;
 mod region;
 mod run;
 mod space;
 pub mod suggest;
+mod text;
 
-pub use curve::{Cubic, Measured, Path, cubic_at, cubic_part, straight};
+pub use curve::{
+    Cubic, Measured, Path, arc_lengths, cubic_at, cubic_part, net_line_spacing, parallel_line_spacing, polyline_length,
+    spans_inside, straight,
+};
 pub use error::{Error, Result};
 pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
-pub use index::GridIndex;
+pub use index::{Buckets, GridIndex, Lattice};
 pub use limits::Limits;
+pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
 pub use random::{Stage, Stream};
-pub use region::{Domain, FillRule, Outline, Region, Ring, Shape, ring_area};
+pub use region::{
+    Domain, FillRule, Outline, Region, Ring, Shape, ring,
+    segment::{self, Segment},
+};
 pub use run::{
     Border, Drawn, EnergyPoint, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason, Unobserved,
     Warning, Watch,
 };
-pub use space::{Bounds, Matrix, Similarity, Vector};
+pub use space::{Bounds, Matrix, Similarity, Vector, Warp, cell_index, cell_place, warp};
+pub use text::Decimals;

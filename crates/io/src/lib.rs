@@ -1,22 +1,18 @@
 //! Files to core types and back: SVG, PNG, CSV, OBJ, GLB, JSON.
 //!
-//! One module a format. Everything read is held to [`arabesque_core::Limits`]; everything written is the same bytes for the same result.
-//! Only [`mod@file`] touches the file system: the others turn bytes into values and values into bytes.
+//! A folder for each kind of format. Everything read is held to [`arabesque_core::Limits`]; everything written is the same bytes for the
+//! same result. Only [`mod@file`] touches the file system: the others turn bytes into values and values into bytes.
 
-pub mod centreline;
-pub mod csv;
 pub mod file;
-pub mod gltf;
-pub mod image;
 pub mod json;
-pub mod mask;
-pub mod nearest;
-pub mod number;
-pub mod obj;
-pub mod obj_strip;
-pub mod path_data;
-pub mod picture;
-pub mod png;
-pub mod ribbon_json;
-pub mod strip;
+pub mod mesh;
+pub mod raster;
 pub mod svg;
+pub mod table;
+pub mod text;
+
+pub use json::ribbon as ribbon_json;
+pub use mesh::{gltf, obj, obj::strips as obj_strip, strip};
+pub use raster::{field as picture, image, mask, png};
+pub use table::csv;
+pub use text::{path_data, suggest as nearest};

@@ -1,13 +1,9 @@
 //! Time of one pairing, at the sizes that the search meets.
 
-#[expect(unused, reason = "the benchmark uses part of the solver")]
-#[path = "../src/assignment.rs"]
-mod assignment;
-
 use std::cell::Cell;
 
 use arabesque_core::{Stage, Stream};
-use assignment::Assignment;
+use arabesque_patterns::stages::Pairing;
 use divan::{Bencher, black_box};
 
 /// Rows and columns of a problem.
@@ -47,21 +43,21 @@ fn problems(size: (usize, usize), classes: usize) -> Vec<Vec<f32>> {
 
 #[divan::bench(args = SIZES)]
 fn full(bencher: Bencher, size: (usize, usize)) {
-    let mut solver = Assignment::default();
-    each_in_turn(bencher, &problems(size, 1), |cost| solver.solve(size.0, size.1, cost));
+    let mut solver = Pairing::default();
+    each_in_turn(bencher, &problems(size, 1), |cost| solver.full(size.0, size.1, cost));
 }
 
 /// The outlier distance is the mean distance to the nearest neighbour.
 #[divan::bench(args = SIZES, consts = [1, 3])]
 fn with_outliers<const CLASSES: usize>(bencher: Bencher, size: (usize, usize)) {
-    let mut solver = Assignment::default();
+    let mut solver = Pairing::default();
     let outlier = vec![1.0 / size.1 as f32; size.0];
-    each_in_turn(bencher, &problems(size, CLASSES), |cost| solver.solve_with_outliers(size.0, size.1, cost, &outlier));
+    each_in_turn(bencher, &problems(size, CLASSES), |cost| solver.with_outliers(size.0, size.1, cost, &outlier));
 }
 
 #[divan::bench(args = SIZES)]
 fn greedy(bencher: Bencher, size: (usize, usize)) {
-    let mut solver = Assignment::default();
+    let mut solver = Pairing::default();
     each_in_turn(bencher, &problems(size, 1), |cost| solver.greedy(size.0, size.1, cost));
 }
 

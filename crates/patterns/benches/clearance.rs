@@ -1,16 +1,10 @@
 //! Time of the final clearance check, with and without something to mend. One thread, unless `RAYON_NUM_THREADS` says otherwise.
 
-#[expect(unused, unreachable_pub, reason = "the benchmark uses part of the module")]
-#[path = "../src/clearance/mod.rs"]
-mod clearance;
-#[expect(unused, unreachable_pub, reason = "the benchmark uses part of the module")]
-#[path = "../src/deform.rs"]
-mod deform;
-
 use arabesque_core::{
     Bounds, Class, Domain, Element, Exemplar, Matrix, Outline, Placement, Request, Role, Similarity, Stage, Stream,
     Vector,
 };
+use arabesque_patterns::stages::Clearing;
 use divan::Bencher;
 
 /// Corners of an outline.
@@ -62,10 +56,10 @@ fn mend(bencher: Bencher, n: usize, spacing: f64) {
     let placements = scattered(&exemplar, n, spacing);
     let page = Bounds::new(Vector::ZERO, Vector::splat(spacing * (n as f64).sqrt().ceil()));
     let request = Request::new(Domain::Torus(page));
-    let measured = clearance::measure(&exemplar);
+    let measured = Clearing::new(&exemplar);
     bencher
         .with_inputs(|| placements.clone())
-        .bench_local_values(|mut placements| clearance::repair(measured.as_ref(), &request, &mut placements));
+        .bench_local_values(|mut placements| measured.repair(&request, &mut placements));
 }
 
 /// Few elements overlap.

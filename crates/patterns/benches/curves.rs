@@ -2,17 +2,12 @@
 //!
 //! One thread, unless `RAYON_NUM_THREADS` says otherwise.
 
-#![expect(unused, unreachable_pub, reason = "the benchmark uses part of the engine")]
-
-include!("engine/modules.rs");
-#[path = "engine/stages.rs"]
-mod stages;
-
-use arabesque_core::{Bounds, Class, Curve, Exemplar, Path, Stream, Unobserved, Vector};
+use arabesque_core::{Bounds, Class, Curve, Exemplar, Path, Stream, Vector};
+use arabesque_patterns::{
+    Params, Prepared,
+    stages::{Setup, Stage},
+};
 use divan::Bencher;
-use engine::Prepared;
-use params::Params;
-use stages::{Stage, page, set_threads, time};
 
 /// Samples of the output at the finest level, about.
 const SIZES: [usize; 4] = [300, 1_300, 5_000, 20_000];
@@ -67,6 +62,35 @@ fn weave() -> Exemplar<2> {
     exemplar((0..13).flat_map(|k| [wave(k, false), wave(k, true)]).collect())
 }
 
+/// Times one stage for about `n` samples.
+fn time(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, stage: Stage) {
+    Setup::new(exemplar, n).with(|bench| {
+        let fresh = bencher.with_inputs(|| bench.before(stage));
+        fresh.bench_local_values(|mut output| {
+            output.run(stage);
+            output
+        });
+    });
+}
+
+fn time_layout(bencher: Bencher, exemplar: &Exemplar<2>, n: usize) {
+    Setup::new(exemplar, n).with(|bench| bencher.bench_local(|| bench.lay_out()));
+}
+
+fn time_matching(bencher: Bencher, exemplar: &Exemplar<2>, n: usize) {
+    Setup::new(exemplar, n).with(|bench| {
+        let mut pairings = bench.pairings();
+        bencher.bench_local(|| pairings.run());
+    });
+}
+
+/// One thread, unless `RAYON_NUM_THREADS` says otherwise.
+fn set_threads() {
+    if std::env::var_os("RAYON_NUM_THREADS").is_none() {
+        rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("no pool was made before");
+    }
+}
+
 /// Analysing the exemplar.
 mod prepare {
     use super::*;
@@ -92,9 +116,8 @@ mod whole {
     use super::*;
 
     fn fill(bencher: Bencher, exemplar: &Exemplar<2>, n: usize) {
-        let prepared = Prepared::new(exemplar, &Params::default()).expect("the exemplar can be analysed");
-        let request = page(&prepared, n);
-        bencher.bench_local(|| prepared.run(&request, &mut Unobserved).expect("the page can be filled"));
+        let setup = Setup::new(exemplar, n);
+        bencher.bench_local(|| setup.fill());
     }
 
     #[divan::bench(args = SIZES, sample_count = 1)]
@@ -114,7 +137,7 @@ mod stage {
 
     #[divan::bench(args = SIZES, sample_count = 2)]
     fn layout(bencher: Bencher, n: usize) {
-        time(bencher, &net(), n, Stage::Layout);
+        time_layout(bencher, &net(), n);
     }
 
     #[divan::bench(args = SIZES, sample_count = 3)]
@@ -124,7 +147,7 @@ mod stage {
 
     #[divan::bench(args = SIZES, sample_count = 3)]
     fn matching(bencher: Bencher, n: usize) {
-        time(bencher, &net(), n, Stage::Matching);
+        time_matching(bencher, &net(), n);
     }
 
     #[divan::bench(args = SIZES, sample_count = 3)]

@@ -2,20 +2,14 @@
 //!
 //! One thread, unless `RAYON_NUM_THREADS` says otherwise.
 
-#![expect(unused, unreachable_pub, reason = "the benchmark uses part of the engine")]
-
-include!("engine/modules.rs");
-#[path = "engine/stages.rs"]
-mod stages;
-
 use arabesque_core::{
-    Bounds, Class, Domain, Element, Exemplar, Outcome, Outline, Request, Role, Similarity, Stage, Stream, Unobserved,
-    Vector,
+    Bounds, Class, Domain, Element, Exemplar, Outcome, Outline, Request, Role, Similarity, Stream, Unobserved, Vector,
+};
+use arabesque_patterns::{
+    Params, Prepared,
+    stages::{Setup, Stage},
 };
 use divan::Bencher;
-use engine::Prepared;
-use params::Params;
-use stages::{set_threads, time};
 
 /// Elements of the output.
 const SIZES: [usize; 3] = [100, 1_000, 10_000];
@@ -94,6 +88,35 @@ fn fill(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, settings: &[(&str, &
     bencher.bench_local(|| -> Outcome<2> { prepared.run(&request, &mut Unobserved).expect("the page can be filled") });
 }
 
+/// Times one stage for about `n` samples.
+fn time(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, stage: Stage) {
+    Setup::new(exemplar, n).with(|bench| {
+        let fresh = bencher.with_inputs(|| bench.before(stage));
+        fresh.bench_local_values(|mut output| {
+            output.run(stage);
+            output
+        });
+    });
+}
+
+fn time_layout(bencher: Bencher, exemplar: &Exemplar<2>, n: usize) {
+    Setup::new(exemplar, n).with(|bench| bencher.bench_local(|| bench.lay_out()));
+}
+
+fn time_matching(bencher: Bencher, exemplar: &Exemplar<2>, n: usize) {
+    Setup::new(exemplar, n).with(|bench| {
+        let mut pairings = bench.pairings();
+        bencher.bench_local(|| pairings.run());
+    });
+}
+
+/// One thread, unless `RAYON_NUM_THREADS` says otherwise.
+fn set_threads() {
+    if std::env::var_os("RAYON_NUM_THREADS").is_none() {
+        rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("no pool was made before");
+    }
+}
+
 /// Analysing the exemplar.
 mod prepare {
     use super::*;
@@ -147,14 +170,13 @@ mod whole {
 /// One stage at a time, on discs.
 mod stage {
     use super::*;
-    use crate::stages::Stage;
 
     /// Elements of the output.
     const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
     #[divan::bench(args = SIZES, sample_count = 1)]
     fn layout(bencher: Bencher, n: usize) {
-        time(bencher, &discs(), n, Stage::Layout);
+        time_layout(bencher, &discs(), n);
     }
 
     #[divan::bench(args = SIZES, sample_count = 2)]
@@ -164,7 +186,7 @@ mod stage {
 
     #[divan::bench(args = SIZES, sample_count = 3)]
     fn matching(bencher: Bencher, n: usize) {
-        time(bencher, &discs(), n, Stage::Matching);
+        time_matching(bencher, &discs(), n);
     }
 
     #[divan::bench(args = SIZES, sample_count = 3)]

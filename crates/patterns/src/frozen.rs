@@ -5,16 +5,13 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Matrix, Measured, Path, Request, Vector};
 
 use crate::{
-    canvas::Item,
-    curves::{Line, Net, Skeleton, directions},
-    layout::{Draft, Items},
-    library::Library,
-    setting::Setting,
+    exemplar::{
+        graph::{line::Line, net::Net, skeleton::Skeleton},
+        library::Library,
+        setting::Setting,
+    },
+    output::draft::{Draft, Frozen, Item, Items},
 };
-
-/// Stands for a frozen stroke where items name the frozen placement they are.
-pub(crate) const STROKE: u32 = u32::MAX;
-
 /// A frozen stroke that ends this near to the border of the domain goes on inside, as a share of the side of the exemplar.
 const NEAR_BORDER: f64 = 2e-3;
 
@@ -33,7 +30,7 @@ fn elements<const D: usize>(request: &Request<D>, library: &Library<D>) -> Items
         let position = placement.transform.apply(library.centre[placement.source]);
         let frame = request.fields.frame(position);
         let turn = frame.rotation.transpose().compose(&placement.transform.rotation);
-        (Item { source, position, frozen: Some(n as u32) }, turn)
+        (Item { source, position, frozen: Some(Frozen::Element(n as u32)) }, turn)
     };
     request.frozen.iter().enumerate().map(one).collect()
 }
@@ -66,11 +63,11 @@ fn strokes<const D: usize>(request: &Request<D>, setting: &Setting<D>, net: &Net
         if request.domain.signed_distance(node.position) < -reach {
             continue;
         }
-        let ways = directions(&drawn, n as u32);
+        let ways = drawn.directions(n as u32);
         let style = request.frozen_curves[node.curve as usize].source;
         let source = alike(setting, net, &ways, setting.exemplar.curves[style].style);
         item_of[n] = Some(draft.items.len() as u32);
-        let item = Item { source: setting.level.base + source, position: node.position, frozen: Some(STROKE) };
+        let item = Item { source: setting.level.base + source, position: node.position, frozen: Some(Frozen::Stroke) };
         draft.items.push((item, Matrix::identity()));
     }
     for (n, node) in drawn.nodes.iter().enumerate() {
@@ -90,7 +87,7 @@ fn line<const D: usize>(number: u32, path: Path<D>, width: f64, tolerance: f64) 
 fn alike<const D: usize>(setting: &Setting<D>, net: &Net<D>, ways: &[Vector<D>], style: usize) -> u32 {
     let misfit = |n: u32| -> f64 {
         let node = &net.nodes[n as usize];
-        let own = directions(net, n);
+        let own = net.directions(n);
         let nearest = |w: &Vector<D>| own.iter().map(|t| 1.0 - t.dot(*w)).fold(2.0, f64::min);
         let other = if setting.exemplar.curves[node.curve as usize].style == style { 0.0 } else { 100.0 };
         ways.iter().map(nearest).sum::<f64>() + 0.3 * (own.len() as f64 - ways.len() as f64).abs() + other

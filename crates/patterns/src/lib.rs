@@ -8,11 +8,11 @@
 //! | sample the elements | `samples`, `level` | [Ma 2011 §3.1], [Tu 2020 §4.1.1] |
 //! | lay out the output | `layout`, `grow`, `noise` | [Tu 2020 §4.3.2], [Ma 2011 §4.1] |
 //! | search | `search`, `matching`, `assignment` | [Ma 2011 §4.2], [Tu 2020 §4.2, §4.3.3] |
-//! | assign positions | `positions`, `solver` | [Ma 2011 eqs 3, 4], [Tu 2020 eqs 14, 15] |
+//! | assign positions | `positions`, `core::NormalEquations` | [Ma 2011 eqs 3, 4], [Tu 2020 eqs 14, 15] |
 //! | assign attributes | `attributes`, `features` | [Ma 2011 eq. 5] |
 //! | assign existence | `existence`, `targets` | [Tu 2020 §4.3.4, appendix A] |
 //! | sample curves, assign edges and tangents, draw strokes | `curves` | [Tu 2020 §4.1.1, §4.3.4, §4.4.2] |
-//! | place | `finish`, `clearance`, `deform` | [Ma 2011 §3.1], [Schaefer 2006] |
+//! | place | `finish`, `clearance`, `core::Warp` | [Ma 2011 §3.1], [Schaefer 2006] |
 //!
 //! | symbol | identifier |
 //! |---|---|
@@ -31,40 +31,22 @@
 //!
 //! Not handled: interleaved physics; anything outside two and three dimensions.
 
-mod assignment;
-mod attributes;
-mod buckets;
-mod canvas;
-mod clearance;
-mod coverage;
+mod border;
 mod curves;
-mod deform;
-mod engine;
-mod existence;
-mod extent;
-mod features;
+mod exemplar;
 mod finish;
 mod frozen;
-mod grains;
-mod grow;
-mod kinds;
 mod layout;
-mod level;
-mod library;
-mod matching;
-mod noise;
+mod optimise;
+mod output;
 mod params;
-mod positions;
+mod prepared;
 mod run;
-mod samples;
-mod search;
-mod setting;
-mod solver;
-mod state;
+#[cfg(feature = "bench-stages")]
+#[doc(hidden)]
+pub mod stages;
 mod streams;
-mod targets;
 
-pub use clearance::overlap_ratio;
-pub use deform::warp;
-pub use engine::Prepared;
+pub use finish::clearance::overlap_ratio;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Search, Switch};
+pub use prepared::Prepared;

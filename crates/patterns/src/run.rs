@@ -5,20 +5,31 @@ use std::ops::ControlFlow;
 use arabesque_core::{Drawn, EnergyPoint, Matrix, Progress, Request, Snapshot, Watch};
 
 use crate::{
-    attributes,
-    canvas::Item,
-    curves,
-    engine::Prepared,
-    existence::{self, Changes},
-    extent::Extent,
-    finish, frozen, grains,
-    layout::{Draft, Layout},
-    matching::Prices,
-    params::{Attributes, Existence, Initialisation, Search, Switch},
-    positions,
-    search::{self, SearchParams},
-    setting::Setting,
-    state::State,
+    border::Extent,
+    curves::{
+        draw::{
+            chains::{self, Chain},
+            resample, shape,
+        },
+        repair::mend,
+        votes::{edge_votes, edges, tangents},
+    },
+    exemplar::setting::Setting,
+    finish::placements,
+    frozen,
+    layout::{Layout, grains},
+    optimise::{
+        attributes,
+        existence::{self, Changes},
+        matching::Prices,
+        positions,
+        search::{self, SearchParams},
+    },
+    output::{
+        draft::{Draft, Item},
+        state::State,
+    },
+    params::{Attributes, Existence, Initialisation, Params, Search, Switch},
 };
 
 /// Share of the progress that the first layout counts for.
@@ -47,7 +58,7 @@ pub(crate) struct Stand<'a, const D: usize> {
 
 /// What one run works on.
 pub(crate) struct Run<'a, const D: usize> {
-    pub(crate) prepared: &'a Prepared<D>,
+    pub(crate) params: &'a Params,
     pub(crate) request: &'a Request<D>,
     /// The levels that are used, coarsest first.
     pub(crate) stands: Vec<Stand<'a, D>>,
@@ -59,7 +70,7 @@ pub(crate) struct Run<'a, const D: usize> {
 struct Finished<const D: usize> {
     /// What the next level starts from, or after the last one, the elements.
     draft: Draft<D>,
-    bends: Option<Vec<finish::Bend<D>>>,
+    bends: Option<Vec<placements::Bend<D>>>,
     curves: Vec<Drawn<D>>,
 }
 
@@ -72,7 +83,7 @@ impl<const D: usize> Run<'_, D> {
     ) -> (Snapshot<D>, ControlFlow<()>) {
         let mut flow = ControlFlow::Continue(());
         let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
-        let from_noise = self.prepared.params.initialisation == Initialisation::WhiteNoise;
+        let from_noise = self.params.initialisation == Initialisation::WhiteNoise;
         if let Some(stand) = if from_noise { self.stands.first() } else { self.stands.last() } {
             let frozen = frozen::draft(self.request, stand.setting);
             let layout = self.layout(stand);
@@ -96,12 +107,12 @@ impl<const D: usize> Run<'_, D> {
     fn coarsened(&self, draft: &Draft<D>) -> Draft<D> {
         let (Some(finest), Some(coarsest)) = (self.stands.last(), self.stands.first()) else { return draft.clone() };
         let mut state = self.state(finest, draft);
-        curves::link_sources(&mut state);
+        edges::link_sources(&mut state);
         match &coarsest.setting.level.net {
             Some(net) if self.stands.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) => {
                 let chains = self.chains(&mut state);
                 let frozen = frozen::draft(self.request, coarsest.setting);
-                curves::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
+                resample::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
             }
             _ => draft.clone(),
         }
@@ -110,7 +121,7 @@ impl<const D: usize> Run<'_, D> {
     fn layout<'s>(&'s self, stand: &Stand<'s, D>) -> Layout<'s, D> {
         Layout {
             library: &stand.setting.library,
-            params: &self.prepared.params,
+            params: self.params,
             request: self.request,
             extent: stand.extent,
             base: stand.setting.level.base,
@@ -120,7 +131,7 @@ impl<const D: usize> Run<'_, D> {
     fn result(&self, done: &Finished<D>) -> Snapshot<D> {
         let Some(stand) = self.stands.last() else { return Snapshot::default() };
         let mut placements =
-            finish::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
+            placements::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
         for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
             placement.control.clone_from(control);
         }
@@ -138,7 +149,7 @@ impl<const D: usize> Run<'_, D> {
         }
     }
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
-        let params = &self.prepared.params;
+        let params = self.params;
         let first = iteration.is_multiple_of(self.iterations);
         SearchParams {
             search: params.search,
@@ -157,7 +168,7 @@ impl<const D: usize> Run<'_, D> {
 
     /// Share of the target numbers below which no element is removed.
     fn floor(&self, k: usize, iteration: usize) -> f64 {
-        if self.prepared.params.initialisation != Initialisation::WhiteNoise {
+        if self.params.initialisation != Initialisation::WhiteNoise {
             return FLOOR;
         }
         let done = (k as f64 + iteration as f64 / self.iterations.max(1) as f64) / self.stands.len() as f64;
@@ -182,14 +193,14 @@ impl<const D: usize> Run<'_, D> {
     /// The elements alone: strokes are not known before the samples are joined.
     fn layout_preview(&self, stand: &Stand<'_, D>, items: &[Item<D>]) -> Snapshot<D> {
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
-        let placements = finish::placements(&items, self.request, stand.extent, stand.setting.level.base);
+        let placements = placements::placements(&items, self.request, stand.extent, stand.setting.level.base);
         let state = self.state(stand, &Draft { items, links: Vec::new() });
         Snapshot { placements, curves: self.strokes(state), ..Snapshot::default() }
     }
 
     fn state<'s>(&'s self, stand: &Stand<'s, D>, draft: &Draft<D>) -> State<'s, D> {
         let setting = stand.setting;
-        State::new(&setting.library, &setting.level, self.request, stand.extent, (draft, self.prepared.params.deform))
+        State::new(&setting.library, &setting.level, self.request, stand.extent, (draft, self.params.deform))
     }
 
     /// Search and assign at one level, then mend and hand over to the next.
@@ -202,7 +213,7 @@ impl<const D: usize> Run<'_, D> {
     ) -> (Finished<D>, ControlFlow<()>) {
         let stand = &self.stands[k];
         let mut state = self.state(stand, draft);
-        curves::link_sources(&mut state);
+        edges::link_sources(&mut state);
         if k > 0 && flow.is_continue() {
             // Handing over takes as long as iterations do, and strokes have come out finer.
             flow = watch.step(&self.progress(k, 0, &state), &|| self.snapshot(stand, &state));
@@ -213,17 +224,17 @@ impl<const D: usize> Run<'_, D> {
         if k == 0 && flow.is_continue() && self.may_regrow() {
             flow = self.regrow(&mut state, trace, watch);
         }
-        let params = &self.prepared.params;
+        let params = self.params;
         if params.existence == Existence::Voted && flow.is_continue() {
             self.layout(stand).fill_holes(&mut state);
-            curves::link_sources(&mut state);
+            edges::link_sources(&mut state);
         }
         (self.finish(k, state, flow), flow)
     }
 
     /// Patches that agree with one another are as much order as there is to find; any other start may have ended in disorder.
     fn may_regrow(&self) -> bool {
-        let params = &self.prepared.params;
+        let params = self.params;
         params.regrowth == Switch::On && params.initialisation != Initialisation::PatchCopy && self.iterations > 0
     }
 
@@ -243,7 +254,7 @@ impl<const D: usize> Run<'_, D> {
             watch.step(&Progress { count: items.len(), ..known.clone() }, &|| self.layout_preview(stand, items))
         });
         *state = self.state(stand, &draft);
-        curves::link_sources(state);
+        edges::link_sources(state);
         flow?;
         self.refine((0, self.iterations), state, trace, watch)
     }
@@ -270,19 +281,19 @@ impl<const D: usize> Run<'_, D> {
 
     /// One assignment step: attributes, positions, existence, edges, tangents. Returns whether anything changed.
     fn assign(&self, state: &mut State<'_, D>, stand: &Stand<'_, D>, floor: f64) -> bool {
-        let exchanged = match self.prepared.params.attributes {
+        let exchanged = match self.params.attributes {
             Attributes::Selected => attributes::assign(state),
             Attributes::Kept => 0,
         };
         let mut position = positions::assign(state);
-        let changes = match self.prepared.params.existence {
+        let changes = match self.params.existence {
             Existence::Voted => existence::assign(state, stand.targets, floor),
             Existence::Fixed => Changes::default(),
         };
         position.extend(state.samples[position.len()..].iter().map(|s| s.position));
         state.follow_samples(&position);
-        let (_, joined) = curves::assign_edges(state);
-        curves::assign_tangents(state);
+        let (_, joined) = edges::assign(state);
+        tangents::assign(state);
         let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
         let moved = state.announce_moves(noticeable * state.library.spacing * stand.extent.smallest_spacing_scale);
         state.reindex();
@@ -292,7 +303,7 @@ impl<const D: usize> Run<'_, D> {
     /// What a level leaves: elements and, for the next level, denser samples along its strokes; after the last level, the strokes.
     fn finish(&self, k: usize, mut state: State<'_, D>, flow: ControlFlow<()>) -> Finished<D> {
         let base = state.level.base;
-        let bends = finish::bends(&state);
+        let bends = placements::bends(&state);
         let next = self.stands.get(k + 1).filter(|_| flow.is_continue());
         let finer = next.and_then(|next| next.setting.level.net.as_deref().map(|net| (next, net)));
         let Some((next, net)) = finer else {
@@ -305,15 +316,15 @@ impl<const D: usize> Run<'_, D> {
         }
         let chains = self.chains(&mut state);
         let frozen = frozen::draft(self.request, next.setting);
-        let draft = curves::resample(&state, &chains, (net, next.setting.level.base), frozen);
+        let draft = resample::resample(&state, &chains, (net, next.setting.level.base), frozen);
         Finished { draft, bends, curves: Vec::new() }
     }
 
     /// Everything that lives, for a level with the same samples.
     fn as_it_is(&self, mut state: State<'_, D>) -> Draft<D> {
-        if self.prepared.params.mending == Switch::On {
-            let votes = curves::collect_votes(&state);
-            curves::mend(&mut state, &votes);
+        if self.params.mending == Switch::On {
+            let votes = edge_votes::collect_votes(&state);
+            mend::mend(&mut state, &votes);
         }
         let mut number = vec![u32::MAX; state.items.len()];
         let living_items = (0..state.items.len()).filter(|&i| state.items[i].alive);
@@ -325,16 +336,16 @@ impl<const D: usize> Run<'_, D> {
     }
 
     /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.
-    fn chains(&self, state: &mut State<'_, D>) -> Vec<curves::Chain> {
-        let params = &self.prepared.params;
-        let votes = curves::collect_votes(state);
+    fn chains(&self, state: &mut State<'_, D>) -> Vec<Chain> {
+        let params = self.params;
+        let votes = edge_votes::collect_votes(state);
         if params.mending == Switch::On {
-            curves::mend(state, &votes);
+            mend::mend(state, &votes);
             state.reindex();
         }
-        let chains = curves::chains(state, &votes, params.orientations == Switch::On);
+        let chains = chains::chains(state, &votes, params.orientations == Switch::On);
         if params.shapes == Switch::On {
-            let position = curves::polish(state, &chains);
+            let position = shape::polish(state, &chains);
             state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
         }
         chains
@@ -345,13 +356,13 @@ impl<const D: usize> Run<'_, D> {
             return Vec::new();
         }
         let chains = self.chains(&mut state);
-        curves::draw(&state, &chains)
+        shape::strokes(&state, &chains)
     }
 
     fn snapshot(&self, stand: &Stand<'_, D>, state: &State<'_, D>) -> Snapshot<D> {
         let base = state.level.base;
-        let mut placements = finish::placements(&living(state), self.request, stand.extent, base);
-        for (placement, control) in placements.iter_mut().zip(finish::bends(state).into_iter().flatten()) {
+        let mut placements = placements::placements(&living(state), self.request, stand.extent, base);
+        for (placement, control) in placements.iter_mut().zip(placements::bends(state).into_iter().flatten()) {
             placement.control = control;
         }
         Snapshot { placements, curves: self.strokes(state.clone()), ..Snapshot::default() }

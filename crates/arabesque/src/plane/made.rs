@@ -62,7 +62,7 @@ impl PlaneMade {
 
     fn svg(&self, style: Style, recipe: Option<&str>) -> Result<Written> {
         let placements = &self.outcome.placements;
-        let bend = |k: usize, p| arabesque_patterns::warp(&placements[k].control, p);
+        let bend = |k: usize, p| arabesque_core::warp(&placements[k].control, p);
         write_svg(&SvgSheet {
             drawing: &self.exemplar.drawing,
             placements,

@@ -4,6 +4,13 @@ use std::{borrow::Cow, fmt};
 
 use arabesque_core::{Error, Result};
 use arabesque_io::file;
+use base64::{
+    Engine as _, alphabet,
+    engine::{
+        DecodePaddingMode,
+        general_purpose::{GeneralPurpose, GeneralPurposeConfig, STANDARD},
+    },
+};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{
     Deserialize, Deserializer, Serialize,
@@ -178,33 +185,22 @@ pub(crate) fn fingerprint(bytes: &[u8]) -> String {
     format!("{hash:032x}")
 }
 
-const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+/// Reads base 64 without its padding, which is taken out beforehand together with line breaks.
+const LENIENT: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_allow_trailing_bits(true)
+        .with_decode_padding_mode(DecodePaddingMode::RequireNone),
+);
 
 pub(crate) fn encode(bytes: &[u8]) -> String {
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let word = chunk.iter().fold(0_u32, |w, &b| w << 8 | u32::from(b)) << (8 * (3 - chunk.len()));
-        for k in 0..4 {
-            let sextet = (word >> (18 - 6 * k)) & 63;
-            out.push(if k <= chunk.len() { char::from(ALPHABET[sextet as usize]) } else { '=' });
-        }
-    }
-    out
+    STANDARD.encode(bytes)
 }
 
+/// What base 64 stands for; white space and padding may be anywhere.
 fn decode(text: &str) -> Option<Vec<u8>> {
-    let mut out = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut word, mut bits) = (0_u32, 0);
-    for b in text.bytes().filter(|b| !b.is_ascii_whitespace() && *b != b'=') {
-        let sextet = ALPHABET.iter().position(|&a| a == b)? as u32;
-        (word, bits) = (word << 6 | sextet, bits + 6);
-        if bits >= 8 {
-            bits -= 8;
-            out.push((word >> bits) as u8);
-            word &= (1 << bits) - 1;
-        }
-    }
-    Some(out)
+    let digits: Vec<u8> = text.bytes().filter(|b| !b.is_ascii_whitespace() && *b != b'=').collect();
+    LENIENT.decode(digits).ok()
 }
 
 #[cfg(test)]
@@ -220,6 +216,7 @@ mod tests {
             assert_eq!(decode(&encode(&bytes)).unwrap(), bytes);
         }
         assert!(decode("a?b").is_none());
+        assert_eq!(decode("TW\nFu TWE=").unwrap(), b"ManMa");
     }
 
     #[test]

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Error, Patch, Result, Snapshot, StopReason, Vector, Warning};
+use arabesque_core::{Bounds, Decimals, Error, Patch, Result, Snapshot, StopReason, Vector, Warning};
 use arabesque_io::{
     gltf::{self, Part},
-    number::Decimals,
     obj_strip, png, ribbon_json,
     strip::Strip,
     svg::{Area, Cell, Embedded, Filled, Look, Page, RibbonSheet, areas_markup, write_ribbons},

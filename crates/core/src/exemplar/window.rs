@@ -3,7 +3,7 @@
 use crate::{
     index::GridIndex,
     region::Domain,
-    space::{Bounds, Vector},
+    space::{Bounds, Vector, cell_place},
 };
 
 /// Share of the estimated margin that is used: a window that is too large claims emptiness that nobody has seen, and thins the output.
@@ -38,15 +38,9 @@ fn interior_cell<const D: usize>(points: &[Vector<D>], tight: &Bounds<D>, spacin
     let per_point = if points.len() > 20_000 { 16.0 } else { 128.0 };
     let side = ((points.len() as f64 * per_point).powf(1.0 / D as f64).ceil() as usize).clamp(8, 4096);
     let (mut hits, mut cut) = (vec![0_u32; points.len()], vec![false; points.len()]);
-    let size = tight.size();
     for sample in 0..side.pow(D as u32) {
-        let (mut rest, mut rim) = (sample, false);
-        let p = Vector(std::array::from_fn(|k| {
-            let i = rest % side;
-            rest /= side;
-            rim |= i == 0 || i == side - 1;
-            tight.min[k] + size[k] * (i as f64 + 0.5) / side as f64
-        }));
+        let p = tight.cell_centre(sample, &[side; D]);
+        let rim = cell_place(sample, &[side; D]).into_iter().any(|i| i == 0 || i == side - 1);
         let (nearest, _) = (0..6).find_map(|n| index.nearest(p, spacing * f64::from(1 << n), None))?;
         hits[nearest] += 1;
         cut[nearest] |= rim;

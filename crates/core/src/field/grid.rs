@@ -1,6 +1,6 @@
 //! Values on a regular grid.
 
-use crate::space::{Bounds, Vector};
+use crate::space::{Bounds, Vector, cell_place};
 
 /// Values on the nodes of a regular grid, first coordinate fastest.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,13 +41,10 @@ impl<const D: usize, T: Copy> Grid<D, T> {
 
     /// Position of node `index`.
     pub fn node(&self, index: usize) -> Vector<D> {
-        let size = self.bounds.size();
-        let mut rest = index;
+        let (place, size) = (cell_place(index, &self.nodes), self.bounds.size());
         Vector(std::array::from_fn(|k| {
-            let i = rest % self.nodes[k];
-            rest /= self.nodes[k];
             let cells = (self.nodes[k] - 1).max(1) as f64;
-            self.bounds.min[k] + size[k] * i as f64 / cells
+            self.bounds.min[k] + size[k] * place[k] as f64 / cells
         }))
     }
 }

@@ -62,9 +62,9 @@ fn splat(stroke: &[Vector<2>], grid: &Grid<2, ()>, fixed: &mut [Vector<2>]) {
 fn relax(fixed: &[Vector<2>], nodes: [usize; 2]) -> Vec<Vector<2>> {
     let held: Vec<bool> = fixed.iter().map(|v| v.norm2() > 0.0).collect();
     let count = held.iter().filter(|h| **h).count().max(1) as f64;
-    let unit = |v: Vector<2>| v * (1.0 / v.norm().max(f64::MIN_POSITIVE));
-    let mean = fixed.iter().filter(|v| v.norm2() > 0.0).fold(Vector::ZERO, |s, &v| s + unit(v)) * (1.0 / count);
-    let mut field: Vec<_> = fixed.iter().map(|&v| if v.norm2() > 0.0 { unit(v) } else { mean }).collect();
+    let known = fixed.iter().filter(|v| v.norm2() > 0.0);
+    let mean = known.fold(Vector::ZERO, |s, &v| s + v.unit_or_zero()) * (1.0 / count);
+    let mut field: Vec<_> = fixed.iter().map(|&v| if v.norm2() > 0.0 { v.unit_or_zero() } else { mean }).collect();
     // Red-black successive over-relaxation: a few hundred sweeps settle grids of a hundred nodes a side.
     let longest = nodes[0].max(nodes[1]) as f64;
     let omega = 2.0 / (1.0 + (std::f64::consts::PI / longest).sin());

@@ -1,16 +1,15 @@
 //! Points in the cells of a uniform grid, for queries by radius.
 
 use crate::{
+    index::Lattice,
     region::Domain,
-    space::{Bounds, Vector},
+    space::{Bounds, Vector, periodic},
 };
 
 /// Point indices sorted by grid cell. On a torus the grid divides the period, and queries go around the back.
 #[derive(Clone, Debug)]
 pub struct GridIndex<const D: usize> {
-    origin: Vector<D>,
-    cell: Vector<D>,
-    cells: [usize; D],
+    lattice: Lattice<D>,
     period: Option<Vector<D>>,
     /// Points of cell `c`: `order[starts[c]..starts[c + 1]]`.
     starts: Vec<u32>,
@@ -36,16 +35,15 @@ impl<const D: usize> GridIndex<D> {
         let most = (MOST_CELLS.min(4.0 * points.len() as f64 + 16.0)).powf(1.0 / D as f64);
         let cells: [usize; D] =
             std::array::from_fn(|k| ((size[k] / radius.max(f64::MIN_POSITIVE)).min(most) as usize).max(1));
-        let cell = Vector(std::array::from_fn(|k| (size[k] / cells[k] as f64).max(f64::MIN_POSITIVE)));
-        let mut index =
-            Self { origin: bounds.min, cell, cells, period, starts: Vec::new(), order: Vec::new(), points: Vec::new() };
+        let lattice = Lattice::new(bounds, cells, period.is_some());
+        let mut index = Self { lattice, period, starts: Vec::new(), order: Vec::new(), points: Vec::new() };
         index.sort(&wrapped);
         index
     }
 
     fn sort(&mut self, points: &[Vector<D>]) {
-        let of: Vec<usize> = points.iter().map(|&p| self.cell_of(p)).collect();
-        self.starts = vec![0; self.cells.iter().product::<usize>() + 1];
+        let of: Vec<usize> = points.iter().map(|&p| self.lattice.nearest(p)).collect();
+        self.starts = vec![0; self.lattice.count() + 1];
         for &c in &of {
             self.starts[c + 1] += 1;
         }
@@ -63,52 +61,17 @@ impl<const D: usize> GridIndex<D> {
         }
     }
 
-    fn coordinate(&self, p: Vector<D>, k: usize) -> usize {
-        (((p[k] - self.origin[k]) / self.cell[k]).max(0.0) as usize).min(self.cells[k] - 1)
-    }
-
-    fn cell_of(&self, p: Vector<D>) -> usize {
-        (0..D).rev().fold(0, |c, k| c * self.cells[k] + self.coordinate(p, k))
-    }
-
     /// Calls `visit(i, offset)` for each point within `radius` of `p`, with the offset from `p` to it by the shortest way.
     /// Points come cell by cell, in a fixed order. On a torus a point comes once, even when the radius reaches around.
     pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
-        let mut low = [0_isize; D];
-        let mut count = [0_usize; D];
-        for k in 0..D {
-            let at = |v: f64| ((v - self.origin[k]) / self.cell[k]).floor();
-            let (mut a, mut b) = (at(p[k] - radius), at(p[k] + radius));
-            if self.period.is_none() {
-                a = a.clamp(0.0, (self.cells[k] - 1) as f64);
-                b = b.clamp(0.0, (self.cells[k] - 1) as f64);
-            }
-            low[k] = a as isize;
-            count[k] = (((b - a) as usize).saturating_add(1)).min(self.cells[k]);
-        }
-        for step in 0..count.iter().product() {
-            let mut rest = step;
-            let (mut cell, mut stride) = (0, 1);
-            for k in 0..D {
-                let c = (low[k] + (rest % count[k]) as isize).rem_euclid(self.cells[k] as isize) as usize;
-                rest /= count[k];
-                cell += c * stride;
-                stride *= self.cells[k];
-            }
+        self.lattice.around(p, radius, |cell, _| {
             for slot in self.starts[cell] as usize..self.starts[cell + 1] as usize {
-                let offset = self.offset(p, self.points[slot]);
+                let offset = periodic::offset(p, self.points[slot], self.period);
                 if offset.norm2() <= radius * radius {
                     visit(self.order[slot] as usize, offset);
                 }
             }
-        }
-    }
-
-    fn offset(&self, from: Vector<D>, to: Vector<D>) -> Vector<D> {
-        match self.period {
-            Some(period) => (to - from).zip(period, |d, l| d - l * (d / l).round()),
-            None => to - from,
-        }
+        });
     }
 
     /// The nearest point to `p` other than `except`, with its distance, no farther than `radius`.

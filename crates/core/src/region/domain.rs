@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     region::Outline,
-    space::{Bounds, Vector},
+    space::{Bounds, Vector, periodic},
 };
 
 /// A set of points with a boundary.
@@ -85,10 +85,7 @@ impl<const D: usize> Domain<D> {
 
     /// `to - from` by the shortest way, around the back on a torus.
     pub fn offset(&self, from: Vector<D>, to: Vector<D>) -> Vector<D> {
-        match self.period() {
-            Some(period) => (to - from).zip(period, |d, l| d - l * (d / l).round()),
-            None => to - from,
-        }
+        periodic::offset(from, to, self.period())
     }
 
     /// The border as polygons: `None` on a torus, which has none, and in space.

@@ -1,9 +1,11 @@
-//! Areas: outlines with their boolean operations, shapes that answer distances, and domains.
+//! Areas: outlines with their boolean operations, shapes that answer distances, and domains; segments and rings, which they are made of.
 
 mod domain;
 mod outline;
+pub mod ring;
+pub mod segment;
 mod shape;
 
 pub use domain::{Domain, Region};
-pub use outline::{FillRule, Outline, Ring, ring_area};
+pub use outline::{FillRule, Outline, Ring};
 pub use shape::Shape;

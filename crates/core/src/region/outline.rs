@@ -9,7 +9,10 @@ use i_overlay::{
     },
 };
 
-use crate::space::{Bounds, Similarity, Vector};
+use crate::{
+    region::{ring, segment::Segment},
+    space::{Bounds, Similarity, Vector},
+};
 
 /// Rounded corners are polygons with an edge for every so many radians.
 const ROUND: f64 = 0.1;
@@ -89,7 +92,7 @@ impl Outline<2> {
 
     /// Area, holes taken out.
     pub fn area(&self) -> f64 {
-        self.rings.iter().map(|ring| ring_area(ring)).sum::<f64>().abs()
+        self.rings.iter().map(|r| ring::area(r)).sum::<f64>().abs()
     }
 
     /// Centre of area; the mean of the ring points where the area vanishes, `None` for a point.
@@ -112,13 +115,7 @@ impl Outline<2> {
 
     /// Whether `p` is covered.
     pub fn contains(&self, p: Vector<2>) -> bool {
-        let mut inside = false;
-        for (a, b) in self.edges() {
-            if (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
-                inside = !inside;
-            }
-        }
-        inside
+        ring::covers(self.edges(), p)
     }
 
     /// Whether the two outlines share area.
@@ -127,8 +124,8 @@ impl Outline<2> {
     }
 
     /// The edges of all rings, start and end.
-    pub fn edges(&self) -> impl Iterator<Item = (Vector<2>, Vector<2>)> + '_ {
-        self.rings.iter().flat_map(|ring| (0..ring.len()).map(|k| (ring[k], ring[(k + 1) % ring.len()])))
+    pub fn edges(&self) -> impl Iterator<Item = Segment<2>> + '_ {
+        self.rings.iter().flat_map(|r| ring::edges(r))
     }
 
     fn overlay(&self, other: &Self, rule: OverlayRule) -> Self {
@@ -149,11 +146,6 @@ impl Outline<2> {
 
 fn to_arrays(rings: &[Ring<2>]) -> Vec<Vec<[f64; 2]>> {
     rings.iter().map(|ring| ring.iter().map(|p| p.0).collect()).collect()
-}
-
-/// Signed area of a ring: positive when it turns from x towards y.
-pub fn ring_area(ring: &[Vector<2>]) -> f64 {
-    (0..ring.len()).map(|k| ring[k].cross(ring[(k + 1) % ring.len()])).sum::<f64>() * 0.5
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! Plane regions bounded by polygons.
 
 use crate::{
-    region::{FillRule, Outline, Region, Ring},
+    region::{
+        FillRule, Outline, Region, Ring,
+        segment::{self, Segment},
+    },
     space::{Bounds, Vector},
 };
 
@@ -13,7 +16,7 @@ pub struct Shape {
     outline: Outline<2>,
     bounds: Bounds<2>,
     area: f64,
-    edges: Vec<(Vector<2>, Vector<2>)>,
+    edges: Vec<Segment<2>>,
     cell: f64,
     columns: usize,
     rows: usize,
@@ -110,12 +113,8 @@ impl Shape {
         let mut inside = vec![false; self.columns * self.rows];
         for r in 0..self.rows {
             let y = self.bounds.min[1] + (r as f64 + 0.5) * self.cell;
-            let mut crossings: Vec<f64> = self
-                .edges
-                .iter()
-                .filter(|(a, b)| (a[1] > y) != (b[1] > y))
-                .map(|(a, b)| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-                .collect();
+            let mut crossings: Vec<f64> =
+                self.edges.iter().filter_map(|&edge| segment::crossing_at_height(edge, y)).collect();
             crossings.sort_by(f64::total_cmp);
             for c in 0..self.columns {
                 let x = self.bounds.min[0] + (c as f64 + 0.5) * self.cell;
@@ -140,24 +139,9 @@ impl Shape {
         // Walk from the centre of the cell to `p`: each edge of the cell that is crossed flips the answer.
         let (c, r) = self.column_row(p);
         let centre = self.bounds.min + Vector::xy(c as f64 + 0.5, r as f64 + 0.5) * self.cell;
-        let flips = self.edges_in((c, r), (c, r)).filter(|&k| crosses(self.edges[k], centre, p)).count();
+        let flips = self.edges_in((c, r), (c, r)).filter(|&k| segment::crosses(self.edges[k], (centre, p))).count();
         self.centre_inside[r * self.columns + c] ^ (flips % 2 == 1)
     }
-}
-
-/// Whether the segment from `p` to `q` crosses the edge; an end of the edge on the line counts for one side only.
-fn crosses(edge: (Vector<2>, Vector<2>), p: Vector<2>, q: Vector<2>) -> bool {
-    let side = |v: Vector<2>| (q - p).cross(v - p) > 0.0;
-    let (a, b) = edge;
-    let other = |v: Vector<2>| (b - a).cross(v - a) > 0.0;
-    side(a) != side(b) && other(p) != other(q)
-}
-
-fn nearest_on_edge(edge: (Vector<2>, Vector<2>), p: Vector<2>) -> Vector<2> {
-    let (a, b) = edge;
-    let along = b - a;
-    let t = ((p - a).dot(along) / along.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    a + along * t
 }
 
 impl Region<2> for Shape {
@@ -191,7 +175,7 @@ impl Region<2> for Shape {
             let low = (c.saturating_sub(reach), r.saturating_sub(reach));
             let high = ((c + reach).min(self.columns - 1), (r + reach).min(self.rows - 1));
             for k in self.edges_in(low, high) {
-                let q = nearest_on_edge(self.edges[k], p);
+                let q = segment::nearest(self.edges[k], p);
                 let d2 = (q - p).norm2();
                 if d2 < best2 {
                     (best, best2) = (q, d2);

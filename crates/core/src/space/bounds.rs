@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use crate::space::Vector;
+use crate::space::{Vector, cell_place};
 
 /// An axis-aligned box, `min` to `max` in every coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,5 +82,24 @@ impl<const D: usize> Bounds<D> {
     /// Nearest point of the box to `p`.
     pub fn clamp(&self, p: Vector<D>) -> Vector<D> {
         Vector(std::array::from_fn(|k| p[k].max(self.min[k]).min(self.max[k])))
+    }
+
+    /// Centre of cell `index` where the box is cut into `counts` equal cells, the first coordinate fastest.
+    pub fn cell_centre(&self, index: usize, counts: &[usize; D]) -> Vector<D> {
+        let (place, size) = (cell_place(index, counts), self.size());
+        Vector(std::array::from_fn(|k| self.min[k] + size[k] * (place[k] as f64 + 0.5) / counts[k] as f64))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_fill_the_box() {
+        let b = Bounds::new(Vector::xy(1.0, 2.0), Vector::xy(5.0, 8.0));
+        let centres: Vec<_> = (0..6).map(|index| b.cell_centre(index, &[2, 3])).collect();
+        assert_eq!(centres[..3], [Vector::xy(2.0, 3.0), Vector::xy(4.0, 3.0), Vector::xy(2.0, 5.0)]);
+        assert_eq!(Bounds::around(centres), Bounds::new(Vector::xy(2.0, 3.0), Vector::xy(4.0, 7.0)));
     }
 }

@@ -1,9 +1,16 @@
 //! Points, boxes and transforms, in the plane and in space alike.
 
 mod bounds;
+mod cells;
+mod matrix;
+pub(crate) mod periodic;
 mod similarity;
 mod vector;
+mod warp;
 
 pub use bounds::Bounds;
+pub use cells::{cell_index, cell_place};
+pub use matrix::Matrix;
 pub use similarity::Similarity;
-pub use vector::{Matrix, Vector};
+pub use vector::Vector;
+pub use warp::{Warp, warp};

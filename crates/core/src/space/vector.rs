@@ -1,4 +1,4 @@
-//! Points, offsets and matrices in two or three dimensions.
+//! Points and offsets in two or three dimensions.
 
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
@@ -30,6 +30,27 @@ impl<const D: usize> Vector<D> {
         self.norm2().sqrt()
     }
 
+    /// The vector at length 1. A vector without a length has no direction: its coordinates are NaN then.
+    pub fn unit(self) -> Self {
+        self * (1.0 / self.norm())
+    }
+
+    /// The vector at length 1; zero stays zero.
+    pub fn unit_or_zero(self) -> Self {
+        self * (1.0 / self.norm().max(f64::MIN_POSITIVE))
+    }
+
+    /// The vector at length 1, or `None` when it is no longer than `least`.
+    pub fn unit_if_longer(self, least: f64) -> Option<Self> {
+        let length = self.norm();
+        (length > least).then(|| self * (1.0 / length))
+    }
+
+    /// Cosine of the angle between two vectors, in [-1, 1]; 0 when either is zero.
+    pub fn cosine(self, other: Self) -> f64 {
+        (self.dot(other) / (self.norm() * other.norm()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
+    }
+
     /// Applies `f` to each coordinate.
     pub fn map(self, f: impl FnMut(f64) -> f64) -> Self {
         Self(self.0.map(f))
@@ -55,6 +76,11 @@ impl Vector<2> {
     /// z coordinate of the cross product: positive when `other` lies counter-clockwise of `self` in a y-up frame.
     pub fn cross(self, other: Self) -> f64 {
         self.0[0] * other.0[1] - self.0[1] * other.0[0]
+    }
+
+    /// Angle from this vector to `other` in radians, in [-pi, pi]: positive when it turns from x towards y.
+    pub fn angle_to(self, other: Self) -> f64 {
+        self.cross(other).atan2(self.dot(other))
     }
 }
 
@@ -117,87 +143,37 @@ impl<const D: usize> SubAssign for Vector<D> {
     }
 }
 
-/// A square matrix, row by row: `m.0[r][c]`. Rotations are matrices with orthonormal rows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Matrix<const D: usize>(pub [[f64; D]; D]);
-
-impl<const D: usize> Matrix<D> {
-    /// The identity.
-    pub fn identity() -> Self {
-        Self(std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c)))))
-    }
-
-    /// All zero.
-    pub const fn zero() -> Self {
-        Self([[0.0; D]; D])
-    }
-
-    /// The transposed matrix: the inverse of a rotation.
-    pub fn transpose(&self) -> Self {
-        Self(std::array::from_fn(|r| std::array::from_fn(|c| self.0[c][r])))
-    }
-
-    /// Matrix times column vector.
-    pub fn apply(&self, v: Vector<D>) -> Vector<D> {
-        Vector(std::array::from_fn(|r| (0..D).map(|c| self.0[r][c] * v.0[c]).sum()))
-    }
-
-    /// Matrix product `self * other`.
-    pub fn compose(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|r| std::array::from_fn(|c| (0..D).map(|k| self.0[r][k] * other.0[k][c]).sum())))
-    }
-
-    /// The rotation nearest to this matrix in the Frobenius norm; the identity for a zero matrix.
-    pub fn nearest_rotation(&self) -> Self {
-        let m = nalgebra::DMatrix::from_fn(D, D, |r, c| self.0[r][c]);
-        if m.norm() <= f64::MIN_POSITIVE || m.iter().any(|v| !v.is_finite()) {
-            return Self::identity();
-        }
-        let svd = m.svd(true, true);
-        let (Some(mut u), Some(vt)) = (svd.u, svd.v_t) else {
-            return Self::identity();
-        };
-        if (&u * &vt).determinant() < 0.0 {
-            // Flip the axis of the smallest singular value, so that the result is a proper rotation.
-            let last = svd.singular_values.imin();
-            u.column_mut(last).neg_mut();
-        }
-        let q = u * vt;
-        Self(std::array::from_fn(|r| std::array::from_fn(|c| q[(r, c)])))
-    }
-}
-
-impl Matrix<2> {
-    /// Rotation that turns the x axis towards the y axis by `radians`.
-    pub fn rotation(radians: f64) -> Self {
-        let (s, c) = radians.sin_cos();
-        Self([[c, -s], [s, c]])
-    }
-
-    /// Angle of a rotation in radians, in (-pi, pi].
-    pub fn angle(&self) -> f64 {
-        self.0[1][0].atan2(self.0[0][0])
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
-    #[test]
-    fn nearest_rotation_of_a_scaled_rotation_is_that_rotation() {
-        let r = Matrix::<2>::rotation(0.7);
-        let scaled = Matrix(r.0.map(|row| row.map(|v| v * 3.0)));
-        assert!((scaled.nearest_rotation().angle() - 0.7).abs() < 1e-12);
+    proptest! {
+        #[test]
+        fn units_point_the_same_way_whatever_becomes_of_zero(x in -1e3..1e3, y in -1e3..1e3, z in -1e3..1e3) {
+            let v = Vector([x, y, z]);
+            prop_assume!(v.norm() > 1e-6);
+            for unit in [v.unit(), v.unit_or_zero(), v.unit_if_longer(1e-6).unwrap()] {
+                prop_assert!((unit.norm() - 1.0).abs() < 1e-12 && (unit.cosine(v) - 1.0).abs() < 1e-12);
+            }
+        }
+
+        #[test]
+        fn angles_add_up(a in -3.0..3.0, b in -3.0..3.0_f64) {
+            let at = |angle: f64| Vector::xy(angle.cos(), angle.sin());
+            let turned = at(a).angle_to(at(b));
+            prop_assert!((Vector::xy(turned.cos(), turned.sin()) - at(b - a)).norm() < 1e-12);
+            prop_assert!((turned.cos() - at(a).cosine(at(b))).abs() < 1e-12);
+        }
     }
 
     #[test]
-    fn nearest_rotation_never_mirrors() {
-        let mirror = Matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -0.1]]);
-        let q = mirror.nearest_rotation();
-        let det = q.0[0][0] * (q.0[1][1] * q.0[2][2] - q.0[1][2] * q.0[2][1])
-            - q.0[0][1] * (q.0[1][0] * q.0[2][2] - q.0[1][2] * q.0[2][0])
-            + q.0[0][2] * (q.0[1][0] * q.0[2][1] - q.0[1][1] * q.0[2][0]);
-        assert!((det - 1.0).abs() < 1e-9);
+    fn a_vector_without_length_has_no_direction() {
+        let zero = Vector::<3>::ZERO;
+        assert_eq!((zero.unit_or_zero(), zero.unit_if_longer(0.0)), (zero, None));
+        assert!(!zero.unit().is_finite());
+        assert_eq!(zero.cosine(Vector([1.0, 0.0, 0.0])), 0.0);
+        assert!(Vector::xy(0.5, 0.0).unit_if_longer(0.5).is_none());
     }
 }

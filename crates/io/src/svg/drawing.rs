@@ -1,6 +1,10 @@
 //! What an SVG file holds, understood.
 
-use arabesque_core::{Bounds, Drawn, Exemplar, FlowStroke, Outline, Placement, Shape, Warning};
+use std::fmt::Write as _;
+
+use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
+
+use crate::text::path_data::path_data;
 
 /// Physical unit of a page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,6 +24,21 @@ pub enum Unit {
     Pc,
     /// A quarter of a millimetre.
     Q,
+}
+
+impl Unit {
+    /// The unit as SVG writes it after a number: nothing for pixels.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Px => "",
+            Self::Mm => "mm",
+            Self::Cm => "cm",
+            Self::In => "in",
+            Self::Pt => "pt",
+            Self::Pc => "pc",
+            Self::Q => "Q",
+        }
+    }
 }
 
 /// Size and coordinate system of a drawing.
@@ -70,6 +89,26 @@ impl Stroke {
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let dashes = self.dashes.iter().map(|d| d * factor).collect();
         Self { width: self.width * factor, dashes, dash_offset: self.dash_offset * factor, ..self.clone() }
+    }
+
+    /// Width and dashes times `scale`, as attributes.
+    pub(crate) fn lengths(&self, scale: f64, decimals: Decimals) -> String {
+        let fine = decimals.plus(2);
+        let mut out = format!(" stroke-width=\"{}\"", fine.format(self.width * scale));
+        if !self.dashes.is_empty() {
+            let dashes: Vec<_> = self.dashes.iter().map(|d| fine.format(d * scale)).collect();
+            let _ = write!(out, " stroke-dasharray=\"{}\"", dashes.join(" "));
+            if self.dash_offset != 0.0 {
+                let _ = write!(out, " stroke-dashoffset=\"{}\"", fine.format(self.dash_offset * scale));
+            }
+        }
+        out
+    }
+
+    /// A path painted like this, as an element of its own.
+    pub(crate) fn markup(&self, path: &Path<2>, decimals: Decimals) -> String {
+        let (data, lengths) = (path_data(path, decimals), self.lengths(1.0, decimals));
+        format!("<path d=\"{data}\"{}{lengths}{}/>", self.paint, self.effects)
     }
 
     /// A text that is the same for strokes that look the same, whatever file and layer they come from.
@@ -162,4 +201,23 @@ pub struct Placed {
     pub page: Page,
     /// What was noticed while reading.
     pub warnings: Vec<Warning>,
+}
+
+/// A drawing of which a part is filled anew: what stays, and the text of the file around the new part.
+#[derive(Clone, Debug)]
+pub struct HostDocument {
+    /// What stays, for the engine to fit the new to. Its fragments are not drawn: they stand in the file.
+    pub placed: Placed,
+    /// Box around everything that the file draws.
+    pub content: Bounds<2>,
+    /// How many things are replaced or cut.
+    pub replaced: usize,
+    /// The file up to where new things are drawn.
+    pub(crate) head: String,
+    /// The file from there on.
+    pub(crate) tail: String,
+    /// What had to be written anew: the outside parts of strokes that are cut, and pieces of paths of which another piece is replaced.
+    pub(crate) moved: String,
+    /// Content of `<defs>` that this refers to.
+    pub(crate) definitions: String,
 }

@@ -24,35 +24,9 @@
 //! Beyond the paper: the samples between two knots carry the true line of the exemplar, so that corners stay corners and arcs stay arcs; an edge
 //! that the window of the exemplar cuts off counts as one, so that nothing ends where merely the example ends.
 
-mod cast;
-mod chains;
-mod contact;
-mod edges;
-mod fit;
-mod hem;
-mod ink;
-mod loose;
-mod mend;
-mod net;
-mod resample;
-mod shape;
-mod skeleton;
-mod tangents;
-mod tangle;
+pub(crate) mod border;
+pub(crate) mod draw;
+pub(crate) mod repair;
 #[cfg(test)]
 mod tests;
-mod trim;
-mod turn;
-mod votes;
-
-pub(crate) use cast::Cast;
-pub(crate) use chains::{Chain, chains};
-pub(crate) use edges::{assign as assign_edges, link_sources};
-pub(crate) use ink::coverage;
-pub(crate) use mend::mend;
-pub(crate) use net::{Net, Star};
-pub(crate) use resample::resample;
-pub(crate) use shape::{polish, strokes as draw};
-pub(crate) use skeleton::{Line, Skeleton};
-pub(crate) use tangents::{assign as assign_tangents, directions};
-pub(crate) use votes::collect_votes;
+pub(crate) mod votes;

@@ -5,14 +5,25 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Path, Request, Vector};
 use proptest::prelude::*;
 
-use super::{Net, Skeleton, chains, collect_votes, draw, skeleton::Knot, tangle::Tangle};
 use crate::{
-    canvas::Item,
-    extent::Extent,
-    layout::Draft,
+    border::Extent,
+    curves::{
+        draw::{chains::chains, shape::strokes as draw},
+        repair::crossings::Tangle,
+        votes::{edge_votes::collect_votes, edges},
+    },
+    exemplar::{
+        graph::{
+            net::{Net, Node},
+            skeleton::{Knot, Skeleton},
+        },
+        setting::settings,
+    },
+    output::{
+        draft::{Draft, Item},
+        state::State,
+    },
     params::{Deform, Params},
-    setting::settings,
-    state::State,
 };
 
 const SIDE: f64 = 100.0;
@@ -57,7 +68,7 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     });
     let draft = Draft { items: items.collect(), links: Vec::new() };
     let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
-    super::link_sources(&mut state);
+    edges::link_sources(&mut state);
     work(state)
 }
 
@@ -73,7 +84,7 @@ fn links(state: &State<'_, 2>) -> Vec<Vec<u32>> {
 
 /// The edges of all nodes of the exemplar, sorted.
 fn arms(net: &Net<2>) -> Vec<Vec<u32>> {
-    let of = |node: &super::net::Node<2>| {
+    let of = |node: &Node<2>| {
         let mut to: Vec<u32> = node.arms.iter().map(|arm| arm.to).collect();
         to.sort_unstable();
         to

@@ -25,7 +25,7 @@ impl<const D: usize> Rung<D> {
 
     /// From top to bottom, as a unit vector.
     pub(crate) fn down(&self) -> Vector<D> {
-        (self.bottom - self.top) * (1.0 / (self.bottom - self.top).norm())
+        (self.bottom - self.top).unit()
     }
 }
 
@@ -45,7 +45,7 @@ impl Form {
     /// From the right corners of a piece whose left edge is upright and `left` long.
     pub(crate) fn new(left: f64, top: Vector<2>, bottom: Vector<2>) -> Self {
         let edge = (bottom - top) * (1.0 / (bottom - top).norm().max(1e-12)) + Vector::xy(0.0, 1.0);
-        let upright = if edge.norm() > 1e-6 { edge * (1.0 / edge.norm()) } else { Vector::xy(0.0, 1.0) };
+        let upright = edge.unit_if_longer(1e-6).unwrap_or(Vector::xy(0.0, 1.0));
         let rounded = |c: f64| (c / GRAIN).round() * GRAIN;
         let turned = |p: Vector<2>| Vector::xy(-upright.cross(p), upright.dot(p)).map(rounded);
         Self { foot: turned(Vector::xy(0.0, left)), top: turned(top), bottom: turned(bottom) }

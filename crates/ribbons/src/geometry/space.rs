@@ -7,6 +7,9 @@ use crate::{
     params::RibbonParams,
 };
 
+/// Vectors no longer than this have no direction.
+const LEAST: f64 = 1e-12;
+
 impl Cage<3> {
     /// Cuts the ribbon around `path`. It lies flat on the ground as far as the curve allows and turns as little as it can on the way.
     pub(crate) fn in_space(
@@ -30,16 +33,16 @@ fn downs(tangents: &[Vector<3>], closed: bool) -> Vec<Vector<3>> {
     let mut down = first_down(tangents.iter().find(|t| t.norm() > 0.0).copied().unwrap_or(Vector([1.0, 0.0, 0.0])));
     let mut carried = Vec::with_capacity(tangents.len());
     for &tangent in tangents {
-        if let Some(t) = unit(tangent) {
-            down = unit(down - t * down.dot(t)).unwrap_or(down);
+        if let Some(t) = tangent.unit_if_longer(LEAST) {
+            down = (down - t * down.dot(t)).unit_if_longer(LEAST).unwrap_or(down);
         }
         carried.push(down);
     }
     let (Some(&first), Some(&last), true) = (carried.first(), carried.last(), closed) else { return carried };
-    let axis = unit(tangents[0]).unwrap_or(Vector([1.0, 0.0, 0.0]));
+    let axis = tangents[0].unit_if_longer(LEAST).unwrap_or(Vector([1.0, 0.0, 0.0]));
     let left = cross(last, first).dot(axis).atan2(last.dot(first));
     let n = carried.len() as f64 - 1.0;
-    let turned = carried.iter().zip(tangents).enumerate().map(|(k, (&d, &t))| match unit(t) {
+    let turned = carried.iter().zip(tangents).enumerate().map(|(k, (&d, &t))| match t.unit_if_longer(LEAST) {
         Some(t) => turn(d, t, left * k as f64 / n),
         None => d,
     });
@@ -53,12 +56,7 @@ fn downs(tangents: &[Vector<3>], closed: bool) -> Vec<Vector<3>> {
 /// Across the ribbon and level with the ground (z is up); for a curve that begins upright, along x.
 fn first_down(tangent: Vector<3>) -> Vector<3> {
     let level = cross(Vector([0.0, 0.0, 1.0]), tangent) * -1.0;
-    unit(level).unwrap_or(Vector([1.0, 0.0, 0.0]))
-}
-
-fn unit(v: Vector<3>) -> Option<Vector<3>> {
-    let norm = v.norm();
-    (norm > 1e-12).then(|| v * (1.0 / norm))
+    level.unit_if_longer(LEAST).unwrap_or(Vector([1.0, 0.0, 0.0]))
 }
 
 fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {

@@ -1,0 +1,140 @@
+//! Equal cells over a box, and the walk through those around a point.
+
+use crate::space::{Bounds, Vector, cell_index, cell_place};
+
+/// A box cut into equal cells, numbered with the first coordinate fastest. Where the coordinates have a period, the box is one
+/// period, and what leaves it on one side comes in on the other.
+#[derive(Clone, Debug)]
+pub struct Lattice<const D: usize> {
+    origin: Vector<D>,
+    cell: Vector<D>,
+    counts: [usize; D],
+    is_periodic: bool,
+}
+
+impl<const D: usize> Lattice<D> {
+    /// `counts[k]` cells along coordinate `k` of the box, each at least 1.
+    pub fn new(bounds: Bounds<D>, counts: [usize; D], is_periodic: bool) -> Self {
+        let size = bounds.size();
+        let cell = Vector(std::array::from_fn(|k| (size[k] / counts[k] as f64).max(f64::MIN_POSITIVE)));
+        Self { origin: bounds.min, cell, counts, is_periodic }
+    }
+
+    /// Number of cells.
+    pub fn count(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// Side lengths of a cell.
+    pub fn cell(&self) -> Vector<D> {
+        self.cell
+    }
+
+    /// Centre of the cell with number `index`.
+    pub fn centre(&self, index: usize) -> Vector<D> {
+        self.centre_at(cell_place(index, &self.counts).map(|i| i as isize))
+    }
+
+    /// Centre of the cell that lies so many cells from the first one along each coordinate, inside the box or beyond it.
+    pub fn centre_at(&self, place: [isize; D]) -> Vector<D> {
+        Vector(std::array::from_fn(|k| self.origin[k] + (place[k] as f64 + 0.5) * self.cell[k]))
+    }
+
+    /// Number of the cell at `p`; `None` outside the box, which a period does not have.
+    pub fn at(&self, p: Vector<D>) -> Option<usize> {
+        let mut place = [0; D];
+        for k in 0..D {
+            let n = self.counts[k] as isize;
+            let i = ((p[k] - self.origin[k]) / self.cell[k]).floor() as isize;
+            let i = if self.is_periodic { i.rem_euclid(n) } else { i };
+            if !(0..n).contains(&i) {
+                return None;
+            }
+            place[k] = i as usize;
+        }
+        Some(cell_index(place, &self.counts))
+    }
+
+    /// Number of the cell of the box that is nearest to `p`, whether there is a period or not.
+    pub fn nearest(&self, p: Vector<D>) -> usize {
+        let at = |k: usize| (((p[k] - self.origin[k]) / self.cell[k]).max(0.0) as usize).min(self.counts[k] - 1);
+        cell_index(std::array::from_fn(at), &self.counts)
+    }
+
+    /// Calls `visit(index, place)` for the cells that the box around a ball touches, each once and in a fixed order. Without a period
+    /// these are cells of the lattice alone, the outermost ones for what lies beyond them. With one, a `place` beyond the box is
+    /// where the cell comes to lie around the back.
+    pub fn around(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, [isize; D])) {
+        let mut low = [0_isize; D];
+        let mut count = [0_usize; D];
+        for k in 0..D {
+            let at = |v: f64| ((v - self.origin[k]) / self.cell[k]).floor();
+            let (mut a, mut b) = (at(p[k] - radius), at(p[k] + radius));
+            if !self.is_periodic {
+                a = a.clamp(0.0, (self.counts[k] - 1) as f64);
+                b = b.clamp(0.0, (self.counts[k] - 1) as f64);
+            }
+            low[k] = a as isize;
+            count[k] = (((b - a) as usize).saturating_add(1)).min(self.counts[k]);
+        }
+        for step in 0..count.iter().product() {
+            let (mut rest, mut index, mut stride) = (step, 0, 1);
+            let mut place = [0; D];
+            for k in 0..D {
+                place[k] = low[k] + (rest % count[k]) as isize;
+                rest /= count[k];
+                index += place[k].rem_euclid(self.counts[k] as isize) as usize * stride;
+                stride *= self.counts[k];
+            }
+            visit(index, place);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn lattice(is_periodic: bool) -> Lattice<2> {
+        Lattice::new(Bounds::new(Vector::xy(-1.0, 2.0), Vector::xy(7.0, 5.0)), [4, 3], is_periodic)
+    }
+
+    proptest! {
+        #[test]
+        fn a_walk_meets_every_cell_that_has_a_point_in_the_ball(
+            x in -6.0..12.0, y in -3.0..10.0, radius in 0.0..9.0, is_periodic: bool,
+        ) {
+            let (lattice, p) = (lattice(is_periodic), Vector::xy(x, y));
+            let mut met = Vec::new();
+            lattice.around(p, radius, |index, place| met.push((index, place)));
+            for turn in 0..16 {
+                let angle = f64::from(turn) / 16.0 * std::f64::consts::TAU;
+                let cell = lattice.at(p + Vector::xy(angle.cos(), angle.sin()) * (radius * 0.999));
+                prop_assert!(cell.is_none_or(|cell| met.iter().any(|(index, _)| *index == cell)));
+            }
+            for &(index, place) in &met {
+                prop_assert_eq!(lattice.at(lattice.centre_at(place)), Some(index));
+                prop_assert_eq!(met.iter().filter(|m| m.0 == index).count(), 1);
+            }
+        }
+
+        #[test]
+        fn the_cell_at_a_point_holds_it(x in -0.99..6.99, y in 2.01..4.99) {
+            let (lattice, p) = (lattice(false), Vector::xy(x, y));
+            let cell = lattice.at(p).unwrap();
+            prop_assert!((lattice.centre(cell) - p).0.iter().zip(lattice.cell().0).all(|(d, side)| d.abs() <= 0.5 * side + 1e-9));
+            prop_assert_eq!(lattice.nearest(p), cell);
+            let copy = p + Vector::xy(8.0, -3.0);
+            prop_assert_eq!((lattice.at(copy), self::lattice(true).at(copy)), (None, Some(cell)));
+        }
+    }
+
+    #[test]
+    fn beyond_the_box_the_outermost_cell_is_the_nearest() {
+        let lattice = lattice(false);
+        assert_eq!((lattice.nearest(Vector::xy(99.0, 99.0)), lattice.nearest(Vector::xy(-99.0, 2.5))), (11, 0));
+        assert_eq!(lattice.count(), 12);
+    }
+}

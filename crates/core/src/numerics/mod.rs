@@ -1,0 +1,10 @@
+//! Tools of computing that know nothing of shapes: sets, pairs, linear equations, least squares.
+
+mod conjugate_gradients;
+mod disjoint_sets;
+pub mod pairing;
+mod predictions;
+
+pub use conjugate_gradients::{Equations, conjugate_gradients};
+pub use disjoint_sets::DisjointSets;
+pub use predictions::{NormalEquations, Prediction, Pull};

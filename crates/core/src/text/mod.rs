@@ -1,0 +1,5 @@
+//! Values as text.
+
+mod number;
+
+pub use number::Decimals;

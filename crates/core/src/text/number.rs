@@ -1,0 +1,68 @@
+//! Numbers as text: few digits, and the same bytes everywhere.
+
+/// How many decimals are worth writing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decimals(usize);
+
+impl Decimals {
+    /// Six significant digits of a length `extent`: 3 decimals for a page of 720 units, 6 for one of 1 unit.
+    /// An extent that is not a positive number counts as 1.
+    pub fn for_extent(extent: f64) -> Self {
+        let magnitude = if extent > 0.0 && extent.is_finite() { extent.log10().ceil() } else { 0.0 };
+        Self((6.0 - magnitude).clamp(0.0, 15.0) as usize)
+    }
+
+    /// `count` decimals more: for factors that a coordinate is multiplied by.
+    #[must_use]
+    pub fn plus(self, count: usize) -> Self {
+        Self((self.0 + count).min(15))
+    }
+
+    /// One unit of the last decimal.
+    pub fn step(self) -> f64 {
+        10_f64.powi(-(self.0 as i32))
+    }
+
+    /// `count` decimals fewer: for the points of lines, which no one sees as sharply as the edges of shapes.
+    #[must_use]
+    pub fn minus(self, count: usize) -> Self {
+        Self(self.0.saturating_sub(count))
+    }
+
+    /// `value` rounded to these decimals, without trailing zeros and without `-0`.
+    pub fn format(self, value: f64) -> String {
+        let mut text = format!("{value:.*}", self.0);
+        if text.contains('.') {
+            text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+        }
+        if text == "-0" { "0".to_owned() } else { text }
+    }
+
+    /// `value` rounded to these decimals.
+    pub fn round(self, value: f64) -> f64 {
+        let factor = 10_f64.powi(self.0 as i32);
+        let rounded = (value * factor).round() / factor;
+        if rounded == 0.0 { 0.0 } else { rounded }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_of_720_units_gets_thousandths() {
+        let d = Decimals::for_extent(720.0);
+        assert_eq!(d.format(12.345_678), "12.346");
+        assert_eq!(d.format(12.0), "12");
+        assert_eq!(d.format(-0.000_01), "0");
+        assert_eq!(d.format(100.0), "100");
+    }
+
+    #[test]
+    fn small_and_large_pages_get_six_digits() {
+        assert_eq!(Decimals::for_extent(1.0).format(0.123_456_789), "0.123457");
+        assert_eq!(Decimals::for_extent(2e7).format(12_345_678.9), "12345679");
+        assert_eq!(Decimals::for_extent(f64::NAN).format(0.5), "0.5");
+    }
+}

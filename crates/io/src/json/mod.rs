@@ -1,0 +1,6 @@
+//! JSON: results with everything that is known of them, one document for each job.
+
+pub mod fill;
+pub mod ribbon;
+
+pub use fill::{Frame, recipe_of, write_json};

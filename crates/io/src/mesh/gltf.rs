@@ -1,0 +1,214 @@
+//! GLB: textured strips with their pictures inside.
+
+use arabesque_core::{Error, Result};
+use serde_json::{Value, json};
+
+use crate::mesh::strip::Strip;
+
+/// A picture and the strip that shows it.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Name of the picture.
+    pub name: String,
+    /// The picture, as the bytes of a PNG file.
+    pub picture: Vec<u8>,
+    /// The triangles.
+    pub strip: Strip,
+}
+
+const MAGIC: &[u8; 4] = b"glTF";
+const VERSION: u32 = 2;
+const JSON_CHUNK: &[u8; 4] = b"JSON";
+const BINARY_CHUNK: &[u8; 4] = b"BIN\0";
+/// Component types, targets and sampler modes of the format.
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const LINEAR: u32 = 9729;
+const CLAMP_TO_EDGE: u32 = 33071;
+/// Where in `asset` the recipe stands.
+const RECIPE: &str = "arabesque recipe";
+
+/// The binary chunk while it grows.
+#[derive(Default)]
+struct Buffer {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Buffer {
+    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
+        self.bytes.extend_from_slice(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn vectors<const N: usize>(&mut self, values: &[[f32; N]], bounded: bool) -> usize {
+        let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+        let view = self.view(&bytes, Some(ARRAY_BUFFER));
+        let kind = format!("VEC{N}");
+        let mut accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": values.len(), "type": kind });
+        if bounded {
+            let extreme = |start: f32, pick: fn(f32, f32) -> f32| -> Vec<f32> {
+                (0..N).map(|k| values.iter().map(|v| v[k]).fold(start, pick)).collect()
+            };
+            accessor["min"] = extreme(f32::INFINITY, f32::min).into();
+            accessor["max"] = extreme(f32::NEG_INFINITY, f32::max).into();
+        }
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn indices(&mut self, triangles: &[[u32; 3]]) -> usize {
+        let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+        let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
+        let count = 3 * triangles.len();
+        let accessor = json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" });
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+}
+
+/// Writes strips as one mesh, a primitive for each picture: unlit, seen from both sides, blended by its alpha. The picture's top is at
+/// texture coordinate 0, as the format has it. Parts without triangles are left out.
+///
+/// # Errors
+/// [`Error::Limit`] beyond 4 GiB.
+pub fn write_glb(parts: &[Part], recipe: Option<&str>) -> Result<Vec<u8>> {
+    let mut buffer = Buffer::default();
+    let (mut primitives, mut materials, mut textures, mut images) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (k, part) in parts.iter().filter(|part| !part.strip.triangles.is_empty()).enumerate() {
+        let positions: Vec<[f32; 3]> = part.strip.positions.iter().map(|p| p.map(|v| v as f32)).collect();
+        let texture: Vec<[f32; 2]> = part.strip.texture.iter().map(|p| p.map(|v| v as f32)).collect();
+        let attributes = json!({
+            "POSITION": buffer.vectors(&positions, true),
+            "TEXCOORD_0": buffer.vectors(&texture, false),
+        });
+        let indices = buffer.indices(&part.strip.triangles);
+        primitives.push(json!({ "attributes": attributes, "indices": indices, "material": k }));
+        materials.push(json!({
+            "name": part.name,
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": k }, "metallicFactor": 0.0 },
+            "alphaMode": "BLEND",
+            "doubleSided": true,
+            "extensions": { "KHR_materials_unlit": {} },
+        }));
+        textures.push(json!({ "sampler": 0, "source": k }));
+        let view = buffer.view(&part.picture, None);
+        images.push(json!({ "name": part.name, "mimeType": "image/png", "bufferView": view }));
+    }
+    let mut asset = json!({ "version": "2.0", "generator": concat!("arabesque ", env!("CARGO_PKG_VERSION")) });
+    if let Some(recipe) = recipe {
+        asset["extras"] = json!({ RECIPE: recipe });
+    }
+    let sampler = json!({
+        "magFilter": LINEAR, "minFilter": LINEAR, "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,
+    });
+    let document = json!({
+        "asset": asset,
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "name": "ribbon", "mesh": 0 }],
+        "meshes": [{ "name": "ribbon", "primitives": primitives }],
+        "materials": materials,
+        "textures": textures,
+        "samplers": [sampler],
+        "images": images,
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{ "byteLength": buffer.bytes.len() }],
+    });
+    container(&document, &buffer.bytes)
+}
+
+fn container(document: &Value, binary: &[u8]) -> Result<Vec<u8>> {
+    let mut text = document.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + text.len() + 8 + binary.len();
+    let size = |n: usize| {
+        u32::try_from(n).map_err(|_| Error::Limit {
+            what: "size of the GLB file".into(),
+            found: format!("{n} bytes"),
+            limit: format!("{} bytes", u32::MAX),
+            advice: "use fewer or longer pieces (--step)".into(),
+        })
+    };
+    let mut bytes = Vec::with_capacity(total);
+    bytes.extend_from_slice(MAGIC);
+    for number in [VERSION, size(total)?, size(text.len())?] {
+        bytes.extend_from_slice(&number.to_le_bytes());
+    }
+    bytes.extend_from_slice(JSON_CHUNK);
+    bytes.extend_from_slice(&text);
+    bytes.extend_from_slice(&size(binary.len())?.to_le_bytes());
+    bytes.extend_from_slice(BINARY_CHUNK);
+    bytes.extend_from_slice(binary);
+    Ok(bytes)
+}
+
+/// Whether the bytes start as a GLB file does.
+pub fn is_glb(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
+/// The recipe in a file that [`write_glb`] wrote.
+pub fn recipe_of(bytes: &[u8]) -> Option<String> {
+    let length = u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize;
+    let text = bytes.get(20..20_usize.checked_add(length)?)?;
+    let document: Value = serde_json::from_slice(text).ok()?;
+    Some(document.get("asset")?.get("extras")?.get(RECIPE)?.as_str()?.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part() -> Part {
+        let mut strip = Strip::default();
+        let corner = |x: f64, y: f64| ([x, y, 0.5], [x / 4.0, y / 2.0]);
+        strip.push([corner(0.0, 0.0), corner(4.0, 0.0)], [corner(0.0, 3.0), corner(4.0, 2.0)]);
+        Part { name: "a.png".into(), picture: vec![1, 2, 3], strip }
+    }
+
+    #[test]
+    fn the_container_holds_what_its_header_says() {
+        let bytes = write_glb(&[part()], Some("seed = 1\n")).unwrap();
+        let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+        assert!(is_glb(&bytes));
+        assert_eq!((number(4), number(8)), (2, bytes.len()));
+        let text = number(12);
+        assert_eq!((text % 4, &bytes[16..20]), (0, JSON_CHUNK.as_slice()));
+        let document: Value = serde_json::from_slice(&bytes[20..20 + text]).unwrap();
+        assert_eq!(number(20 + text), bytes.len() - 28 - text);
+        assert_eq!(document["accessors"][0]["max"], json!([4.0, 3.0, 0.5]));
+        assert_eq!(document["accessors"][2]["count"], 6);
+        for view in document["bufferViews"].as_array().unwrap() {
+            let end = view["byteOffset"].as_u64().unwrap() + view["byteLength"].as_u64().unwrap();
+            assert!(end <= document["buffers"][0]["byteLength"].as_u64().unwrap());
+        }
+        assert_eq!(recipe_of(&bytes).as_deref(), Some("seed = 1\n"));
+    }
+
+    #[test]
+    fn broken_files_have_no_recipe() {
+        let bytes = write_glb(&[part()], None).unwrap();
+        assert_eq!(recipe_of(&bytes), None);
+        for end in [0, 4, 15, 20, 40] {
+            assert_eq!(recipe_of(&bytes[..end]), None);
+        }
+        assert_eq!(recipe_of(&[b"glTF".as_slice(), &[255; 20]].concat()), None);
+    }
+
+    #[test]
+    fn texture_coordinates_stay_in_the_picture() {
+        assert_eq!(part().strip.texture[2], [0.0, 1.0]);
+    }
+}

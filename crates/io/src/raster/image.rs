@@ -1,0 +1,105 @@
+//! Pictures as they are: straight RGBA, from PNG or drawn from SVG.
+
+use arabesque_core::{Error, Image, Limits, Result};
+use resvg::{tiny_skia, usvg};
+
+use crate::raster::{field, png::straight};
+
+/// Whether a picture says anything about transparency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    /// It has an alpha channel, or a transparent colour.
+    Given,
+    /// Every pixel is opaque by the format.
+    Missing,
+}
+
+/// Reads a PNG picture: gray, colour or palette, up to 16 bits a channel.
+///
+/// # Errors
+/// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
+pub fn read_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<(Image, Alpha)> {
+    let raw = field::decode(name, bytes, limits)?;
+    let alpha = match raw.kind {
+        png::ColorType::Rgba | png::ColorType::GrayscaleAlpha => Alpha::Given,
+        _ => Alpha::Missing,
+    };
+    // Of two bytes the first is the higher one.
+    let wide = if raw.depth == png::BitDepth::Sixteen { 2 } else { 1 };
+    let samples: Vec<u8> = raw.samples.iter().step_by(wide).copied().collect();
+    let pixels = samples
+        .chunks_exact(raw.kind.samples())
+        .map(|s| match *s {
+            [g] => [g, g, g, 255],
+            [g, a] => [g, g, g, a],
+            [r, g, b] => [r, g, b, 255],
+            [r, g, b, a, ..] => [r, g, b, a],
+            [] => [0; 4],
+        })
+        .collect();
+    Ok((Image { width: raw.width, height: raw.height, pixels }, alpha))
+}
+
+/// Draws an SVG text on a transparent background, `scale` pixels a user unit of its page, whose size in user units is `units`.
+///
+/// # Errors
+/// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`Limits::pixels`].
+pub fn draw_svg(name: &str, text: &str, (units, scale): ([f64; 2], f64), limits: &Limits) -> Result<Image> {
+    let fail = |problem: String| Error::input(name, problem, "open the file in a drawing program and save it again");
+    let tree = usvg::Tree::from_str(text, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
+    let [width, height] = units.map(|u| (u * scale).round().max(1.0));
+    if !(width * height <= limits.pixels as f64 && width.max(height) <= f64::from(i16::MAX)) {
+        return Err(Error::Limit {
+            what: format!("{name}: size as a picture"),
+            found: format!("{width} x {height} pixels"),
+            limit: format!("{} pixels, {} a side", limits.pixels, i16::MAX),
+            advice: "make the page of the drawing less long and narrow".into(),
+        });
+    }
+    let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no pixels".into()))?;
+    let size = [f64::from(tree.size().width()), f64::from(tree.size().height())];
+    let stretch = tiny_skia::Transform::from_scale((width / size[0]) as f32, (height / size[1]) as f32);
+    resvg::render(&tree, stretch, &mut pixmap.as_mut());
+    Ok(straight(&pixmap))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn encoded(kind: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+        encoder.set_color(kind);
+        encoder.set_depth(depth);
+        encoder.write_header().unwrap().write_image_data(data).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn every_kind_of_pixel_becomes_rgba() {
+        use png::{BitDepth as D, ColorType as C};
+        for (kind, depth, data, pixel, alpha) in [
+            (C::Rgba, D::Eight, &[1, 2, 3, 4][..], [1, 2, 3, 4], Alpha::Given),
+            (C::Rgb, D::Eight, &[1, 2, 3], [1, 2, 3, 255], Alpha::Missing),
+            (C::GrayscaleAlpha, D::Eight, &[9, 7], [9, 9, 9, 7], Alpha::Given),
+            (C::Grayscale, D::One, &[0x80], [255; 4], Alpha::Missing),
+            (C::Rgba, D::Sixteen, &[1, 99, 2, 99, 3, 99, 4, 99], [1, 2, 3, 4], Alpha::Given),
+        ] {
+            let (image, found) = read_image("p.png", &encoded(kind, depth, data), &Limits::default()).unwrap();
+            assert_eq!((image.pixels[0], found), (pixel, alpha));
+        }
+        let error = read_image("p.png", b"GIF89a", &Limits::default()).unwrap_err().to_string();
+        assert!(error.contains("p.png: a GIF picture"), "{error}");
+    }
+
+    #[test]
+    fn drawings_become_pictures() {
+        let text =
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 4 2'><rect width='2' height='2' fill='red'/></svg>";
+        let image = draw_svg("d.svg", text, ([4.0, 2.0], 3.0), &Limits::default()).unwrap();
+        assert_eq!((image.width, image.height), (12, 6));
+        assert_eq!((image.pixel(5, 5), image.pixel(6, 5)), ([255, 0, 0, 255], [0; 4]));
+        assert!(matches!(draw_svg("d", text, ([1e9, 1e9], 3.0), &Limits::default()), Err(Error::Limit { .. })));
+    }
+}

@@ -1,0 +1,379 @@
+//! Definitions that fragments refer to: gradients, patterns, clips, masks, filters; copied with ids of their own.
+
+use std::{
+    collections::{BTreeMap, VecDeque},
+    fmt::Write as _,
+    rc::Rc,
+};
+
+use kurbo::Rect;
+use roxmltree::{Node as Xml, NodeId};
+use svgtypes::Length;
+
+use crate::{
+    svg::parse::{
+        geometry::{self, Geometry},
+        length::{Axis, Viewport},
+        notes::Note,
+        paint::reference,
+        source::{Source, clip_text, href},
+        style::{Own, Style, computed},
+    },
+    text::xml::{number, push_attribute},
+};
+
+/// The definitions of one file that are referred to, by their new ids.
+pub(crate) struct Definitions<'a, 's> {
+    source: &'s Source<'a>,
+    prefix: String,
+    names: BTreeMap<String, String>,
+    queue: VecDeque<(NodeId, String, Viewport)>,
+    rectangles: Vec<(String, String)>,
+}
+
+/// Tags that may be copied into definitions.
+const COPIED: [&str; 10] =
+    ["linearGradient", "radialGradient", "stop", "pattern", "clipPath", "mask", "g", "use", "symbol", "filter"];
+
+impl<'a, 's> Definitions<'a, 's> {
+    /// No definitions yet; new ids will start with `prefix`, numbered where ids of the file start so.
+    pub(crate) fn new(source: &'s Source<'a>, prefix: &str) -> Self {
+        let numbered = (2..).map(|n| format!("{prefix}{n}"));
+        let mut prefixes = std::iter::once(prefix.to_owned()).chain(numbered);
+        let prefix = prefixes.find(|p| !source.has_ids_in(p)).unwrap_or_else(|| prefix.to_owned());
+        Self { source, prefix, names: BTreeMap::new(), queue: VecDeque::new(), rectangles: Vec::new() }
+    }
+
+    /// The new id of a definition with one of the given tags (any where none is given), which is queued to be copied;
+    /// `None` when the id leads to none.
+    fn refer(&mut self, id: &str, tags: &[&str], viewport: Viewport) -> Option<String> {
+        let fits = |node: &Xml<'_, '_>| tags.is_empty() || tags.contains(&node.tag_name().name());
+        let Some(node) = self.source.by_id(id).filter(fits) else {
+            self.source.notes.add(Note::Missing, || format!("#{}", clip_text(id, 60)));
+            return None;
+        };
+        if let Some(name) = self.names.get(id) {
+            return Some(name.clone());
+        }
+        let plain = id.len() <= 60 && id.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
+        // A number can follow the prefix only where the id is not plain: plain ids keep their own name after `-`.
+        let name = if plain { format!("{}-{id}", self.prefix) } else { format!("{}{}", self.prefix, self.names.len()) };
+        self.names.insert(id.to_owned(), name.clone());
+        self.queue.push_back((node.id(), name.clone(), viewport));
+        Some(name)
+    }
+
+    fn checked<'v>(&self, value: &'v str) -> Option<(&'v str, &'v str)> {
+        match reference(value)? {
+            Ok(found) => Some(found),
+            Err(outside) => {
+                self.source.notes.add(Note::External, || clip_text(outside, 60).to_owned());
+                None
+            }
+        }
+    }
+
+    /// A paint that refers to a gradient or pattern, with the new id; its fallback where it leads nowhere.
+    pub(crate) fn paint(&mut self, value: &str, viewport: Viewport) -> String {
+        let Some((id, fallback)) = self.checked(value) else { return "none".into() };
+        let fallback = if fallback.is_empty() { "none" } else { fallback };
+        match self.refer(id, &["linearGradient", "radialGradient", "pattern"], viewport) {
+            Some(name) => format!("url(#{name})"),
+            None => fallback.to_owned(),
+        }
+    }
+
+    /// The value of the property `name` (clip-path, mask or filter) with the new id; `None` where it leads nowhere.
+    pub(crate) fn effect(&mut self, name: &str, value: &str, viewport: Viewport) -> Option<String> {
+        let (id, _) = self.checked(value)?;
+        let tag = if name == "clip-path" { "clipPath" } else { name };
+        Some(format!("url(#{})", self.refer(id, &[tag], viewport)?))
+    }
+
+    /// A reference to a clip by a rectangle.
+    pub(crate) fn rectangle(&mut self, clip: &Rect) -> String {
+        let [x, y, w, h] = [clip.x0, clip.y0, clip.width(), clip.height()].map(number);
+        let shape = format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
+        let known = self.rectangles.iter().find(|(_, s)| *s == shape).map(|(name, _)| name.clone());
+        let name = known.unwrap_or_else(|| {
+            let name = format!("{}-viewport_{}", self.prefix, self.rectangles.len());
+            self.rectangles.push((name.clone(), shape));
+            name
+        });
+        format!("url(#{name})")
+    }
+
+    /// The markup of everything referred to, and of what that refers to in turn.
+    pub(crate) fn finish(mut self) -> String {
+        let mut out = String::new();
+        while let Some((id, name, viewport)) = self.queue.pop_front() {
+            let before = out.len();
+            if let Some(node) = self.source.xml.get_node(id) {
+                self.copy_root(&mut out, node, &name, viewport);
+            }
+            if out.len() == before {
+                // What is referred to draws nothing; the reference must not dangle.
+                let _ = write!(out, "<g id=\"{name}\"/>");
+            }
+        }
+        for (name, shape) in &self.rectangles {
+            let _ = write!(out, "<clipPath id=\"{name}\">{shape}</clipPath>");
+        }
+        out
+    }
+
+    fn copy_root(&mut self, out: &mut String, node: Xml<'a, 'a>, name: &str, viewport: Viewport) {
+        let mut style = Rc::new(Style::default());
+        let mut chain: Vec<_> = node.ancestors().skip(1).filter(Xml::is_element).collect();
+        chain.reverse();
+        for ancestor in chain {
+            (style, _) = computed(self.source, ancestor, &style, viewport);
+        }
+        if node.tag_name().name().ends_with("Gradient") {
+            self.gradient(out, node, name, viewport);
+        } else {
+            self.copy(out, node, Some(name), &Inherited { style, viewport });
+        }
+    }
+
+    /// A gradient with everything that it takes from others written into it.
+    fn gradient(&mut self, out: &mut String, node: Xml<'a, 'a>, name: &str, viewport: Viewport) {
+        let chain = self.chain(node);
+        let tag = node.tag_name().name();
+        let find = |attribute: &str| chain.iter().find_map(|n| n.attribute(attribute));
+        let _ = write!(out, "<{tag} id=\"{name}\"");
+        let in_user_space = find("gradientUnits") == Some("userSpaceOnUse");
+        for attribute in ["gradientUnits", "gradientTransform", "spreadMethod"] {
+            find(attribute).into_iter().for_each(|value| push_attribute(out, attribute, value));
+        }
+        let geometry: &[(&str, Axis, Option<&str>)] = match tag {
+            "linearGradient" => &[
+                ("x1", Axis::X, Some("0%")),
+                ("y1", Axis::Y, None),
+                ("x2", Axis::X, Some("100%")),
+                ("y2", Axis::Y, None),
+            ],
+            _ => &[
+                ("cx", Axis::X, Some("50%")),
+                ("cy", Axis::Y, Some("50%")),
+                ("r", Axis::Both, Some("50%")),
+                ("fx", Axis::X, None),
+                ("fy", Axis::Y, None),
+                ("fr", Axis::Both, None),
+            ],
+        };
+        for (attribute, axis, initial) in geometry {
+            let value = chain.iter().filter(|n| n.tag_name().name() == tag).find_map(|n| n.attribute(*attribute));
+            if let Some(value) = value.or(if in_user_space { *initial } else { None }) {
+                push_attribute(out, attribute, &in_space(value, *axis, viewport, in_user_space));
+            }
+        }
+        out.push('>');
+        let with_stops = chain.iter().find(|n| n.children().any(|c| c.tag_name().name() == "stop"));
+        for stop in with_stops.into_iter().flat_map(|n| n.children()).filter(|n| n.tag_name().name() == "stop") {
+            self.stop(out, stop, viewport);
+        }
+        let _ = write!(out, "</{tag}>");
+    }
+
+    fn stop(&self, out: &mut String, stop: Xml<'a, 'a>, viewport: Viewport) {
+        let mut style = Rc::new(Style::default());
+        let mut own = Own::default();
+        let mut chain: Vec<_> = stop.ancestors().filter(Xml::is_element).collect();
+        chain.reverse();
+        for node in chain {
+            (style, own) = computed(self.source, node, &style, viewport);
+        }
+        out.push_str("<stop");
+        push_attribute(out, "offset", stop.attribute("offset").unwrap_or("0"));
+        for (name, value) in own.iter().filter(|(name, _)| name.starts_with("stop-")) {
+            push_attribute(out, name, value);
+        }
+        out.push_str("/>");
+    }
+
+    /// A gradient or pattern and those it refers to, in turn.
+    fn chain(&self, node: Xml<'a, 'a>) -> Vec<Xml<'a, 'a>> {
+        let mut chain = vec![node];
+        while let Some(next) = chain.last().filter(|n| href(**n).is_some()).and_then(|n| self.source.target(*n)) {
+            if chain.iter().any(|n| n.id() == next.id()) || chain.len() > 32 {
+                break;
+            }
+            chain.push(next);
+        }
+        chain
+    }
+
+    /// Copies a node with its content; what inherited properties it needs is written onto it.
+    fn copy(&mut self, out: &mut String, node: Xml<'a, 'a>, name: Option<&str>, inherited: &Inherited) {
+        let tag = node.tag_name().name();
+        let in_filter = tag.starts_with("fe");
+        if !self.source.is_svg(node) || !(COPIED.contains(&tag) || in_filter || geometry::is_shape(tag)) {
+            return;
+        }
+        let (style, own) = computed(self.source, node, &inherited.style, inherited.viewport);
+        if own.get("display") == Some("none") {
+            return;
+        }
+        let Some(attributes) = self.attributes(node, inherited.viewport) else { return };
+        let _ = write!(out, "<{tag}");
+        let name = name.map(str::to_owned).or_else(|| self.names.get(node.attribute("id")?).cloned());
+        name.into_iter().for_each(|name| push_attribute(out, "id", &name));
+        out.push_str(&attributes);
+        self.properties(out, &own, inherited.viewport);
+        let shape = geometry::is_shape(tag) && tag != "image";
+        if shape || tag == "use" {
+            for (name, value) in style.attributes() {
+                let value =
+                    if reference(value).is_some() { self.paint(value, inherited.viewport) } else { value.into() };
+                push_attribute(out, name, &value);
+            }
+        }
+        out.push('>');
+        let inside = Inherited { style, viewport: inherited.viewport };
+        let content = if tag == "pattern" { self.pattern_content(node) } else { node };
+        for child in content.children().filter(Xml::is_element) {
+            self.copy(out, child, None, &inside);
+        }
+        let _ = write!(out, "</{tag}>");
+    }
+
+    /// Where a pattern takes its content from.
+    fn pattern_content(&self, node: Xml<'a, 'a>) -> Xml<'a, 'a> {
+        let chain = self.chain(node);
+        chain.into_iter().find(|n| n.children().any(|c| c.is_element())).unwrap_or(node)
+    }
+
+    /// Attributes that are no properties; `None` when the element refers to something outside.
+    fn attributes(&mut self, node: Xml<'a, 'a>, viewport: Viewport) -> Option<String> {
+        let mut out = String::new();
+        let tag = node.tag_name().name();
+        if geometry::is_shape(tag) {
+            // Shapes are written from what was understood, so that lengths come out as plain numbers.
+            let geometry: Geometry = geometry::read(self.source, node, viewport).ok()??;
+            let attributes = geometry.markup.split_once(' ').map_or("", |(_, rest)| rest).to_owned();
+            let _ = write!(out, " {attributes}");
+        }
+        let chain = if tag == "pattern" { self.chain(node) } else { vec![node] };
+        for attribute in KEPT.iter().filter(|_| !geometry::is_shape(tag)).chain(&["transform"]) {
+            if let Some(value) = chain.iter().find_map(|n| n.attribute(*attribute)) {
+                let in_user_space = in_user_space(&chain, tag, attribute);
+                let axis = match *attribute {
+                    "x" | "width" => Axis::X,
+                    "y" | "height" => Axis::Y,
+                    _ => Axis::Both,
+                };
+                let sized = matches!(*attribute, "x" | "y" | "width" | "height");
+                let value = if sized { in_space(value, axis, viewport, in_user_space) } else { value.to_owned() };
+                push_attribute(&mut out, attribute, &value);
+            }
+        }
+        if matches!(tag, "use" | "feImage") {
+            let target = self.source.target(node)?;
+            let name = self.refer(target.attribute("id")?, &[], viewport)?;
+            push_attribute(&mut out, "href", &format!("#{name}"));
+        }
+        Some(out)
+    }
+
+    fn properties(&mut self, out: &mut String, own: &Own, viewport: Viewport) {
+        for (name, value) in own.iter() {
+            match name {
+                "clip-path" | "mask" | "filter" => {
+                    let value = self.effect(name, value, viewport);
+                    value.into_iter().for_each(|value| push_attribute(out, name, &value));
+                }
+                "display" | "transform" => {}
+                "mix-blend-mode" | "isolation" | "mask-type" => {
+                    push_attribute(out, "style", &format!("{name}:{value}"))
+                }
+                _ => push_attribute(out, name, value),
+            }
+        }
+    }
+}
+
+struct Inherited {
+    style: Rc<Style>,
+    viewport: Viewport,
+}
+
+/// Attributes of definitions that are copied as they are, but for lengths.
+const KEPT: [&str; 58] = [
+    "x",
+    "y",
+    "width",
+    "height",
+    "viewBox",
+    "preserveAspectRatio",
+    "patternUnits",
+    "patternContentUnits",
+    "patternTransform",
+    "clipPathUnits",
+    "maskUnits",
+    "maskContentUnits",
+    "filterUnits",
+    "primitiveUnits",
+    "in",
+    "in2",
+    "result",
+    "stdDeviation",
+    "edgeMode",
+    "dx",
+    "dy",
+    "type",
+    "values",
+    "mode",
+    "operator",
+    "k1",
+    "k2",
+    "k3",
+    "k4",
+    "radius",
+    "scale",
+    "xChannelSelector",
+    "yChannelSelector",
+    "baseFrequency",
+    "numOctaves",
+    "seed",
+    "stitchTiles",
+    "surfaceScale",
+    "specularConstant",
+    "specularExponent",
+    "diffuseConstant",
+    "kernelMatrix",
+    "order",
+    "divisor",
+    "bias",
+    "targetX",
+    "targetY",
+    "preserveAlpha",
+    "tableValues",
+    "slope",
+    "intercept",
+    "amplitude",
+    "exponent",
+    "offset",
+    "azimuth",
+    "elevation",
+    "z",
+    "limitingConeAngle",
+];
+
+fn in_user_space(chain: &[Xml<'_, '_>], tag: &str, attribute: &str) -> bool {
+    let units = match tag {
+        "pattern" => "patternUnits",
+        "mask" => "maskUnits",
+        "filter" => "filterUnits",
+        _ => return matches!(attribute, "x" | "y" | "width" | "height") && tag == "use",
+    };
+    chain.iter().find_map(|n| n.attribute(units)) == Some("userSpaceOnUse")
+}
+
+/// A length for the given space: a plain number in user space, as it is in the box of the painted object.
+fn in_space(value: &str, axis: Axis, viewport: Viewport, in_user_space: bool) -> String {
+    match value.trim().parse::<Length>() {
+        Ok(length) if in_user_space => number(viewport.resolve(length, axis, 16.0)),
+        _ => value.trim().to_owned(),
+    }
+}

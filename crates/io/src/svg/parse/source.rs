@@ -1,0 +1,180 @@
+//! A parsed SVG file with everything needed to look things up in it.
+
+use std::{cell::Cell, collections::BTreeMap, rc::Rc};
+
+use arabesque_core::{Error, Limits, Result};
+use roxmltree::{Document, Node as Xml, NodeId, ParsingOptions};
+
+use crate::svg::{
+    namespace::{SVG, XLINK},
+    options::ReadOptions,
+    parse::{
+        css::StyleRules,
+        guard,
+        notes::{Note, Notes},
+    },
+};
+
+/// A parsed file. A clone shares what was parsed, and goes on from the notes and counts so far by itself.
+#[derive(Clone)]
+pub(crate) struct Source<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) limits: &'a Limits,
+    pub(crate) text: &'a str,
+    pub(crate) xml: &'a Document<'a>,
+    pub(crate) sheet: StyleRules<'a>,
+    pub(crate) notes: Notes,
+    ids: Rc<BTreeMap<&'a str, NodeId>>,
+    /// Path segments read so far, against the limit.
+    segments: Cell<usize>,
+    /// Scene nodes made so far, against the limit.
+    nodes: Cell<usize>,
+}
+
+/// Parses `text` and hands it to `work`: what was parsed borrows the text, so it cannot outlive this call.
+pub(crate) fn with_source<T>(
+    text: &str,
+    options: &ReadOptions,
+    work: impl FnOnce(&Source<'_>) -> Result<T>,
+) -> Result<T> {
+    let (name, limits) = (options.name.as_str(), &options.limits);
+    guard::check(text, name, limits)?;
+    let parsing = ParsingOptions { allow_dtd: true, nodes_limit: limits.nodes, entity_resolver: None };
+    let xml = Document::parse_with_options(text, parsing).map_err(|e| unreadable(name, limits, &e))?;
+    if xml.root_element().tag_name().name() != "svg" {
+        let found = xml.root_element().tag_name().name().to_owned();
+        return Err(Error::input(name, format!("the root is <{found}>, expected <svg>"), "choose an SVG file"));
+    }
+    let css = style_text(&xml);
+    let source = Source {
+        name,
+        limits,
+        text,
+        xml: &xml,
+        sheet: StyleRules::new(&css),
+        notes: Notes::default(),
+        ids: Rc::new(ids(&xml)),
+        segments: Cell::new(0),
+        nodes: Cell::new(0),
+    };
+    source.note_outside_styles(&css);
+    if xml.root_element().tag_name().namespace() != Some(SVG) {
+        source.notes.add(Note::NoNamespace, String::new);
+    }
+    work(&source)
+}
+
+fn unreadable(name: &str, limits: &Limits, error: &roxmltree::Error) -> Error {
+    if matches!(error, roxmltree::Error::NodesLimitReached) {
+        return guard::too_much(
+            format!("{name}: XML nodes"),
+            format!("more than {}", limits.nodes),
+            limits.nodes.into(),
+        );
+    }
+    let place = format!("{name}:{}", error.pos());
+    Error::input(place, format!("not well-formed XML: {error}"), "open the file in a drawing program and save it again")
+}
+
+fn ids<'a>(xml: &'a Document<'a>) -> BTreeMap<&'a str, NodeId> {
+    let mut ids = BTreeMap::new();
+    for node in xml.descendants().filter(Xml::is_element) {
+        if let Some(id) = node.attribute("id") {
+            ids.entry(id).or_insert(node.id());
+        }
+    }
+    ids
+}
+
+/// The text of all style sheets in the file, one after the other.
+fn style_text(xml: &Document<'_>) -> String {
+    let mut css = String::new();
+    for style in xml.descendants().filter(|n| n.has_tag_name((SVG, "style")) || n.has_tag_name("style")) {
+        let kind = style.attribute("type").unwrap_or("text/css");
+        if kind.is_empty() || kind.eq_ignore_ascii_case("text/css") {
+            style.descendants().filter_map(|n| n.is_text().then(|| n.text()).flatten()).for_each(|t| css.push_str(t));
+            css.push('\n');
+        }
+    }
+    css.replace("<!--", " ").replace("-->", " ")
+}
+
+impl<'a> Source<'a> {
+    /// Whether an id is that prefix with something after it.
+    pub(crate) fn has_ids_in(&self, prefix: &str) -> bool {
+        self.ids.range(prefix..).next().is_some_and(|(id, _)| id.starts_with(prefix) && id.len() > prefix.len())
+    }
+
+    fn note_outside_styles(&self, css: &str) {
+        for rule in css.split("@import").skip(1) {
+            let what: String = rule.trim_start().chars().take_while(|c| !matches!(c, ';' | '\n')).take(80).collect();
+            self.notes.add(Note::External, || format!("@import {what}"));
+        }
+        for node in self.xml.root().children() {
+            if let Some(pi) = node.pi().filter(|pi| pi.target == "xml-stylesheet") {
+                self.notes.add(Note::External, || format!("style sheet {}", pi.value.unwrap_or_default()));
+            }
+        }
+    }
+
+    /// File, line and tag of a node, for messages.
+    pub(crate) fn place(&self, node: Xml<'_, '_>) -> String {
+        let line = self.xml.text_pos_at(node.range().start).row;
+        let id = node.attribute("id").map_or_else(String::new, |id| format!(" id=\"{}\"", clip_text(id, 40)));
+        format!("{}:{line}: <{}{id}>", self.name, node.tag_name().name())
+    }
+
+    /// The node with an id.
+    pub(crate) fn by_id(&self, id: &str) -> Option<Xml<'a, 'a>> {
+        self.xml.get_node(*self.ids.get(id)?)
+    }
+
+    /// Whether the node belongs to the drawing rather than to an editor.
+    pub(crate) fn is_svg(&self, node: Xml<'_, '_>) -> bool {
+        node.is_element() && matches!(node.tag_name().namespace(), None | Some(SVG))
+    }
+
+    /// The node that `href` leads to; a reference that leaves the file or dangles is noted.
+    pub(crate) fn target(&self, node: Xml<'a, 'a>) -> Option<Xml<'a, 'a>> {
+        let href = href(node)?.trim();
+        let Some(id) = href.strip_prefix('#') else {
+            self.notes.add(Note::External, || clip_text(href, 80).to_owned());
+            return None;
+        };
+        let found = self.by_id(id);
+        if found.is_none() {
+            self.notes.add(Note::Missing, || format!("#{}", clip_text(id, 60)));
+        }
+        found
+    }
+
+    /// Counts `more` path segments against the limit.
+    pub(crate) fn count_segments(&self, more: usize) -> Result<()> {
+        let total = self.segments.get().saturating_add(more);
+        self.segments.set(total);
+        if total > self.limits.segments {
+            return Err(guard::too_much(format!("{}: path segments", self.name), total, self.limits.segments as u64));
+        }
+        Ok(())
+    }
+
+    /// Counts one node of the drawing, `<use>` resolved, against the limit.
+    pub(crate) fn count_node(&self) -> Result<()> {
+        self.nodes.set(self.nodes.get() + 1);
+        if self.nodes.get() > self.limits.nodes as usize {
+            let what = format!("{}: nodes after <use> is resolved", self.name);
+            return Err(guard::too_much(what, self.nodes.get(), self.limits.nodes.into()));
+        }
+        Ok(())
+    }
+}
+
+/// The reference of a node, `xlink:href` or `href`.
+pub(crate) fn href<'a>(node: Xml<'a, 'a>) -> Option<&'a str> {
+    node.attribute("href").or_else(|| node.attribute((XLINK, "href")))
+}
+
+/// The first `most` characters of a text.
+pub(crate) fn clip_text(text: &str, most: usize) -> &str {
+    text.char_indices().nth(most).map_or(text, |(end, _)| &text[..end])
+}

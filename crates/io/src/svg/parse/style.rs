@@ -1,0 +1,364 @@
+//! The cascade: which presentation properties an element has, and what they are worth.
+
+use std::{rc::Rc, str::FromStr};
+
+use roxmltree::Node as Xml;
+use svgtypes::{Length, LengthListParser};
+
+use crate::{
+    svg::parse::{
+        length::{Axis, Viewport},
+        notes::Note,
+        paint::{fraction, paint},
+        source::{Source, clip_text},
+    },
+    text::xml::number,
+};
+
+/// An inherited property: index into [`PROPERTIES`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Property {
+    Color,
+    FontSize,
+    Fill,
+    FillOpacity,
+    FillRule,
+    Stroke,
+    StrokeWidth,
+    StrokeOpacity,
+    StrokeLinecap,
+    StrokeLinejoin,
+    StrokeMiterlimit,
+    StrokeDasharray,
+    StrokeDashoffset,
+    ClipRule,
+    Visibility,
+    PaintOrder,
+    ColorInterpolation,
+    ColorInterpolationFilters,
+    ShapeRendering,
+    ImageRendering,
+    MarkerStart,
+    MarkerMid,
+    MarkerEnd,
+}
+
+use Property as P;
+
+/// Every inherited property with its SVG name and initial value, in the order of [`Property`].
+const PROPERTIES: [(Property, &str, &str); 23] = [
+    (P::Color, "color", "#000000"),
+    (P::FontSize, "font-size", "16"),
+    (P::Fill, "fill", "#000000"),
+    (P::FillOpacity, "fill-opacity", "1"),
+    (P::FillRule, "fill-rule", "nonzero"),
+    (P::Stroke, "stroke", "none"),
+    (P::StrokeWidth, "stroke-width", "1"),
+    (P::StrokeOpacity, "stroke-opacity", "1"),
+    (P::StrokeLinecap, "stroke-linecap", "butt"),
+    (P::StrokeLinejoin, "stroke-linejoin", "miter"),
+    (P::StrokeMiterlimit, "stroke-miterlimit", "4"),
+    (P::StrokeDasharray, "stroke-dasharray", "none"),
+    (P::StrokeDashoffset, "stroke-dashoffset", "0"),
+    (P::ClipRule, "clip-rule", "nonzero"),
+    (P::Visibility, "visibility", "visible"),
+    (P::PaintOrder, "paint-order", "normal"),
+    (P::ColorInterpolation, "color-interpolation", "sRGB"),
+    (P::ColorInterpolationFilters, "color-interpolation-filters", "linearRGB"),
+    (P::ShapeRendering, "shape-rendering", "auto"),
+    (P::ImageRendering, "image-rendering", "auto"),
+    (P::MarkerStart, "marker-start", "none"),
+    (P::MarkerMid, "marker-mid", "none"),
+    (P::MarkerEnd, "marker-end", "none"),
+];
+
+/// Properties that are not inherited and that are carried along.
+const OWN: [&str; 15] = [
+    "opacity",
+    "clip-path",
+    "mask",
+    "filter",
+    "mix-blend-mode",
+    "isolation",
+    "vector-effect",
+    "overflow",
+    "display",
+    "stop-color",
+    "stop-opacity",
+    "flood-color",
+    "flood-opacity",
+    "lighting-color",
+    "mask-type",
+];
+
+/// The inherited properties of an element, computed. Absent values are initial.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Style([Option<Rc<str>>; PROPERTIES.len()]);
+
+impl Style {
+    /// The computed value.
+    pub(crate) fn get(&self, property: Property) -> &str {
+        let (_, _, initial) = PROPERTIES[property as usize];
+        self.0[property as usize].as_deref().unwrap_or(initial)
+    }
+
+    /// The computed value as a number, 0 when it is none.
+    pub(crate) fn number(&self, property: Property) -> f64 {
+        self.get(property).parse().unwrap_or(0.0)
+    }
+
+    /// Name and value of each property that is not initial and that changes how things look.
+    pub(crate) fn attributes(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let silent = [P::Color, P::FontSize, P::Visibility, P::MarkerStart, P::MarkerMid, P::MarkerEnd];
+        PROPERTIES.iter().zip(&self.0).filter_map(move |((property, name, initial), value)| {
+            let value = value.as_deref().filter(|v| v != initial && !silent.contains(property))?;
+            Some((*name, value))
+        })
+    }
+
+    /// Whether line markers are asked for.
+    pub(crate) fn has_markers(&self) -> bool {
+        [P::MarkerStart, P::MarkerMid, P::MarkerEnd].iter().any(|&p| self.get(p) != "none")
+    }
+
+    /// Share of light that a paint with its opacity stops: 0 for none.
+    pub(crate) fn opacity(&self, paint: Property, opacity: Property) -> f64 {
+        if self.get(paint) == "none" { 0.0 } else { fraction(self.get(opacity)) }
+    }
+
+    /// Whether anything of a fill can be seen.
+    pub(crate) fn fills(&self) -> bool {
+        self.opacity(P::Fill, P::FillOpacity) > 0.0
+    }
+
+    /// Whether a stroke is asked for that has no width.
+    pub(crate) fn has_no_width(&self) -> bool {
+        self.opacity(P::Stroke, P::StrokeOpacity) > 0.0 && self.number(P::StrokeWidth) <= 0.0
+    }
+
+    /// Whether anything of a stroke can be seen.
+    pub(crate) fn strokes(&self) -> bool {
+        self.opacity(P::Stroke, P::StrokeOpacity) > 0.0 && self.number(P::StrokeWidth) > 0.0
+    }
+}
+
+/// Properties that an element sets on itself and does not hand down.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Own(Vec<(&'static str, Rc<str>)>);
+
+impl Own {
+    /// Whether a container with these does something to its content that its items cannot do alone.
+    pub(crate) fn has_effects(&self) -> bool {
+        ["mask", "filter", "mix-blend-mode"].iter().any(|e| self.get(e).is_some_and(|v| v != "none" && v != "normal"))
+    }
+
+    /// The value of a property, where it is set.
+    pub(crate) fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(n, _)| *n == name).map(|(_, value)| &**value)
+    }
+
+    /// The same properties but for one.
+    pub(crate) fn without(&self, name: &str) -> Self {
+        Self(self.0.iter().filter(|(n, _)| *n != name).cloned().collect())
+    }
+
+    /// All properties that are set, in a fixed order.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.0.iter().map(|(name, value)| (*name, &**value))
+    }
+}
+
+/// Computed style of `node` under a parent with style `parent`.
+pub(crate) fn computed<'a>(
+    source: &Source<'a>,
+    node: Xml<'a, 'a>,
+    parent: &Rc<Style>,
+    viewport: Viewport,
+) -> (Rc<Style>, Own) {
+    let mut set = Setter { source, parent, viewport, style: Rc::clone(parent), own: Own::default() };
+    let declared = declarations(source, node);
+    // `color` and `font-size` first: other values refer to them.
+    for first in [true, false] {
+        for (name, value) in &declared {
+            if matches!(*name, "color" | "font-size" | "font") == first {
+                set.declare(name, value);
+            }
+        }
+    }
+    set.own.0.sort_by_key(|(name, _)| OWN.iter().position(|n| n == name));
+    (set.style, set.own)
+}
+
+/// All declarations of an element, weakest first: presentation attributes, style sheets, the style attribute, important ones.
+fn declarations<'a>(source: &Source<'a>, node: Xml<'a, 'a>) -> Vec<(&'a str, String)> {
+    let mut all: Vec<(&str, String)> = Vec::new();
+    let known = |name: &str| PROPERTIES.iter().any(|(_, n, _)| *n == name) || OWN.contains(&name);
+    for attribute in node.attributes() {
+        if attribute.namespace().is_none() && known(attribute.name()) {
+            all.push((attribute.name(), attribute.value().to_owned()));
+        }
+    }
+    let mut important = Vec::new();
+    for rule in source.sheet.declarations(node) {
+        // The sheet outlives the walk but not the document; names are mapped to the static ones.
+        if let Some(name) = static_name(rule.name) {
+            let list = if rule.important { &mut important } else { &mut all };
+            list.push((name, rule.value.to_owned()));
+        }
+    }
+    if let Some(style) = node.attribute("style") {
+        for declaration in simplecss::DeclarationTokenizer::from(style) {
+            if let Some(name) = static_name(declaration.name) {
+                let list = if declaration.important { &mut important } else { &mut all };
+                list.push((name, declaration.value.to_owned()));
+            }
+        }
+    }
+    all.append(&mut important);
+    all
+}
+
+fn static_name(name: &str) -> Option<&'static str> {
+    if name == "marker" || name == "transform" {
+        return Some(if name == "marker" { "marker" } else { "transform" });
+    }
+    let inherited = PROPERTIES.iter().map(|(_, n, _)| *n);
+    inherited.chain(OWN).find(|n| *n == name)
+}
+
+struct Setter<'a, 's> {
+    source: &'s Source<'a>,
+    parent: &'s Rc<Style>,
+    viewport: Viewport,
+    style: Rc<Style>,
+    own: Own,
+}
+
+impl Setter<'_, '_> {
+    fn declare(&mut self, name: &str, value: &str) {
+        let value = value.trim();
+        if name == "marker" {
+            [P::MarkerStart, P::MarkerMid, P::MarkerEnd].into_iter().for_each(|p| self.inherited(p, value));
+        } else if name == "transform" {
+            self.own.0.push(("transform", value.into()));
+        } else if let Some((property, _, _)) = PROPERTIES.iter().find(|(_, n, _)| *n == name) {
+            self.inherited(*property, value);
+        } else if let Some(name) = OWN.iter().find(|n| **n == name) {
+            let value = match value {
+                "currentColor" | "currentcolor" => self.style.get(P::Color),
+                "inherit" | "" => return,
+                _ => value,
+            };
+            let value: Rc<str> = value.into();
+            self.own.0.retain(|(n, _)| n != name);
+            self.own.0.push((name, value));
+        }
+    }
+
+    fn inherited(&mut self, property: Property, value: &str) {
+        let index = property as usize;
+        let new = match value {
+            "inherit" | "unset" => self.parent.0[index].clone(),
+            "initial" => None,
+            _ => match self.value(property, value) {
+                Some(value) => Some(value.into()),
+                None => {
+                    let name = PROPERTIES[index].1;
+                    self.source.notes.add(Note::Style, || format!("{name}: {}", clip_text(value, 40)));
+                    return;
+                }
+            },
+        };
+        if self.style.0[index] != new {
+            Rc::make_mut(&mut self.style).0[index] = new;
+        }
+    }
+
+    /// The computed form of a value: lengths become numbers, colours `#rrggbb`; `None` when it is not understood.
+    fn value(&self, property: Property, value: &str) -> Option<String> {
+        let font = self.style.number(P::FontSize);
+        let length = |text: &str, axis, font| {
+            let number = self.viewport.resolve(Length::from_str(text).ok()?, axis, font);
+            number.is_finite().then_some(number)
+        };
+        match property {
+            P::Fill | P::Stroke => paint(value, self.style.get(P::Color)),
+            P::Color => paint(value, self.parent.get(P::Color)),
+            P::StrokeWidth => length(value, Axis::Both, font).filter(|w| *w >= 0.0).map(number),
+            P::StrokeDashoffset => length(value, Axis::Both, font).map(number),
+            P::FontSize => {
+                let size = length(value, Axis::Both, self.parent.number(P::FontSize)).filter(|s| *s >= 0.0);
+                // Named sizes matter to nothing but `em`, which hardly any drawing uses.
+                Some(size.map_or_else(|| self.parent.get(P::FontSize).to_owned(), number))
+            }
+            P::StrokeDasharray if value == "none" => Some(value.to_owned()),
+            P::StrokeDasharray => self.dashes(value, font),
+            P::StrokeMiterlimit => value.parse().ok().filter(|m: &f64| m.is_finite()).map(|m| number(m.max(1.0))),
+            P::FillOpacity | P::StrokeOpacity => Some(number(fraction(value))),
+            _ => Some(value.to_owned()),
+        }
+    }
+
+    fn dashes(&self, value: &str, font: f64) -> Option<String> {
+        let lengths: Option<Vec<f64>> = LengthListParser::from(value)
+            .map(|length| {
+                Some(self.viewport.resolve(length.ok()?, Axis::Both, font)).filter(|n| n.is_finite() && *n >= 0.0)
+            })
+            .collect();
+        let lengths = lengths?;
+        if lengths.iter().sum::<f64>() <= 0.0 {
+            return Some("none".to_owned());
+        }
+        Some(lengths.into_iter().map(number).collect::<Vec<_>>().join(" "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::svg::{options::ReadOptions, parse::source::with_source};
+
+    fn style_of_last(svg: &str) -> (Rc<Style>, Own) {
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg'>{svg}</svg>");
+        with_source(&text, &ReadOptions::new("s.svg"), |source| {
+            let mut style = Rc::new(Style::default());
+            let mut own = Own::default();
+            let last = source.xml.descendants().rfind(Xml::is_element).unwrap();
+            let mut chain: Vec<_> = last.ancestors().filter(Xml::is_element).collect();
+            chain.reverse();
+            for node in chain {
+                (style, own) = computed(source, node, &style, Viewport { width: 300.0, height: 400.0 });
+            }
+            Ok((style, own))
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn the_style_attribute_beats_the_sheet_and_the_sheet_beats_attributes() {
+        let css = "<style>path{stroke:blue;fill:lime} .x{stroke-width:2mm !important}</style>";
+        let (style, _) = style_of_last(&format!(
+            "{css}<path class='x' fill='red' stroke='red' style='stroke:#00f8;stroke-width:1'/>"
+        ));
+        assert_eq!(style.get(P::Fill), "#00ff00");
+        assert_eq!(style.get(P::Stroke), "rgba(0,0,255,0.5333333)");
+        assert!((style.number(P::StrokeWidth) - 7.5590551).abs() < 1e-6);
+    }
+
+    #[test]
+    fn inheritance_and_current_colour() {
+        let (style, own) = style_of_last(
+            "<g color='teal' opacity='.5' stroke-width='10%' fill='none'><path stroke='currentColor' fill='inherit'/></g>",
+        );
+        assert_eq!((style.get(P::Stroke), style.get(P::Fill)), ("#008080", "none"));
+        assert!((style.number(P::StrokeWidth) - 35.3553391).abs() < 1e-6);
+        assert_eq!(own.get("opacity"), None);
+    }
+
+    #[test]
+    fn values_that_make_no_sense_are_ignored() {
+        let (style, _) =
+            style_of_last("<g fill='red'><path fill='var(--x)' stroke-width='-3' stroke-miterlimit='nan'/></g>");
+        assert_eq!((style.get(P::Fill), style.get(P::StrokeWidth)), ("#ff0000", "1"));
+    }
+}

@@ -1,0 +1,233 @@
+//! Reading an exemplar.
+
+use std::rc::Rc;
+
+use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role};
+use kurbo::Affine;
+
+use crate::svg::{
+    drawing::{Drawing, Job, Page, Stacking, Unit},
+    options::{Method, ReadOptions},
+    parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
+    read::{
+        document::{Document, Opened, parts},
+        domain::shape,
+        flow::strokes,
+    },
+    shape::{
+        extent::{self, bounds},
+        painted_area::Inker,
+    },
+    understand::{
+        classes::{self, Classes},
+        curves::{Curves, Gatherer},
+        fragment::{fragment, push_placed},
+        frame::{self, frame_mark, is_frame_mark},
+        item::{Item, Kind, Origin, Selection},
+        outlined_lines::trace,
+        select::select,
+        surroundings::Context,
+    },
+};
+
+/// Reads an exemplar from a text of which nothing else is read.
+///
+/// # Errors
+/// As for [`Document::with`] and [`Document::exemplar`].
+pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
+    Document::with(text, options, |document| document.exemplar())
+}
+
+impl Document<'_> {
+    /// Reads an exemplar, and the rest of the job where the file holds one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
+    /// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
+    pub fn exemplar(&self) -> Result<Drawing> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
+        let inker = Inker::new(source);
+        inker.check_all(&root, Affine::IDENTITY)?;
+        let mut scope = scope(&inker, &root, page.as_ref())?;
+        scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
+        let mut found = select(&inker, scope.frame, self.options.method, &scope.roots)?;
+        found.items.retain(|item| !is_frame_mark(item));
+        let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
+        settle(source, &mut found.items, window, self.options.method)?;
+        let job = job(&inker, &root)?;
+        if source.sheet.is_exhausted() {
+            source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
+        }
+        let is_curve = |item: &Item| item.kind == Kind::Curve && self.options.method != Method::Elements;
+        let stacking = stacking(&found.items, is_curve);
+        let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
+        let mut definitions = Definitions::new(source, "exemplar");
+        let mut gatherer = Gatherer::new(&inker, &mut definitions, window);
+        lines.iter().try_for_each(|item| gatherer.add(item))?;
+        let Curves { curves, styles, strokes } = gatherer.finish();
+        let (elements, classes) = elements(source, &items, scope.window.as_ref());
+        if elements.is_empty() && curves.is_empty() {
+            return Err(nothing_found(source, &found));
+        }
+        let exemplar = Exemplar::with_curves(source.name, (elements, classes.classes), (curves, styles), window)?;
+        let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
+        let background = background(&found, &mut definitions);
+        let definitions = definitions.finish();
+        let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
+        let warnings = source.notes.warnings(source.name);
+        Ok(Drawing { exemplar, fragments, strokes, stacking, background, definitions, page, job, warnings })
+    }
+}
+
+fn stacking(items: &[Item], is_curve: impl Fn(&Item) -> bool) -> Stacking {
+    let curve = items.iter().position(&is_curve);
+    let element = items.iter().position(|item| !is_curve(item));
+    if element < curve && element.is_some() { Stacking::CurvesAbove } else { Stacking::ElementsAbove }
+}
+
+/// Where the elements are looked for.
+struct Scope {
+    roots: Vec<(Context, Rc<Node>)>,
+    /// What sizes are compared with.
+    frame: Bounds<2>,
+    /// The frame of the exemplar, where it is known before the elements are.
+    window: Option<Bounds<2>>,
+}
+
+/// Content that covers less than this share of the page lies in a corner of it: the page is not its frame.
+const CORNER: f64 = 0.4;
+/// The same for a layer that is the exemplar by name.
+const LAYER: f64 = 0.7;
+
+fn scope(inker: &Inker<'_, '_>, root: &Rc<Node>, page: Option<&Page>) -> Result<Scope> {
+    let layers = parts(root, Part::Exemplar);
+    let by_layer = !layers.is_empty();
+    let roots = if by_layer { layers } else { vec![(Affine::IDENTITY, Rc::clone(root))] };
+    let content = roots.iter().fold(Bounds::EMPTY, |all, (parent, node)| all.union(&content(node, *parent)));
+    let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
+    let share = page.map_or(0.0, |p| content.measure() / p.view.measure());
+    // The box around a straight line is no frame, whatever its share of the page.
+    let fits = page.is_some() && (frame::is_thin(&content) || share >= if by_layer { LAYER } else { CORNER });
+    if !fits && marked.is_none() && page.is_some() && !by_layer && !content.is_empty() {
+        inker.source.notes.add(Note::Corner, String::new);
+    }
+    if page.is_none() {
+        inker.source.notes.add(Note::NoSize, String::new);
+    }
+    let window = marked.or_else(|| page.map(|p| p.view).filter(|_| fits));
+    let frame = window.unwrap_or(content);
+    let frame = if frame.measure() > 0.0 { frame } else { page.map_or(frame, |p| p.view) };
+    let roots = roots.into_iter().map(|(parent, node)| (Context::new(parent), node)).collect();
+    Ok(Scope { roots, frame, window })
+}
+
+/// Box around what the selection will look at.
+fn content(node: &Node, parent: Affine) -> Bounds<2> {
+    if matches!(node.meta.part, Some(part) if part != Part::Exemplar) {
+        return Bounds::EMPTY;
+    }
+    let world = parent * node.transform;
+    match node.children() {
+        [] => bounds(node, parent),
+        children => children.iter().fold(Bounds::EMPTY, |all, child| all.union(&content(child, world))),
+    }
+}
+
+/// Drops what lies outside, and refuses what cannot be handled.
+fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method: Method) -> Result<()> {
+    items.retain(|item| {
+        let inside = item.outline.bounds().intersects(&window);
+        if !inside {
+            source.notes.add(Note::Outside, || item.meta.id.clone().unwrap_or_default());
+        }
+        inside
+    });
+    if items.len() > source.limits.elements {
+        return Err(guard::too_much(format!("{}: elements", source.name), items.len(), source.limits.elements as u64));
+    }
+    if method != Method::Elements {
+        trace(source, items, &window)?;
+        refuse_networks(source, items, &window)?;
+    }
+    for item in items.iter().filter(|item| item.kind == Kind::Large) {
+        source.notes.add(Note::LargeElement, || item.name(source));
+    }
+    Ok(())
+}
+
+/// Refuses lines that the drawing program has turned into one outline, which are too large for an element.
+fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> Result<()> {
+    let networks: Vec<&Item> = items.iter().filter(|item| is_network(item, window)).collect();
+    if networks.is_empty() {
+        return Ok(());
+    }
+    let named: Vec<_> = networks.iter().take(5).map(|item| item.name(source)).collect();
+    let more = if networks.len() > named.len() { ", ..." } else { "" };
+    let (count, s) = (networks.len(), if networks.len() == 1 { "" } else { "s" });
+    Err(Error::Unsupported {
+        what: format!("{}: {count} outline{s} of a whole network of lines ({}{more})", source.name, named.join(", ")),
+        advice:
+            "draw the lines as strokes or with one width, use --method elements to treat every connected piece as one element, or mark \
+                 items with data-arabesque=\"element\" or \"ignore\""
+                .into(),
+    })
+}
+
+/// Whether an item is a fill that reaches over several sides of the frame.
+fn is_network(item: &Item, window: &Bounds<2>) -> bool {
+    let b = item.outline.bounds();
+    let near = 1e-3 * extent::longer(window);
+    let reaches =
+        |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
+    item.kind == Kind::Large && item.origin == Origin::Piece && reaches(0) + reaches(1) >= 2
+}
+
+/// What to say when no element is left, with what may explain it.
+fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
+    let seen = source.notes.summary();
+    let background = if found.background.is_empty() { "" } else { "what covers the whole frame is background" };
+    let why: Vec<&str> = [background, seen.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
+    let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join(", ")) };
+    let advice = "draw a few shapes, groups or strokes that should be repeated";
+    Error::input(source.name, format!("no element and no curve found{why}"), advice)
+}
+
+fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> (Vec<Element<2>>, Classes) {
+    let roles: Vec<Role> = items.iter().map(|item| frame::role(item, window)).collect();
+    let cut = roles.iter().filter(|r| **r == Role::Context).count();
+    (0..cut).for_each(|_| source.notes.add(Note::Cut, String::new));
+    let is_whole: Vec<bool> = roles.iter().map(|r| *r == Role::Source).collect();
+    let classes = classes::classify(items, &is_whole, &source.sheet);
+    let element = |((item, role), &(class, pose)): ((&Item, Role), &(usize, _))| Element {
+        class,
+        centre: item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre()),
+        pose,
+        outline: item.outline.clone(),
+        colour: item.ink.colour(),
+        role,
+    };
+    (items.iter().zip(roles).zip(&classes.members).map(element).collect(), classes)
+}
+
+fn background(found: &Selection, definitions: &mut Definitions<'_, '_>) -> Option<String> {
+    let mut markup = String::new();
+    for (parent, node) in &found.background {
+        push_placed(&mut markup, *parent, node, definitions);
+    }
+    (!markup.is_empty()).then_some(markup)
+}
+
+/// The layers of a whole job beside the exemplar.
+fn job(inker: &Inker<'_, '_>, root: &Rc<Node>) -> Result<Job> {
+    let area = |part, name| {
+        let nodes = parts(root, part);
+        let place = format!("{}: layer \"{name}\"", inker.source.name);
+        if nodes.is_empty() { Ok(None) } else { shape(inker, &place, &nodes, None).map(Some) }
+    };
+    Ok(Job {
+        domain: area(Part::Domain, "Domain")?,
+        avoid: area(Part::Avoid, "Avoid")?,
+        flow: strokes(inker, &parts(root, Part::Flow))?,
+    })
+}

@@ -1,0 +1,274 @@
+//! A drawing of which a part is made anew: everything else stays as the file has it, to the last byte.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt::Write as _,
+    ops::Range,
+    rc::Rc,
+};
+
+use arabesque_core::{Error, Outline, Result};
+use kurbo::Affine;
+use roxmltree::NodeId;
+
+use crate::svg::{
+    drawing::{Drawing, HostDocument, Page, Placed, Unit},
+    namespace::{INKSCAPE, NAMESPACE, SVG},
+    options::{Method, ReadOptions},
+    parse::{definitions::Definitions, source::Source},
+    read::{
+        document::{Document, Opened},
+        placed::{Kept, Matcher, Sorter},
+    },
+    shape::{extent::bounds, painted_area::Inker},
+    understand::{
+        fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
+        surroundings::Context,
+    },
+};
+
+/// Reads a drawing of which a part is filled anew from a text of which nothing else is read.
+///
+/// # Errors
+/// As for [`Document::with`] and [`Document::host`].
+pub fn read_host_document(
+    text: &str,
+    drawing: &Drawing,
+    area: &Outline<2>,
+    options: &ReadOptions,
+) -> Result<HostDocument> {
+    Document::with(text, options, |document| document.host(drawing, area))
+}
+
+impl Document<'_> {
+    /// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
+    ///
+    /// # Errors
+    /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
+    pub fn host(&self, drawing: &Drawing, area: &Outline<2>) -> Result<HostDocument> {
+        let Opened { source, root, page } = self.open()?;
+        let source = &source;
+        let inker = Inker::new(source);
+        inker.check_all(&root, Affine::IDENTITY)?;
+        let content = bounds(&root, Affine::IDENTITY);
+        let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
+        let roots = [(Context::new(Affine::IDENTITY).without(&self.options.without), Rc::clone(&root))];
+        let mut found = select(&inker, page.view, self.options.method, &roots)?;
+        found.items.retain(|item| !is_frame_mark(item));
+        if self.options.method != Method::Elements {
+            trace(source, &mut found.items, &page.view)?;
+        }
+        let mut sorter = Sorter {
+            inker: &inker,
+            matcher: Matcher::of_itself(drawing),
+            area: Some(area),
+            window: content.union(&page.view),
+        };
+        let mut definitions = Definitions::new(source, "kept");
+        let kept = found.items.iter().map(|item| sorter.sort(item, &mut definitions)).collect::<Result<Vec<_>>>()?;
+        let affected = affected(source, &found.items, &kept)?;
+        let (moved, definitions) = rewritten(source, &mut sorter, &found.items, &affected)?;
+        let replaced = kept.iter().filter(|k| is_changed(k)).count();
+        let mut placed = Placed::on(page);
+        kept.into_iter().for_each(|kept| placed.freeze(kept));
+        placed.warnings = source.notes.warnings(source.name);
+        let (head, tail) = around(source, &affected);
+        Ok(HostDocument { placed, content, replaced, head, tail, moved, definitions })
+    }
+}
+
+fn is_changed(kept: &Kept) -> bool {
+    match kept {
+        Kept::Removed => true,
+        Kept::Element(_) => false,
+        Kept::Strokes { is_touched, .. } | Kept::Obstacle { is_touched, .. } => *is_touched,
+    }
+}
+
+/// The nodes of the file that go: those of changed items, and of items that share a node with them.
+fn affected(source: &Source<'_>, items: &[Item], kept: &[Kept]) -> Result<BTreeSet<u32>> {
+    let nodes = |item: &Item| item.parts.iter().map(|(_, node)| node.meta.xml.get()).collect::<Vec<_>>();
+    let changed = items.iter().zip(kept).filter(|(_, kept)| is_changed(kept));
+    let mut affected: BTreeSet<u32> = changed.flat_map(|(item, _)| nodes(item)).collect();
+    loop {
+        let before = affected.len();
+        for item in items {
+            let own = nodes(item);
+            if own.iter().any(|id| affected.contains(id)) {
+                affected.extend(own);
+            }
+        }
+        if affected.len() == before {
+            break;
+        }
+    }
+    // The same node under two transforms is drawn twice, by `<use>`.
+    let mut transforms: BTreeMap<u32, Affine> = BTreeMap::new();
+    for (parent, node) in items.iter().flat_map(|item| &item.parts) {
+        let id = node.meta.xml.get();
+        let twice = *transforms.entry(id).or_insert(*parent) != *parent;
+        let xml = source.xml.get_node(NodeId::new(id));
+        let defined = xml.is_some_and(|n| n.ancestors().any(|a| matches!(a.tag_name().name(), "defs" | "symbol")));
+        if affected.contains(&id) && (twice || defined) {
+            let place = xml.map_or_else(|| source.name.to_owned(), |xml| source.place(xml));
+            return Err(Error::Unsupported {
+                what: format!("{place}: replacing a part of something that <use> draws"),
+                advice: "unlink the clone in the drawing program (Inkscape: Edit > Clone > Unlink Clone)".into(),
+            });
+        }
+    }
+    Ok(affected)
+}
+
+/// Markup of what is left of affected items, with the definitions that it refers to.
+fn rewritten<'a, 's>(
+    source: &'s Source<'a>,
+    sorter: &mut Sorter<'a, 's, '_, '_>,
+    items: &[Item],
+    affected: &BTreeSet<u32>,
+) -> Result<(String, String)> {
+    let mut definitions = Definitions::new(source, "kept");
+    let mut moved = String::new();
+    for item in items.iter().filter(|item| item.parts.iter().any(|(_, node)| affected.contains(&node.meta.xml.get()))) {
+        let cut = match sorter.sort(item, &mut definitions)? {
+            Kept::Removed => continue,
+            Kept::Element(_) => None,
+            Kept::Strokes { cut, .. } | Kept::Obstacle { cut, .. } => cut,
+        };
+        moved.push_str(&cut.unwrap_or_else(|| fragment(item, &mut definitions).markup));
+        moved.push('\n');
+    }
+    Ok((moved, definitions.finish()))
+}
+
+/// The file without the affected nodes and without its recipe, as it is before and after the end of the root.
+fn around(source: &Source<'_>, affected: &BTreeSet<u32>) -> (String, String) {
+    let text = source.text;
+    let mut gaps: Vec<Range<usize>> =
+        affected.iter().filter_map(|id| source.xml.get_node(NodeId::new(*id))).map(|n| n.range()).collect();
+    for recipe in source.xml.descendants().filter(|n| n.has_tag_name((NAMESPACE, "recipe"))) {
+        let alone = recipe.parent().filter(|p| p.tag_name().name() == "metadata");
+        let alone = alone.filter(|p| p.children().filter(roxmltree::Node::is_element).count() == 1);
+        gaps.push(alone.unwrap_or(recipe).range());
+    }
+    gaps.sort_by_key(|r| (r.start, std::cmp::Reverse(r.end)));
+    let root = source.xml.root_element().range();
+    let end = text.get(..root.end).and_then(|t| t.rfind("</")).unwrap_or(root.end);
+    let tag = text.get(root.start..).and_then(|t| t.find(|c: char| c.is_whitespace() || c == '>')).unwrap_or(0);
+    let (mut head, mut from) = (declaration(text), prolog(text));
+    head.push_str(text.get(from..root.start + tag).unwrap_or_default());
+    head.push_str(&namespaces(source));
+    from = from.max(root.start + tag);
+    for gap in gaps {
+        head.push_str(text.get(from..gap.start).unwrap_or_default());
+        from = from.max(gap.end);
+    }
+    head.push_str(text.get(from..end).unwrap_or_default());
+    (head, text.get(end..).unwrap_or_default().to_owned())
+}
+
+/// Where the file begins after an XML declaration that names another encoding than the one it will be written in.
+fn prolog(text: &str) -> usize {
+    let end = text.strip_prefix("<?xml").and_then(|t| t.find("?>")).map_or(0, |k| k + "<?xml?>".len());
+    let names_other =
+        text.get(..end).is_some_and(|d| d.contains("encoding") && !d.to_ascii_lowercase().contains("utf-8"));
+    if names_other { end } else { 0 }
+}
+
+fn declaration(text: &str) -> String {
+    if prolog(text) > 0 { "<?xml version=\"1.0\" encoding=\"UTF-8\"?>".to_owned() } else { String::new() }
+}
+
+/// Declarations of the namespaces that new things need and the root lacks.
+fn namespaces(source: &Source<'_>) -> String {
+    let needed = [
+        (None, SVG),
+        (Some("xlink"), "http://www.w3.org/1999/xlink"),
+        (Some("inkscape"), INKSCAPE),
+        (Some("arabesque"), NAMESPACE),
+    ];
+    let root = source.xml.root_element();
+    let mut out = String::new();
+    for (prefix, uri) in needed {
+        if root.namespaces().all(|n| n.name() != prefix) {
+            let name = prefix.map_or_else(|| "xmlns".to_owned(), |p| format!("xmlns:{p}"));
+            let _ = write!(out, " {name}=\"{uri}\"");
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::svg::read::exemplar::read_exemplar;
+    use arabesque_core::{Bounds, Vector};
+
+    fn rest(body: &str) -> Result<HostDocument> {
+        let text =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><!-- mine -->{body}\n</svg>\n");
+        let options = ReadOptions { method: Method::Auto, ..ReadOptions::new("r.svg") };
+        let drawing = read_exemplar(&text, &options)?;
+        let corners = [(40.0, 40.0), (60.0, 40.0), (60.0, 60.0), (40.0, 60.0)].map(|(x, y)| Vector::xy(x, y));
+        read_host_document(&text, &drawing, &Outline { rings: vec![corners.to_vec()] }, &options)
+    }
+
+    #[test]
+    fn what_is_not_touched_stays_to_the_last_byte() {
+        let line = "<path  d='M0,10 h100'\tstroke='red' fill='none'  id='a'/>";
+        let dot = "<circle cx='50' cy='50' r='3'/>";
+        let rest = rest(&format!("{line}\n  {dot}<rect x='80' y='80' width='9' height='9' />")).unwrap();
+        assert!(rest.head.contains(line) && rest.head.contains("<!-- mine -->") && rest.head.contains("height='9' />"));
+        assert!(!rest.head.contains("circle") && rest.moved.is_empty());
+        assert_eq!((rest.tail.as_str(), rest.replaced), ("</svg>\n", 1));
+        assert_eq!((rest.placed.placements.len(), rest.placed.curves.len()), (1, 1));
+    }
+
+    #[test]
+    fn strokes_are_cut_at_the_border_and_their_outside_stays() {
+        let rest = rest("<path d='M0 50H100M0 5H100' stroke='red' stroke-width='3' fill='none'/>").unwrap();
+        assert!(!rest.head.contains("<path"));
+        let x = |p: Option<Vector<2>>| p.unwrap()[0].round();
+        let ends: Vec<_> = rest.placed.curves.iter().map(|c| (x(c.path.start()), x(c.path.end()))).collect();
+        assert_eq!(ends, [(0.0, 40.0), (60.0, 100.0), (0.0, 100.0)]);
+        assert_eq!(rest.moved.matches("<path").count(), 3);
+        assert!(rest.moved.contains("M60 50L100 50") && rest.moved.contains("stroke-width=\"3\""), "{}", rest.moved);
+    }
+
+    #[test]
+    fn numbers_of_another_exemplar_do_not_count() {
+        let line = |y: u32, width: u32| {
+            format!("<path d='M0 {y}H100' stroke='red' stroke-width='{width}' data-arabesque-curve='0'/>")
+        };
+        let rest = rest(&[line(10, 1), line(20, 3), line(30, 1), line(50, 3)].concat()).unwrap();
+        let sources: Vec<_> = rest.placed.curves.iter().map(|c| (c.source, c.scale)).collect();
+        assert_eq!(sources, [(0, 1.0), (1, 1.0), (0, 1.0), (1, 1.0), (1, 1.0)]);
+    }
+
+    #[test]
+    fn pieces_of_one_path_are_parted() {
+        let squares = "M45 45h9v9h-9zM5 5h9v9h-9zM75 5h9v9h-9z";
+        let rest = rest(&format!("<path d='{squares}'/>")).unwrap();
+        assert_eq!(rest.moved.matches("<path").count(), 2);
+        assert_eq!(rest.placed.placements.len(), 2);
+    }
+
+    #[test]
+    fn outlines_of_nets_are_cut_as_the_strokes_that_they_are() {
+        let holes: String = (0..16).map(|k| format!("M{} {}v20h20v-20z", 4 + 24 * (k % 4), 4 + 24 * (k / 4))).collect();
+        let rest = rest(&format!("<path fill='red' fill-rule='evenodd' d='M0 0H100V100H0Z{holes}M105 105h1v1h-1z'/>"))
+            .unwrap();
+        // The piece beside the page is all that is no line.
+        assert!(rest.placed.obstacles.len() == 1 && rest.placed.curves.len() > 6);
+        assert!(rest.moved.contains("stroke=\"#ff0000\""), "{}", rest.moved);
+        let area = Bounds::new(Vector::xy(40.0, 40.0), Vector::xy(60.0, 60.0)).grown(-1e-6);
+        let points = rest.placed.curves.iter().flat_map(|c| c.path.flatten(0.1));
+        assert!(points.into_iter().all(|p| !area.contains(p)));
+    }
+
+    #[test]
+    fn parts_of_clones_cannot_be_replaced() {
+        let net = "<defs><g id='n'><path d='M0 50H100M0 20H100M50 0V100' stroke='red' fill='none'/></g></defs><use href='#n'/>";
+        assert!(rest(net).unwrap_err().to_string().contains("Unlink Clone"));
+    }
+}

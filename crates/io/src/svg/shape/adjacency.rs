@@ -1,0 +1,109 @@
+//! Which things touch: sweeps over boxes, and edges that meet.
+
+use arabesque_core::{Bounds, Segment, Vector, segment};
+
+/// Calls `visit(i, j)`, i before j in the sweep, for each pair of boxes that meet once each is grown by its reach.
+/// Stops when `visit` returns `false`.
+pub(crate) fn meeting(boxes: &[Bounds<2>], reach: impl Fn(usize) -> f64, mut visit: impl FnMut(usize, usize) -> bool) {
+    let grown: Vec<_> = boxes.iter().enumerate().map(|(i, b)| b.grown(reach(i))).collect();
+    let mut order: Vec<usize> = (0..boxes.len()).filter(|&i| !boxes[i].is_empty()).collect();
+    order.sort_by(|&a, &b| grown[a].min[0].total_cmp(&grown[b].min[0]));
+    let mut active: Vec<usize> = Vec::new();
+    for &i in &order {
+        active.retain(|&j| grown[j].max[0] >= grown[i].min[0]);
+        for &j in &active {
+            if grown[j].intersects(&grown[i]) && !visit(j, i) {
+                return;
+            }
+        }
+        active.push(i);
+    }
+}
+
+/// An edge between two points.
+pub(crate) type Edge = Segment<2>;
+
+/// How many pairs of edges may still be looked at.
+#[derive(Debug)]
+pub(crate) struct Budget(pub(crate) u64);
+
+impl Budget {
+    /// Whether `test` holds for an edge of `a` and one of `b` whose boxes come within `tolerance` of those of the other side; `None` when
+    /// the budget is spent.
+    pub(crate) fn any(
+        &mut self,
+        a: &[Edge],
+        b: &[Edge],
+        tolerance: f64,
+        test: impl Fn(Edge, Edge) -> bool,
+    ) -> Option<bool> {
+        self.0 = self.0.checked_sub((a.len() + b.len()) as u64)?;
+        let around = |edges: &[Edge]| Bounds::around(edges.iter().flat_map(|e| [e.0, e.1]));
+        let (box_a, box_b) = (around(a).grown(tolerance), around(b).grown(tolerance));
+        let near = |edges: &[Edge], other: &Bounds<2>| -> Vec<Edge> {
+            edges.iter().filter(|e| Bounds::around([e.0, e.1]).intersects(other)).copied().collect()
+        };
+        let (a, b) = (near(a, &box_b), near(b, &box_a));
+        self.0 = self.0.checked_sub(a.len() as u64 * b.len() as u64)?;
+        Some(a.iter().any(|&p| b.iter().any(|&q| test(p, q))))
+    }
+}
+
+/// Whether an edge of `a` comes within `tolerance` of an edge of `b`; `None` when the budget is spent.
+pub(crate) fn edges_meet(a: &[Edge], b: &[Edge], tolerance: f64, budget: &mut Budget) -> Option<bool> {
+    budget.any(a, b, tolerance, |p, q| edge_distance(p, q) <= tolerance)
+}
+
+/// Distance between two edges.
+pub(crate) fn edge_distance(p: Edge, q: Edge) -> f64 {
+    let side = |e: Edge, v: Vector<2>| (e.1 - e.0).cross(v - e.0);
+    let apart = |e: Edge, f: Edge| side(e, f.0) * side(e, f.1) > 0.0;
+    if !apart(p, q) && !apart(q, p) && Bounds::around([p.0, p.1]).intersects(&Bounds::around([q.0, q.1])) {
+        return 0.0;
+    }
+    let ends = [(p.0, q), (p.1, q), (q.0, p), (q.1, p)];
+    ends.into_iter().map(|(v, e)| point_distance(v, e)).fold(f64::INFINITY, f64::min)
+}
+
+/// As `segment::distance`, but with another rounding, on which the joints of touching shapes depend.
+fn point_distance(v: Vector<2>, edge: Edge) -> f64 {
+    (v - edge.0 - (edge.1 - edge.0) * segment::nearest_share(edge, v)).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edges(ring: &[Vector<2>]) -> Vec<Edge> {
+        arabesque_core::ring::edges(ring).collect()
+    }
+
+    fn square(x: f64, y: f64, side: f64) -> Vec<Vector<2>> {
+        vec![Vector::xy(x, y), Vector::xy(x + side, y), Vector::xy(x + side, y + side), Vector::xy(x, y + side)]
+    }
+
+    #[test]
+    fn boxes_that_meet_are_all_found() {
+        let boxes: Vec<_> = (0..5).map(|k| Bounds::around(square(f64::from(k) * 2.0, 0.0, 1.5))).collect();
+        let mut pairs = Vec::new();
+        meeting(
+            &boxes,
+            |_| 0.3,
+            |i, j| {
+                pairs.push((i, j));
+                true
+            },
+        );
+        assert_eq!(pairs, [(0, 1), (1, 2), (2, 3), (3, 4)]);
+    }
+
+    #[test]
+    fn squares_meet_within_the_tolerance() {
+        let (a, b) = (edges(&square(0.0, 0.0, 1.0)), edges(&square(1.1, 0.0, 1.0)));
+        let mut budget = Budget(1000);
+        assert_eq!(edges_meet(&a, &b, 0.2, &mut budget), Some(true));
+        assert_eq!(edges_meet(&a, &b, 0.05, &mut budget), Some(false));
+        assert_eq!(edges_meet(&a, &edges(&square(0.5, 0.5, 1.0)), 0.0, &mut budget), Some(true));
+        assert_eq!(edges_meet(&a, &a, 0.0, &mut Budget(9)), None);
+    }
+}

@@ -1,0 +1,97 @@
+//! Strokes that lie on top of each other, whatever their nodes, their direction and, on closed ones, where they start.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Bounds, Measured, Path, Vector, segment};
+
+/// Strokes nearer to each other than this share of the diagonal of the window lie on top of each other.
+const NEAR: f64 = 1e-4;
+
+/// Places along a stroke at which it is compared.
+const PLACES: usize = 24;
+
+/// A style, and a cell of the grid.
+type Cell = (usize, [i64; 2]);
+
+/// The strokes so far.
+#[derive(Debug)]
+pub(crate) struct Seen {
+    near: f64,
+    /// By style and by the cell in which the centre of the box around them lies.
+    cells: BTreeMap<Cell, Vec<(Bounds<2>, Measured<2>)>>,
+}
+
+impl Seen {
+    /// None, in a drawing of this size.
+    pub(crate) fn new(window: &Bounds<2>) -> Self {
+        Self { near: NEAR * window.size().norm().max(f64::MIN_POSITIVE), cells: BTreeMap::new() }
+    }
+
+    /// Adds a stroke. Returns whether none like it was there.
+    pub(crate) fn insert(&mut self, style: usize, path: &Path<2>) -> bool {
+        let measured = Measured::new(path.clone(), 0.2 * self.near);
+        let bounds = Bounds::around(measured.points().iter().copied());
+        let centre = bounds.centre() * (1.0 / (2.0 * self.near));
+        let cell = [centre[0].floor() as i64, centre[1].floor() as i64];
+        let around =
+            (-1..=1).flat_map(|x| (-1..=1).map(move |y| [cell[0].saturating_add(x), cell[1].saturating_add(y)]));
+        let known = around.filter_map(|cell| self.cells.get(&(style, cell))).flatten();
+        if known.into_iter().any(|(box_, other)| self.is_same((box_, other), (&bounds, &measured))) {
+            return false;
+        }
+        self.cells.entry((style, cell)).or_default().push((bounds, measured));
+        true
+    }
+
+    fn is_same(&self, a: (&Bounds<2>, &Measured<2>), b: (&Bounds<2>, &Measured<2>)) -> bool {
+        let same = |p: Vector<2>, q: Vector<2>| (p - q).norm() <= self.near;
+        let alike = same(a.0.min, b.0.min) && same(a.0.max, b.0.max) && a.1.is_closed() == b.1.is_closed();
+        let length = a.1.length();
+        if !alike || (length - b.1.length()).abs() > self.near.max(1e-3 * length) {
+            return false;
+        }
+        let places = |m: &Measured<2>| (0..=PLACES).map(|k| m.point(m.length() * k as f64 / PLACES as f64)).collect();
+        let on = |places: Vec<Vector<2>>, line: &Measured<2>| places.iter().all(|p| distance(*p, line) <= self.near);
+        on(places(b.1), a.1) && on(places(a.1), b.1)
+    }
+}
+
+/// Distance of a point from the chords of a line.
+fn distance(p: Vector<2>, line: &Measured<2>) -> f64 {
+    line.points().windows(2).map(|w| segment::distance((w[0], w[1]), p)).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen() -> Seen {
+        Seen::new(&Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0)))
+    }
+
+    fn polyline(points: &[(f64, f64)], closed: bool) -> Path<2> {
+        let points: Vec<_> = points.iter().map(|&(x, y)| Vector::xy(x, y)).collect();
+        Path { closed, ..Path::polyline(&points) }
+    }
+
+    #[test]
+    fn nodes_and_direction_do_not_matter() {
+        let mut seen = seen();
+        assert!(seen.insert(0, &polyline(&[(0.0, 10.0), (100.0, 10.0)], false)));
+        assert!(!seen.insert(0, &polyline(&[(100.0, 10.0), (70.0, 10.0), (0.0, 10.0)], false)));
+        assert!(seen.insert(1, &polyline(&[(0.0, 10.0), (100.0, 10.0)], false)), "another style");
+        assert!(seen.insert(0, &polyline(&[(0.0, 10.1), (100.0, 10.1)], false)), "beside it");
+        assert!(seen.insert(0, &polyline(&[(20.0, 10.0), (80.0, 10.0)], false)), "a part of it");
+    }
+
+    #[test]
+    fn rings_may_start_anywhere() {
+        let mut seen = seen();
+        let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)];
+        let ring = |start: usize| -> Vec<(f64, f64)> { (0..=4).map(|k| corners[(start + k) % 4]).collect() };
+        assert!(seen.insert(0, &polyline(&ring(0), true)));
+        assert!(!seen.insert(0, &polyline(&ring(2), true)));
+        let diagonal = [(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0), (0.0, 0.0)];
+        assert!(seen.insert(0, &polyline(&diagonal, true)), "the same corners, another way around");
+    }
+}

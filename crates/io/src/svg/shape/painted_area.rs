@@ -1,0 +1,354 @@
+//! Ink: the area that shapes cover once they are painted, and its colours.
+
+use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
+
+use arabesque_core::{Error, FillRule, Outline, Result, Ring};
+use kurbo::{Affine, Shape as _};
+
+use crate::svg::{
+    parse::{
+        colour,
+        geometry::{Geometry, Painted},
+        length::Viewport,
+        notes::Note,
+        paint::{fraction, reference},
+        scene::{Content, Node, build_definition},
+        source::Source,
+        style::Property as P,
+    },
+    shape::{
+        flatten::{fill_rule, filled},
+        stroke::{growth, stroked},
+    },
+};
+
+/// Area covered by something, in user coordinates of the root.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ink {
+    /// The covered area shape by shape; shapes may overlap.
+    shapes: Vec<Outline<2>>,
+    /// Colours with the area that they cover.
+    pub(crate) colours: Vec<([f64; 3], f64)>,
+}
+
+impl Ink {
+    /// The covered area as disjoint polygons.
+    pub(crate) fn outline(&self) -> Outline<2> {
+        united(&self.shapes)
+    }
+
+    /// Mean colour by area; black without ink.
+    pub(crate) fn colour(&self) -> [f64; 3] {
+        let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
+        let mean = |k: usize| self.colours.iter().map(|(c, area)| c[k] * area).sum::<f64>() / total;
+        if total > 0.0 { std::array::from_fn(mean) } else { [0.0; 3] }
+    }
+
+    /// The colours that cover at least a tenth of the ink each, rounded, as text: items alike in paint have the same.
+    pub(crate) fn colours_key(&self) -> String {
+        let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
+        let mut shares: BTreeMap<String, f64> = BTreeMap::new();
+        for (colour, area) in &self.colours {
+            let [r, g, b] = colour.map(|v| (v * 15.0).round() as u8);
+            *shares.entry(format!("{r:x}{g:x}{b:x}")).or_default() += area;
+        }
+        let main: Vec<_> = shares.into_iter().filter(|(_, area)| *area >= 0.1 * total).map(|(key, _)| key).collect();
+        main.join("+")
+    }
+
+    /// Adds a shape in one colour.
+    fn add(&mut self, outline: Outline<2>, colour: [f64; 3]) {
+        if !outline.rings.is_empty() {
+            self.colours.push((colour, outline.area()));
+            self.shapes.push(outline);
+        }
+    }
+
+    /// Adds other ink.
+    pub(crate) fn append(&mut self, other: Self) {
+        self.shapes.extend(other.shapes);
+        self.colours.extend(other.colours);
+    }
+
+    fn clipped(self, clip: &Outline<2>) -> Self {
+        let outline = self.outline().intersection(clip);
+        let shapes = if outline.rings.is_empty() { Vec::new() } else { vec![outline] };
+        Self { shapes, colours: self.colours }
+    }
+}
+
+/// Shapes that are united at once.
+const AT_ONCE: usize = 8;
+
+/// The union of shapes. Many are united by halves: where they lie on top of each other, as in blends, most borders vanish early.
+fn united(shapes: &[Outline<2>]) -> Outline<2> {
+    match shapes {
+        [] => Outline::default(),
+        [one] => one.clone(),
+        few if few.len() <= AT_ONCE => {
+            let rings: Vec<_> = few.iter().flat_map(|shape| shape.rings.iter().cloned()).collect();
+            Outline::union(&rings, FillRule::NonZero)
+        }
+        many => {
+            let (left, right) = many.split_at(many.len() / 2);
+            united(&[united(left), united(right)])
+        }
+    }
+}
+
+/// Finds the ink of nodes.
+pub(crate) struct Inker<'a, 's> {
+    pub(crate) source: &'s Source<'a>,
+    clips: RefCell<BTreeMap<String, Option<Rc<Node>>>>,
+}
+
+impl<'a, 's> Inker<'a, 's> {
+    pub(crate) fn new(source: &'s Source<'a>) -> Self {
+        Self { source, clips: RefCell::default() }
+    }
+
+    /// Ink of a node whose parent has the transform `parent` to the root.
+    pub(crate) fn ink(&self, node: &Node, parent: Affine) -> Result<Ink> {
+        let mut ink = Ink::default();
+        self.collect(node, parent, &mut ink)?;
+        Ok(ink)
+    }
+
+    fn collect(&self, node: &Node, parent: Affine, ink: &mut Ink) -> Result<()> {
+        if node.own.get("opacity").is_some_and(|o| fraction(o) == 0.0) {
+            return Ok(());
+        }
+        let world = parent * node.transform;
+        let mut own = Ink::default();
+        match &node.content {
+            Content::Group(children) => {
+                for child in children {
+                    self.collect(child, world, &mut own)?;
+                }
+            }
+            Content::Shape(geometry) => self.shape(node, geometry, world, &mut own)?,
+        }
+        if let Some(clip) = self.clip(node, world)? {
+            own = own.clipped(&clip);
+        }
+        ink.append(own);
+        Ok(())
+    }
+
+    fn shape(&self, node: &Node, geometry: &Geometry, world: Affine, ink: &mut Ink) -> Result<()> {
+        self.check(node, geometry, world)?;
+        if flattens(world) {
+            return Ok(());
+        }
+        if geometry.paint == Painted::Picture {
+            ink.add(filled(&geometry.path, world, FillRule::NonZero), [0.5; 3]);
+            return Ok(());
+        }
+        let style = &node.style;
+        if style.fills() {
+            let rule = fill_rule(style.get(P::FillRule));
+            ink.add(filled(&geometry.path, world, rule), colour::of_paint(self.source, style.get(P::Fill)));
+        }
+        if style.strokes() {
+            let outline = stroked(node, &geometry.path, world);
+            ink.add(outline, colour::of_paint(self.source, style.get(P::Stroke)));
+        }
+        Ok(())
+    }
+
+    /// Refuses shapes with coordinates beyond the limit, in the whole tree.
+    pub(crate) fn check_all(&self, node: &Node, parent: Affine) -> Result<()> {
+        let world = parent * node.transform;
+        if let Content::Shape(geometry) = &node.content {
+            self.check(node, geometry, world)?;
+        }
+        node.children().iter().try_for_each(|child| self.check_all(child, world))
+    }
+
+    /// Refuses coordinates beyond the limit.
+    pub(crate) fn check(&self, node: &Node, geometry: &Geometry, world: Affine) -> Result<()> {
+        let extent = (world * geometry.path.clone()).control_box();
+        let width = if node.style.strokes() { node.style.number(P::StrokeWidth) * growth(world) } else { 0.0 };
+        self.check_extent(node, extent, width)
+    }
+
+    fn check_extent(&self, node: &Node, extent: kurbo::Rect, width: f64) -> Result<()> {
+        let largest = [extent.x0, extent.y0, extent.x1, extent.y1, width].map(f64::abs);
+        if largest.iter().all(|v| *v <= self.source.limits.coordinate) {
+            return Ok(());
+        }
+        let place = self.source.xml.get_node(node.meta.xml).map_or_else(String::new, |xml| self.source.place(xml));
+        let problem = format!("a coordinate beyond {:e} user units", self.source.limits.coordinate);
+        Err(Error::input(place, problem, "correct or delete this shape"))
+    }
+
+    /// The area that the clips of a node leave visible; `world` leads from the node to the root.
+    pub(crate) fn clip(&self, node: &Node, world: Affine) -> Result<Option<Outline<2>>> {
+        let by_path = match node.own.get("clip-path").and_then(reference) {
+            Some(Ok((id, _))) => self.clip_area(id, node, world, 0)?,
+            _ => None,
+        };
+        let by_viewport = match node.viewport_clip {
+            Some(viewport) => {
+                self.check_extent(node, world.transform_rect_bbox(viewport), 0.0)?;
+                Some(filled(&viewport.to_path(0.1), world, FillRule::NonZero))
+            }
+            None => None,
+        };
+        Ok(match (by_path, by_viewport) {
+            (Some(a), Some(b)) => Some(a.intersection(&b)),
+            (a, b) => a.or(b),
+        })
+    }
+
+    fn clip_area(&self, id: &str, node: &Node, world: Affine, nested: usize) -> Result<Option<Outline<2>>> {
+        // A clip path that is clipped by itself ends here.
+        if nested > 8 {
+            return Ok(None);
+        }
+        let Some(clip) = self.clip_node(id, node.viewport)? else { return Ok(None) };
+        let in_box = self.source.xml.get_node(clip.meta.xml).and_then(|n| n.attribute("clipPathUnits"));
+        let mut space = world;
+        if in_box == Some("objectBoundingBox") {
+            let Some(extent) = extent(node) else { return Ok(Some(Outline::default())) };
+            space = space
+                * Affine::translate(extent.origin().to_vec2())
+                * Affine::scale_non_uniform(extent.width(), extent.height());
+        }
+        let mut rings = Vec::new();
+        for child in clip.children() {
+            self.clip_rings(child, space * clip.transform, &mut rings)?;
+        }
+        let area = Outline::union(&rings, FillRule::NonZero);
+        match clip.own.get("clip-path").and_then(reference) {
+            Some(Ok((outer, _))) => {
+                let outer = self.clip_area(outer, node, world, nested + 1)?;
+                Ok(Some(outer.map_or_else(|| area.clone(), |o| area.intersection(&o))))
+            }
+            _ => Ok(Some(area)),
+        }
+    }
+
+    fn clip_rings(&self, node: &Node, parent: Affine, rings: &mut Vec<Ring<2>>) -> Result<()> {
+        let world = parent * node.transform;
+        if let (Content::Shape(geometry), false) = (&node.content, flattens(world)) {
+            self.check(node, geometry, world)?;
+            rings.extend(filled(&geometry.path, world, fill_rule(node.style.get(P::ClipRule))).rings);
+        }
+        node.children().iter().try_for_each(|child| self.clip_rings(child, world, rings))
+    }
+
+    fn clip_node(&self, id: &str, viewport: Viewport) -> Result<Option<Rc<Node>>> {
+        if let Some(known) = self.clips.borrow().get(id) {
+            return Ok(known.clone());
+        }
+        let found = self.source.by_id(id).filter(|n| n.tag_name().name() == "clipPath");
+        if found.is_none() {
+            self.source.notes.add(Note::Missing, || format!("clip path #{id}"));
+        }
+        let node = match found {
+            Some(xml) => build_definition(self.source, xml, viewport)?,
+            None => None,
+        };
+        self.clips.borrow_mut().insert(id.to_owned(), node.clone());
+        Ok(node)
+    }
+}
+
+/// Whether a transform presses everything onto a line or a point: then nothing is drawn.
+fn flattens(transform: Affine) -> bool {
+    let [a, b, c, d, ..] = transform.as_coeffs();
+    let sound = transform.determinant().abs() > 1e-9 * (a * a + b * b + c * c + d * d);
+    !sound
+}
+
+/// Box around the shapes of a node, strokes left out, in its own coordinates.
+fn extent(node: &Node) -> Option<kurbo::Rect> {
+    match &node.content {
+        Content::Shape(geometry) => Some(geometry.path.bounding_box()),
+        Content::Group(children) => {
+            let boxes = children.iter().filter_map(|c| Some(c.transform.transform_rect_bbox(extent(c)?)));
+            boxes.reduce(|a, b| a.union(b))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::svg::{
+        options::ReadOptions,
+        parse::{scene, source::with_source},
+    };
+
+    fn area(svg: &str) -> f64 {
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{svg}</svg>");
+        with_source(&text, &ReadOptions::new("i.svg"), |source| {
+            let root = scene::build(source, Viewport { width: 100.0, height: 100.0 })?;
+            Ok(Inker::new(source).ink(&root, Affine::IDENTITY)?.outline().area())
+        })
+        .unwrap()
+    }
+
+    fn is_near(svg: &str, want: f64) {
+        let got = area(svg);
+        assert!((got - want).abs() < 0.01 * want, "{svg}: {got}, expected {want}");
+    }
+
+    #[test]
+    fn fills_and_strokes_count_once_where_they_overlap() {
+        is_near("<rect width='10' height='10'/>", 100.0);
+        is_near("<rect width='10' height='10' stroke='red' stroke-width='2' stroke-linejoin='miter'/>", 144.0);
+        is_near("<rect width='10' height='10' stroke='red' stroke-width='2' fill='none'/>", 144.0 - 64.0);
+        is_near("<g fill='red'><rect width='10' height='10'/><rect x='5' width='10' height='10'/></g>", 150.0);
+    }
+
+    #[test]
+    fn opposite_turning_sense_does_not_cancel() {
+        is_near("<path d='M0 0h10v10h-10z'/><path d='M0 0v10h10v-10z'/>", 100.0);
+        is_near(
+            "<g transform='scale(-1 1)'><path d='M0 0h10v10h-10z'/></g><rect x='-5' width='10' height='10'/>",
+            150.0,
+        );
+    }
+
+    #[test]
+    fn caps_joins_dashes_and_dots() {
+        is_near("<path d='M0 0H10' stroke='red' stroke-width='2'/>", 20.0);
+        is_near("<path d='M0 0H10' stroke='red' stroke-width='2' stroke-linecap='square'/>", 24.0);
+        is_near("<path d='M0 0H12' stroke='red' stroke-width='2' stroke-dasharray='1 2'/>", 8.0);
+        is_near("<path d='M5 5h0' stroke='red' stroke-width='2' stroke-linecap='round'/>", std::f64::consts::PI);
+        is_near("<g transform='scale(1 3)'><path d='M0 0H10' stroke='red' stroke-width='2'/></g>", 60.0);
+        is_near(
+            "<g transform='scale(3)'><path d='M0 0H10' vector-effect='non-scaling-stroke' stroke='red'/></g>",
+            30.0,
+        );
+    }
+
+    #[test]
+    fn holes_follow_the_fill_rule() {
+        let d = "M0 0h10v10h-10z M2 2h6v6h-6z";
+        is_near(&format!("<path d='{d}'/>"), 100.0);
+        is_near(&format!("<path fill-rule='evenodd' d='{d}'/>"), 64.0);
+    }
+
+    #[test]
+    fn clips_cut_ink() {
+        let clip = "<clipPath id='c'><rect width='5' height='100'/></clipPath>";
+        is_near(&format!("{clip}<rect clip-path='url(#c)' width='10' height='10'/>"), 50.0);
+        is_near(
+            &format!("{clip}<g transform='scale(2)' clip-path='url(#c)'><rect width='10' height='10'/></g>"),
+            200.0,
+        );
+        let boxed = "<clipPath id='b' clipPathUnits='objectBoundingBox'><rect width='.5' height='.5'/></clipPath>";
+        is_near(&format!("{boxed}<rect x='7' clip-path='url(#b)' width='10' height='10'/>"), 25.0);
+        let looped = "<clipPath id='l' clip-path='url(#l)'><rect width='5' height='5'/></clipPath>";
+        is_near(&format!("{looped}<rect clip-path='url(#l)' width='10' height='10'/>"), 25.0);
+        is_near("<svg width='10' height='10'><rect width='30' height='5'/></svg>", 50.0);
+    }
+
+    #[test]
+    fn no_visible_paint_is_no_ink() {
+        assert_eq!(area("<rect width='9' height='9' fill='none'/><rect width='9' height='9' fill-opacity='0'/>"), 0.0);
+    }
+}

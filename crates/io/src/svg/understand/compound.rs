@@ -1,0 +1,120 @@
+//! A filled compound path and its connected pieces.
+
+use std::rc::Rc;
+
+use arabesque_core::{Bounds, Result};
+use kurbo::Affine;
+
+use crate::svg::{
+    parse::{
+        geometry::Geometry,
+        meta::Meta,
+        notes::Note,
+        paint::fraction,
+        scene::{Content, Node},
+        style::Property as P,
+    },
+    shape::{extent::bounds, flatten, painted_area::Inker},
+    understand::{
+        pieces::{self, Piece},
+        surroundings::Context,
+    },
+};
+
+/// A filled path of several pieces.
+#[derive(Debug)]
+pub(crate) struct Compound {
+    /// The shape without its own clip and without the groups around it.
+    bare: Node,
+    /// What these and the containers around them do.
+    pub(crate) context: Context,
+    pub(crate) pieces: Vec<Piece>,
+    /// Box around each piece.
+    pub(crate) boxes: Vec<Bounds<2>>,
+    /// Name of a group around it whose effects its pieces go without.
+    effects: Option<String>,
+}
+
+impl Compound {
+    /// The compound path that a node is or wraps; `None` where it has one piece only or is too tangled, with a note, to be taken apart.
+    ///
+    /// # Errors
+    /// As for clips that cannot be read.
+    pub(crate) fn new(
+        inker: &Inker<'_, '_>,
+        node: &Rc<Node>,
+        (leaf, parent): (&Rc<Node>, Affine),
+        at: &Context,
+    ) -> Result<Option<Self>> {
+        let Content::Shape(geometry) = &leaf.content else { return Ok(None) };
+        if geometry.path.subpaths().count() < 2 {
+            return Ok(None);
+        }
+        let rule = flatten::fill_rule(leaf.style.get(P::FillRule));
+        let Some(pieces) = pieces::pieces(&geometry.path, rule) else {
+            inker.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
+            return Ok(None);
+        };
+        if pieces.len() < 2 {
+            return Ok(None);
+        }
+        let mut context = at.clone();
+        let effects = unwrap(inker, (node, leaf), &mut context)?;
+        context.parent = parent;
+        let nameless = Meta { class: None, label: None, kind: None, shows: None, ..(*leaf.meta).clone() };
+        let bare = Node { own: leaf.own.without("clip-path"), meta: Rc::new(nameless), ..(**leaf).clone() };
+        let mut compound = Self { bare, context, pieces, boxes: Vec::new(), effects };
+        let box_of = |k: usize| bounds(&compound.node(&[k]), parent);
+        compound.boxes = (0..compound.pieces.len()).map(box_of).collect();
+        Ok(Some(compound))
+    }
+
+    /// All its pieces.
+    pub(crate) fn all(self: Rc<Self>) -> (Rc<Self>, Vec<usize>) {
+        let all = (0..self.pieces.len()).collect();
+        (self, all)
+    }
+
+    /// What draws some of the pieces.
+    pub(crate) fn node(&self, which: &[usize]) -> Node {
+        let Content::Shape(geometry) = &self.bare.content else { return self.bare.clone() };
+        let all: Vec<_> = geometry.path.subpaths().collect();
+        let subpaths: Vec<usize> = which.iter().flat_map(|&k| self.pieces[k].subpaths.iter().copied()).collect();
+        let chosen = Geometry::from_path(pieces::chosen(&all, &subpaths));
+        Node { content: Content::Shape(Rc::new(chosen)), ..self.bare.clone() }
+    }
+
+    /// Notes what is lost when its pieces become separate.
+    pub(crate) fn note_losses(&self, inker: &Inker<'_, '_>) {
+        let notes = &inker.source.notes;
+        if self.bare.style.get(P::Fill).starts_with("url(") {
+            notes.add(Note::SplitGradient, || self.bare.meta.id.clone().unwrap_or_default());
+        }
+        if let Some(name) = &self.effects {
+            notes.add(Note::ContainerEffect, || name.clone());
+        }
+    }
+}
+
+/// Puts what a shape's clip and the groups around it do into the context; the name of a group whose effects are lost.
+fn unwrap(inker: &Inker<'_, '_>, (node, leaf): (&Rc<Node>, &Rc<Node>), inside: &mut Context) -> Result<Option<String>> {
+    let mut effects = None;
+    let mut at = node;
+    let mut world = inside.parent;
+    loop {
+        world *= at.transform;
+        if let Some(clip) = inker.clip(at, world)? {
+            let both = inside.clip.as_ref().map_or_else(|| clip.clone(), |outer| outer.intersection(&clip));
+            inside.clip = Some(Rc::new(both));
+        }
+        if Rc::ptr_eq(at, leaf) {
+            return Ok(effects);
+        }
+        inside.opacity *= at.own.get("opacity").map_or(1.0, fraction);
+        if at.own.has_effects() {
+            effects = Some(at.meta.id.clone().unwrap_or_default());
+        }
+        let [child] = at.children() else { return Ok(effects) };
+        at = child;
+    }
+}

@@ -1,0 +1,285 @@
+//! Strokes of a drawing as curves: their lines as cubics in the coordinates of the root, and how they are painted.
+
+use std::{collections::BTreeMap, fmt::Write as _, rc::Rc};
+
+use arabesque_core::{Bounds, Class, Curve, Outline, Path, Result};
+use kurbo::{Affine, BezPath};
+
+use crate::{
+    svg::{
+        centreline::Centrelines,
+        drawing::Stroke,
+        parse::{
+            colour,
+            definitions::Definitions,
+            guard::too_much,
+            meta::Meta,
+            notes::Note,
+            paint::{fraction, reference},
+            scene::{Content, Node},
+            style::Property as P,
+        },
+        shape::{
+            cut_path::{Side, cut},
+            duplicates::Seen,
+            painted_area::Inker,
+            stroke::growth,
+            subpath::{is_closed, line},
+        },
+        understand::{classes::names_of, item::Item},
+    },
+    text::xml::{number, push_attribute},
+};
+
+/// The curves of a drawing.
+#[derive(Debug, Default)]
+pub(crate) struct Curves {
+    pub(crate) curves: Vec<Curve<2>>,
+    pub(crate) styles: Vec<Class>,
+    /// How curve `i` is painted.
+    pub(crate) strokes: Vec<Stroke>,
+}
+
+/// What holds for everything inside a node.
+#[derive(Clone)]
+struct Inside {
+    parent: Affine,
+    opacity: f64,
+    clip: Option<Rc<Outline<2>>>,
+}
+
+/// Gathers the curves of a file.
+pub(crate) struct Gatherer<'a, 's, 'i, 'd> {
+    pub(crate) inker: &'i Inker<'a, 's>,
+    pub(crate) definitions: &'d mut Definitions<'a, 's>,
+    /// Nothing outside of it is of interest.
+    pub(crate) window: Bounds<2>,
+    found: Curves,
+    /// Index into the styles by paint.
+    style_of: BTreeMap<String, usize>,
+    /// What was found already, to tell strokes that lie on top of each other.
+    seen: Seen,
+}
+
+impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
+    pub(crate) fn new(inker: &'i Inker<'a, 's>, definitions: &'d mut Definitions<'a, 's>, window: Bounds<2>) -> Self {
+        let (found, style_of, seen) = (Curves::default(), BTreeMap::new(), Seen::new(&window));
+        Self { inker, definitions, window, found, style_of, seen }
+    }
+
+    /// Adds the strokes of an item.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] for too many.
+    pub(crate) fn add(&mut self, item: &Item) -> Result<()> {
+        if let Some(lines) = &item.lines {
+            return self.add_lines(item, lines);
+        }
+        for (parent, node) in &item.parts {
+            let inside = Inside { parent: *parent, opacity: item.opacity, clip: item.clip.clone() };
+            self.node(node, &inside, item)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the lines of an outline, as strokes in the paint of its fill.
+    fn add_lines(&mut self, item: &Item, lines: &Centrelines) -> Result<()> {
+        let Some((leaf, opacity)) = item.parts.first().and_then(|(_, node)| first_shape(node, item.opacity)) else {
+            return Ok(());
+        };
+        let fill = leaf.style.get(P::Fill);
+        let mut paint = " fill=\"none\"".to_owned();
+        match reference(fill) {
+            Some(_) => push_attribute(&mut paint, "stroke", &self.definitions.paint(fill, leaf.viewport)),
+            None => push_attribute(&mut paint, "stroke", fill),
+        }
+        if fraction(leaf.style.get(P::FillOpacity)) < 1.0 {
+            push_attribute(&mut paint, "stroke-opacity", leaf.style.get(P::FillOpacity));
+        }
+        paint.push_str(" stroke-linecap=\"round\"");
+        let stroke = Stroke {
+            paint,
+            effects: self.effects(leaf, opacity),
+            width: lines.width,
+            dashes: Vec::new(),
+            dash_offset: 0.0,
+            layer: item.layer.as_deref().map(str::to_owned),
+            label: item.meta.label.clone(),
+        };
+        let style = self.style(&stroke, &item.meta);
+        let colour = colour::of_paint(self.inker.source, fill);
+        for path in &lines.paths {
+            self.push(Curve { path: path.clone(), style, width: lines.width, colour }, &stroke, item);
+        }
+        self.check_count()
+    }
+
+    pub(crate) fn finish(self) -> Curves {
+        self.found
+    }
+
+    fn node(&mut self, node: &Node, at: &Inside, item: &Item) -> Result<()> {
+        let world = at.parent * node.transform;
+        let opacity = at.opacity * node.own.get("opacity").map_or(1.0, fraction);
+        let clip = match (&at.clip, self.inker.clip(node, world)?) {
+            (Some(a), Some(b)) => Some(Rc::new(a.intersection(&b))),
+            (a, b) => b.map(Rc::new).or_else(|| a.clone()),
+        };
+        let inside = Inside { parent: world, opacity, clip };
+        if let Content::Shape(geometry) = &node.content {
+            return self.shape(node, &geometry.path, &inside, item);
+        }
+        node.children().iter().try_for_each(|child| self.node(child, &inside, item))
+    }
+
+    fn shape(&mut self, node: &Node, path: &BezPath, at: &Inside, item: &Item) -> Result<()> {
+        let notes = &self.inker.source.notes;
+        let name = || item.meta.id.clone().unwrap_or_default();
+        if !node.style.strokes() {
+            return Ok(());
+        }
+        if node.style.fills() && path.segments().count() > 1 && node.meta.mark.or(item.meta.mark).is_some() {
+            notes.add(Note::CurveFill, name);
+        }
+        if node.own.get("mask").is_some_and(|m| m != "none") {
+            notes.add(Note::CurveMask, name);
+        }
+        let stroke = self.stroke(node, at, item);
+        let style = self.style(&stroke, &item.meta);
+        let colour = colour::of_paint(self.inker.source, node.style.get(P::Stroke));
+        for elements in path.subpaths() {
+            let closed = is_closed(elements);
+            let line =
+                line(&(at.parent * BezPath::from_vec(elements.to_vec())), closed, self.inker.source.limits.extent);
+            if length(&line) <= self.inker.source.limits.extent {
+                self.inker.source.notes.add(Note::ZeroLength, || item.meta.id.clone().unwrap_or_default());
+                continue;
+            }
+            let parts = at.clip.as_ref().and_then(|clip| cut(&line, clip, Side::Inside));
+            for path in parts.unwrap_or_else(|| vec![line]) {
+                self.push(Curve { path, style, width: stroke.width, colour }, &stroke, item);
+            }
+        }
+        self.check_count()
+    }
+
+    fn push(&mut self, curve: Curve<2>, stroke: &Stroke, item: &Item) {
+        if !curve.path.bounds().grown(0.5 * curve.width).intersects(&self.window) {
+            return;
+        }
+        if !self.seen.insert(curve.style, &curve.path) {
+            self.inker.source.notes.add(Note::Twice, || item.meta.id.clone().unwrap_or_default());
+            return;
+        }
+        self.found.curves.push(curve);
+        self.found.strokes.push(stroke.clone());
+    }
+
+    /// Refuses more curves than the limit.
+    fn check_count(&self) -> Result<()> {
+        let (found, source) = (self.found.curves.len(), self.inker.source);
+        if found <= source.limits.elements {
+            return Ok(());
+        }
+        Err(too_much(format!("{}: curves", source.name), found, source.limits.elements as u64))
+    }
+
+    /// How a shape's stroke is painted, in the units of the root.
+    fn stroke(&mut self, node: &Node, at: &Inside, item: &Item) -> Stroke {
+        let notes = &self.inker.source.notes;
+        let fixed = node.own.get("vector-effect") == Some("non-scaling-stroke");
+        let scale = if fixed { 1.0 } else { growth(at.parent) };
+        if !fixed && !is_even(at.parent) {
+            notes.add(Note::UnevenWidth, || item.meta.id.clone().unwrap_or_default());
+        }
+        let style = &node.style;
+        let dashes = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse::<f64>().ok());
+        let dashes: Vec<f64> = dashes.map(|d| d * scale).collect();
+        let dash_offset = if dashes.is_empty() { 0.0 } else { style.number(P::StrokeDashoffset) * scale };
+        Stroke {
+            paint: self.paint(node),
+            effects: self.effects(node, at.opacity),
+            width: style.number(P::StrokeWidth) * scale,
+            dashes,
+            dash_offset,
+            layer: item.layer.as_deref().map(str::to_owned),
+            label: item.meta.label.clone(),
+        }
+    }
+
+    /// The presentation attributes of a stroke, but for its lengths and effects.
+    fn paint(&mut self, node: &Node) -> String {
+        let mut out = " fill=\"none\"".to_owned();
+        for (name, value) in node.style.attributes() {
+            if name.starts_with("fill") || LENGTHS.contains(&name) || matches!(name, "clip-rule" | "paint-order") {
+                continue;
+            }
+            match reference(value) {
+                Some(_) => push_attribute(&mut out, name, &self.definitions.paint(value, node.viewport)),
+                None => push_attribute(&mut out, name, value),
+            }
+        }
+        out
+    }
+
+    /// What a stroke has for itself: opacity, filter, blending.
+    fn effects(&mut self, node: &Node, opacity: f64) -> String {
+        let mut out = String::new();
+        if opacity < 1.0 {
+            push_attribute(&mut out, "opacity", &number(opacity));
+        }
+        for (name, value) in node.own.iter() {
+            match name {
+                "filter" => {
+                    if let Some(value) = self.definitions.effect(name, value, node.viewport) {
+                        push_attribute(&mut out, name, &value);
+                    }
+                }
+                "mix-blend-mode" if value != "normal" => push_attribute(&mut out, "style", &format!("{name}:{value}")),
+                _ => {}
+            }
+        }
+        out
+    }
+
+    /// The style of that paint in that layer.
+    fn style(&mut self, stroke: &Stroke, meta: &Meta) -> usize {
+        let mut key = stroke.key();
+        let _ = write!(key, "|{}", stroke.layer.as_deref().unwrap_or_default());
+        if let Some(known) = self.style_of.get(&key) {
+            return *known;
+        }
+        let names = names_of(meta, &self.inker.source.sheet);
+        let name = names.into_iter().next().unwrap_or_else(|| format!("style {}", self.found.styles.len() + 1));
+        let taken = |name: &str| self.found.styles.iter().any(|s| s.name == name);
+        let free = (2..).map(|n| format!("{name} {n}"));
+        let name = std::iter::once(name.clone()).chain(free).find(|n| !taken(n)).unwrap_or(name);
+        self.found.styles.push(Class { name });
+        self.style_of.insert(key, self.found.styles.len() - 1);
+        self.found.styles.len() - 1
+    }
+}
+
+/// The first shape in a node, with the opacity of what is around it and its own.
+fn first_shape(node: &Node, opacity: f64) -> Option<(&Node, f64)> {
+    let opacity = opacity * node.own.get("opacity").map_or(1.0, fraction);
+    match &node.content {
+        Content::Shape(_) => Some((node, opacity)),
+        Content::Group(children) => children.iter().find_map(|child| first_shape(child, opacity)),
+    }
+}
+
+/// Properties that scale with the stroke.
+const LENGTHS: [&str; 3] = ["stroke-width", "stroke-dasharray", "stroke-dashoffset"];
+
+/// Whether a transform stretches all directions alike, but for one part in a hundred.
+fn is_even(transform: Affine) -> bool {
+    let [a, b, c, d, ..] = transform.as_coeffs();
+    let (p, q) = (a.hypot(b), c.hypot(d));
+    (p - q).abs() <= 0.01 * p.max(q) && (a * c + b * d).abs() <= 0.01 * p * q
+}
+
+/// Length of the chords of a path.
+fn length(path: &Path<2>) -> f64 {
+    path.cubics.iter().flat_map(|c| c.windows(2)).map(|w| (w[1] - w[0]).norm()).sum()
+}

@@ -1,0 +1,122 @@
+//! The frame of an exemplar, and what lies on it.
+
+use arabesque_core::{Bounds, Outline, Role, Vector};
+use kurbo::Affine;
+
+use crate::svg::{
+    parse::scene::Node,
+    shape::extent::{longer, outline_bounds},
+    understand::item::{Item, Kind},
+};
+
+/// Share of its diagonal that an element has along the frame when it is cut there.
+const CUT: f64 = 0.15;
+/// How far from the frame a cut may be, as a share of the diagonal of the element.
+const NEAR: f64 = 0.002;
+/// The same two for edges that lie on the frame as exactly as numbers are written: no whole element has such edges by chance.
+const EXACT_CUT: f64 = 0.03;
+const EXACTLY_NEAR: f64 = 1e-5;
+
+/// A box is thin when its shorter side is less than this share of the longer one.
+const THIN: f64 = 0.03;
+
+/// Whether an element is whole, or cut by a clip or at the frame; `frame` is `None` where the file states none.
+pub(crate) fn role(item: &Item, frame: Option<&Bounds<2>>) -> Role {
+    let is_cut = item.is_cut || frame.is_some_and(|frame| is_cut_along(&item.outline, frame));
+    if is_cut { Role::Context } else { Role::Source }
+}
+
+/// Whether a good part of the outline runs exactly along a side of the frame and nothing reaches over that side.
+fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
+    let extent = outline.bounds();
+    let diagonal = extent.size().norm();
+    let length = |k: usize, side: f64, near: f64| -> f64 {
+        let on_side = |v: f64| (v - side).abs() <= near * diagonal;
+        let along = outline.edges().filter(|(a, b)| on_side(a[k]) && on_side(b[k]));
+        along.map(|(a, b)| (a[1 - k] - b[1 - k]).abs()).sum()
+    };
+    let sides = (0..2).flat_map(|k| [(k, frame.min[k], extent.min[k]), (k, frame.max[k], extent.max[k])]);
+    sides.filter(|(_, side, reach)| (side - reach).abs() <= NEAR * diagonal).any(|(k, side, _)| {
+        length(k, side, NEAR) >= CUT * diagonal || length(k, side, EXACTLY_NEAR) >= EXACT_CUT * diagonal
+    })
+}
+
+/// Whether a box is so thin that what it holds tells nothing about a second direction.
+pub(crate) fn is_thin(extent: &Bounds<2>) -> bool {
+    let size = extent.size();
+    !extent.is_empty() && size[0].min(size[1]) < THIN * longer(extent)
+}
+
+/// The square around the centre of a box, as wide as the longer side.
+fn square(extent: &Bounds<2>) -> Bounds<2> {
+    let (centre, half) = (extent.centre(), 0.5 * longer(extent));
+    Bounds::new(centre - Vector::xy(half, half), centre + Vector::xy(half, half))
+}
+
+/// The box around all items, with half the usual gap around it: the frame that the artist had in mind. Curves end at it.
+pub(crate) fn around(items: &[Item]) -> Bounds<2> {
+    let tight = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.outline.bounds()));
+    if is_thin(&tight) {
+        return square(&tight);
+    }
+    if items.len() < 2 || items.iter().any(|item| item.kind == Kind::Curve) {
+        return tight;
+    }
+    let spacing = (tight.measure() / items.len() as f64).sqrt();
+    let diameter = items.iter().map(|item| item.outline.bounds().measure().sqrt()).sum::<f64>() / items.len() as f64;
+    tight.grown((0.5 * (spacing - diameter)).max(0.0))
+}
+
+/// The box of a rectangle called "frame".
+pub(crate) fn frame_mark(node: &Node, parent: Affine) -> Option<Bounds<2>> {
+    let world = parent * node.transform;
+    if is_called_frame(node) {
+        return Some(outline_bounds(node, parent)).filter(|b| b.measure() > 0.0);
+    }
+    node.children().iter().find_map(|child| frame_mark(child, world))
+}
+
+fn is_called_frame(node: &Node) -> bool {
+    let names = [&node.meta.label, &node.meta.id];
+    node.meta.tag == "rect" && names.iter().any(|n| n.as_ref().is_some_and(|n| n.eq_ignore_ascii_case("frame")))
+}
+
+/// Whether an item is the rectangle that states the frame.
+pub(crate) fn is_frame_mark(item: &Item) -> bool {
+    item.parts.len() == 1 && item.parts.iter().all(|(_, node)| is_called_frame(node))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(corners: &[(f64, f64)]) -> Outline<2> {
+        Outline { rings: vec![corners.iter().map(|&(x, y)| Vector::xy(x, y)).collect()] }
+    }
+
+    fn is_cut(corners: &[(f64, f64)]) -> bool {
+        is_cut_along(&polygon(corners), &Bounds::new(Vector::ZERO, Vector::xy(10.0, 10.0)))
+    }
+
+    #[test]
+    fn a_half_disc_on_the_frame_is_cut_and_a_disc_that_touches_is_not() {
+        let arc = |from: f64, to: f64| -> Vec<(f64, f64)> {
+            let at = |k: u32| (from + (to - from) * f64::from(k) / 30.0).sin_cos();
+            (0..=30).map(at).map(|(s, c)| (s, 5.0 + c)).collect()
+        };
+        let half = std::f64::consts::PI;
+        assert!(is_cut(&arc(0.0, half)));
+        let disc: Vec<_> = arc(0.0, 2.0 * half).iter().map(|(x, y)| (x + 1.0, *y)).collect();
+        assert!(!is_cut(&disc));
+        assert!(is_cut(&[(2.0, 0.0), (3.0, 0.0), (5.0, 9.0), (1.0, 9.0)]), "only the tip is cut off");
+        let over: Vec<_> = arc(0.0, 2.0 * half);
+        assert!(!is_cut(&over));
+    }
+
+    #[test]
+    fn a_straight_line_has_no_frame_of_its_own() {
+        let line = Bounds::new(Vector::xy(0.0, 5.0), Vector::xy(10.0, 5.1));
+        assert!(is_thin(&line) && !is_thin(&square(&line)) && !is_thin(&Bounds::EMPTY));
+        assert_eq!(square(&line).size(), Vector::xy(10.0, 10.0));
+    }
+}

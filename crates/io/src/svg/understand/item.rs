@@ -1,0 +1,189 @@
+//! What the selection finds.
+
+use std::rc::Rc;
+
+use arabesque_core::{Bounds, FillRule, Outline, Result};
+use kurbo::Affine;
+
+use crate::svg::{
+    centreline::Centrelines,
+    parse::{meta::Meta, notes::Note, scene::Node, source::Source},
+    shape::{
+        extent::{bounds, longer, sole_shape},
+        painted_area::{Ink, Inker},
+    },
+    understand::{compound::Compound, surroundings::Context},
+};
+
+/// Share of the frame from which on something is too large for an element.
+pub(crate) const HALF: f64 = 0.5;
+
+/// What a selected item is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// To be placed as a whole.
+    Element,
+    /// An open stroke, a closed one too large for an element or of the same net, or one marked as curve.
+    Curve,
+    /// A fill larger than half of the frame that is no background.
+    Large,
+}
+
+/// How an item came to be, which decides what it may be joined with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// A group, `<use>`, or anything marked by hand: never joined.
+    Whole,
+    /// A single filled shape.
+    Fill,
+    /// A single shape without a fill.
+    Stroke,
+    /// A piece of a compound path.
+    Piece,
+}
+
+/// A selected item.
+#[derive(Clone, Debug)]
+pub(crate) struct Item {
+    /// What draws it: nodes with the transforms from their parents to the root.
+    pub(crate) parts: Vec<(Affine, Rc<Node>)>,
+    pub(crate) meta: Rc<Meta>,
+    pub(crate) layer: Option<Rc<str>>,
+    /// Opacity of the containers around it.
+    pub(crate) opacity: f64,
+    pub(crate) outline: Outline<2>,
+    pub(crate) ink: Ink,
+    pub(crate) kind: Kind,
+    pub(crate) origin: Origin,
+    /// The lines whose outline it is, where it was found to be one.
+    pub(crate) lines: Option<Rc<Centrelines>>,
+    /// What the clips of the containers around it leave visible.
+    pub(crate) clip: Option<Rc<Outline<2>>>,
+    /// Whether that takes something away from it.
+    pub(crate) is_cut: bool,
+    /// The compound path that it is made of, and which pieces of it, where these are several.
+    pub(crate) compound: Option<(Rc<Compound>, Vec<usize>)>,
+}
+
+impl Item {
+    /// A node as a whole; `None`, with a note, where nothing of it is seen.
+    pub(crate) fn taken(
+        inker: &Inker<'_, '_>,
+        node: &Rc<Node>,
+        at: &Context,
+        kind: Kind,
+        origin: Origin,
+    ) -> Result<Option<Self>> {
+        let ink = inker.ink(node, at.parent)?;
+        let mut item = Self {
+            parts: vec![(at.parent, Rc::clone(node))],
+            meta: named(node),
+            layer: at.layer.clone(),
+            opacity: at.opacity,
+            outline: ink.outline(),
+            ink,
+            kind,
+            origin,
+            lines: None,
+            clip: at.clip.clone(),
+            is_cut: false,
+            compound: None,
+        };
+        if let Some(clip) = &at.clip {
+            let before = item.outline.area();
+            item.outline = item.outline.intersection(clip);
+            item.is_cut = item.outline.area() < 0.999 * before;
+        }
+        let is_seen = !item.outline.rings.is_empty() && longer(&item.outline.bounds()) > inker.source.limits.extent;
+        if !is_seen {
+            item.note_unseen(inker);
+        }
+        Ok(is_seen.then_some(item))
+    }
+
+    /// Some pieces of a compound path.
+    ///
+    /// # Errors
+    /// As for ink that cannot be found.
+    pub(crate) fn of_pieces(
+        compound: &Rc<Compound>,
+        inker: &Inker<'_, '_>,
+        which: Vec<usize>,
+        frame: Bounds<2>,
+    ) -> Result<Option<Self>> {
+        let node = Rc::new(compound.node(&which));
+        let share = bounds(&node, compound.context.parent).measure() / frame.measure();
+        let kind = if share < HALF { Kind::Element } else { Kind::Large };
+        let item = Self::taken(inker, &node, &compound.context, kind, Origin::Piece)?;
+        let compound = (which.len() > 1).then(|| (Rc::clone(compound), which));
+        Ok(item.map(|item| Self { compound, ..item }))
+    }
+
+    /// The items of a group as one.
+    pub(crate) fn merged(items: &[Self], group: &[usize], frame: Bounds<2>) -> Self {
+        let mut all = items[group[0]].clone();
+        if group.len() == 1 {
+            return all;
+        }
+        for &i in &group[1..] {
+            all.parts.extend(items[i].parts.iter().map(|(t, n)| (*t, Rc::clone(n))));
+            all.ink.append(items[i].ink.clone());
+            all.is_cut |= items[i].is_cut;
+        }
+        all.compound = None;
+        let rings: Vec<_> = group.iter().flat_map(|&i| items[i].outline.rings.iter().cloned()).collect();
+        all.outline = Outline::union(&rings, FillRule::NonZero);
+        let strokes = group.iter().any(|&i| items[i].kind == Kind::Curve);
+        let large = all.outline.bounds().measure() >= 0.5 * frame.measure();
+        all.kind = match (strokes, large) {
+            (true, _) => Kind::Curve,
+            (false, true) => Kind::Large,
+            (false, false) => Kind::Element,
+        };
+        all
+    }
+
+    /// What a person calls it: its label or id, else its place in the file.
+    pub(crate) fn name(&self, source: &Source<'_>) -> String {
+        let meta = &self.meta;
+        let own = meta.label.as_ref().or(meta.id.as_ref()).map(|n| format!("\"{n}\""));
+        let line = || source.xml.get_node(meta.xml).map(|xml| source.xml.text_pos_at(xml.range().start).row);
+        own.unwrap_or_else(|| format!("<{}> in line {}", meta.tag, line().unwrap_or(1)))
+    }
+
+    /// Says why nothing of it is seen.
+    fn note_unseen(&self, inker: &Inker<'_, '_>) {
+        let name = || self.meta.id.clone().unwrap_or_default();
+        if self.parts.iter().any(|(_, node)| node.style.has_no_width()) {
+            inker.source.notes.add(Note::NoWidth, name);
+        }
+        let is_drawn = self.parts.iter().any(|(parent, node)| !bounds(node, *parent).is_empty());
+        if is_drawn && !self.is_cut {
+            inker.source.notes.add(Note::ZeroSize, name);
+        }
+    }
+}
+
+/// The names of a node, completed by those of the only shape in it.
+fn named(node: &Rc<Node>) -> Rc<Meta> {
+    match sole_shape(node, Affine::IDENTITY) {
+        Some((leaf, _)) if !Rc::ptr_eq(leaf, node) => {
+            let (outer, inner) = (&*node.meta, &*leaf.meta);
+            Rc::new(Meta {
+                class: outer.class.clone().or_else(|| inner.class.clone()),
+                label: outer.label.clone().or_else(|| inner.label.clone()),
+                kind: outer.kind.clone().or_else(|| inner.kind.clone()),
+                shows: outer.shows.clone().or_else(|| inner.shows.clone()),
+                ..outer.clone()
+            })
+        }
+        _ => Rc::clone(&node.meta),
+    }
+}
+
+/// Everything selected from a drawing.
+#[derive(Debug, Default)]
+pub(crate) struct Selection {
+    pub(crate) items: Vec<Item>,
+    pub(crate) background: Vec<(Affine, Rc<Node>)>,
+}

@@ -1,0 +1,76 @@
+//! Joining what belongs together: strokes that touch, and pieces of one colour that abut.
+
+use arabesque_core::{Bounds, DisjointSets, Result};
+
+use crate::svg::{
+    options::Method,
+    parse::notes::Note,
+    shape::{
+        adjacency::{Budget, Edge, edges_meet, meeting},
+        extent::longer,
+        painted_area::Inker,
+    },
+    understand::{
+        abutting,
+        item::{Item, Origin, Selection},
+    },
+};
+
+/// Pairs of edges that are looked at in one file.
+const EDGE_PAIRS: u64 = 200_000_000;
+
+/// Gap that still counts as touching, as a share of the frame.
+const SEAM: f64 = 2e-4;
+
+/// Joins items: pieces of the same colour that touch always, strokes and what they touch when every connected piece is an element.
+pub(crate) fn join(found: Selection, inker: &Inker<'_, '_>, frame: Bounds<2>, method: Method) -> Result<Selection> {
+    let Selection { items, background } = found;
+    let tolerance = SEAM * longer(&frame);
+    let items = if method == Method::Elements { items } else { abutting::join_lines(items, inker, frame, tolerance)? };
+    let colours: Vec<String> = items.iter().map(|item| item.ink.colours_key()).collect();
+    let may_join = |i: usize, j: usize| {
+        let (a, b) = (items[i].origin, items[j].origin);
+        let pieces = a == Origin::Piece && b == Origin::Piece && colours[i] == colours[j];
+        let loose = a != Origin::Whole && b != Origin::Whole;
+        let is_done = items[i].lines.is_some() || items[j].lines.is_some();
+        (!is_done && pieces) || (method == Method::Elements && loose && (a == Origin::Stroke || b == Origin::Stroke))
+    };
+    let items = if items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
+        let groups = connected(&items, may_join, tolerance, inker);
+        groups.into_iter().map(|group| Item::merged(&items, &group, frame)).collect()
+    } else {
+        items
+    };
+    Ok(Selection { items, background })
+}
+
+fn connected(
+    items: &[Item],
+    may_join: impl Fn(usize, usize) -> bool,
+    tolerance: f64,
+    inker: &Inker<'_, '_>,
+) -> Vec<Vec<usize>> {
+    let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
+    let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
+    let mut sets = DisjointSets::new(items.len());
+    let mut budget = Budget(EDGE_PAIRS);
+    meeting(
+        &boxes,
+        |_| 0.5 * tolerance,
+        |i, j| {
+            if !may_join(i, j) || sets.of(i) == sets.of(j) {
+                return true;
+            }
+            let meets = edges_meet(&edges[i], &edges[j], tolerance, &mut budget);
+            let inside = |a: &Item, b: &Item| a.outline.points().next().is_some_and(|p| b.outline.contains(p));
+            match meets {
+                Some(true) => sets.join(i, j),
+                Some(false) if inside(&items[i], &items[j]) || inside(&items[j], &items[i]) => sets.join(i, j),
+                Some(false) => {}
+                None => inker.source.notes.add(Note::TooTangled, || "not all touching strokes joined".to_owned()),
+            }
+            meets.is_some()
+        },
+    );
+    sets.groups()
+}

@@ -1,0 +1,71 @@
+//! Filled outlines that are lines in truth, as drawing programs make them by "stroke to path": taken for strokes where they are too
+//! large for an element.
+
+use std::{collections::BTreeSet, rc::Rc};
+
+use arabesque_core::{Bounds, Error, Result};
+
+use crate::svg::{
+    centreline::centrelines,
+    parse::{
+        notes::Note,
+        scene::{Content, Node},
+        source::Source,
+    },
+    understand::item::{Item, Kind, Origin},
+};
+
+/// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as a curve.
+///
+/// # Errors
+/// [`Error::Unsupported`] for something filled that is marked as a curve and has no lines of one width.
+pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>) -> Result<()> {
+    let mut paints = BTreeSet::new();
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
+        if follow(source, item, window) {
+            paints.insert(item.ink.colours_key());
+        }
+    }
+    // Smaller pieces of the same paint are parts of the same net.
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Element && item.origin != Origin::Whole) {
+        if paints.contains(&item.ink.colours_key()) && is_plain_fill(item) {
+            follow(source, item, window);
+        }
+    }
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Curve && is_plain_fill(item)) {
+        if !follow(source, item, window) {
+            return Err(Error::Unsupported {
+                what: format!(
+                    "{}: {}, filled and marked as a curve but no line of one width",
+                    source.name,
+                    item.name(source)
+                ),
+                advice: "give it a stroke and no fill, or mark it data-arabesque=\"element\"".into(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Makes an item a curve where it is the outline of lines.
+fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> bool {
+    if item.lines.is_none() {
+        item.lines = centrelines(&item.outline, Some(window)).map(Rc::new);
+    }
+    if item.lines.is_some() {
+        item.kind = Kind::Curve;
+        source.notes.add(Note::Traced, || item.name(source));
+    }
+    item.lines.is_some()
+}
+
+/// Whether everything in an item is filled, and nothing has a stroke.
+fn is_plain_fill(item: &Item) -> bool {
+    fn is_plain(node: &Node) -> bool {
+        match &node.content {
+            Content::Group(children) => children.iter().all(|child| is_plain(child)),
+            Content::Shape(_) => node.style.fills() && !node.style.strokes(),
+        }
+    }
+    item.origin != Origin::Whole && item.parts.iter().all(|(_, node)| is_plain(node))
+}

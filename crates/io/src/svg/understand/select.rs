@@ -1,0 +1,283 @@
+//! What of a drawing is an element, what a curve, what background.
+//!
+//! - Filled shapes, groups, `<use>` and filled pieces smaller than half of the frame are elements.
+//! - A stroke without a fill is a curve where it is open, or larger than half of the frame. Where the drawing holds any such curve, its
+//!   closed strokes outside groups are curves too, for they belong to the same net; else they are elements.
+//! - Layers, groups that cover half of the frame, and groups of several things far apart are containers: their content is looked at.
+//! - A filled compound path is taken apart into connected pieces unless it is small and its pieces lie close together (a paw print);
+//!   pieces in the holes of another piece stay with it, and pieces of the same colour that abut are joined again.
+//! - A fill that covers the frame is background; a stroke along the frame is left out.
+//! - `data-arabesque` on an item overrides all this.
+
+use std::rc::Rc;
+
+use arabesque_core::{Bounds, DisjointSets, FillRule, Outline, Result, ring};
+use kurbo::Affine;
+use roxmltree::NodeId;
+
+use crate::svg::{
+    options::Method,
+    parse::{
+        geometry::{Geometry, Painted},
+        meta::{Mark, Part},
+        notes::Note,
+        paint::fraction,
+        scene::{Content, Node},
+    },
+    shape::{
+        extent::{bounds, clusters, longer, sole_shape},
+        flatten,
+        painted_area::Inker,
+        subpath::is_all_closed,
+    },
+    understand::{
+        compound::Compound,
+        item::{HALF, Item, Kind, Origin, Selection},
+        join::join,
+        surroundings::Context,
+    },
+};
+
+/// Share of the frame from which on a group of distant things is a container.
+const ROOMY: f64 = 0.1;
+/// Widest gap inside one thing, as a share of the smaller neighbour.
+const GAP: f64 = 0.4;
+/// Share of the frame that a background covers at least.
+const COVER: f64 = 0.95;
+
+/// Walks the drawing.
+struct Selector<'a, 's, 'i> {
+    inker: &'i Inker<'a, 's>,
+    frame: Bounds<2>,
+    method: Method,
+    /// Groups to be opened whatever they look like.
+    opened: Vec<NodeId>,
+    found: Selection,
+}
+
+/// What the roots hold. A single group that is all there is gets opened when it holds several separate things.
+pub(crate) fn select(
+    inker: &Inker<'_, '_>,
+    frame: Bounds<2>,
+    method: Method,
+    roots: &[(Context, Rc<Node>)],
+) -> Result<Selection> {
+    let mut opened: Vec<NodeId> = Vec::new();
+    loop {
+        let mut selector = Selector { inker, frame, method, opened: opened.clone(), found: Selection::default() };
+        for (context, root) in roots {
+            selector.open(root, context)?;
+        }
+        let lonely = match selector.found.items.as_slice() {
+            [one] if one.origin == Origin::Whole && one.meta.mark.is_none() && one.meta.tag != "use" => Some(one),
+            _ => None,
+        };
+        match lonely.filter(|one| is_spread(&one.parts)).map(|one| one.meta.xml) {
+            Some(id) if !opened.contains(&id) => opened.push(id),
+            _ => {
+                if method == Method::Auto {
+                    promote(&mut selector.found.items);
+                }
+                return join(selector.found, inker, frame, method);
+            }
+        }
+    }
+}
+
+/// Makes closed strokes curves where there are others.
+fn promote(items: &mut [Item]) {
+    if items.iter().any(|item| item.kind == Kind::Curve) {
+        items.iter_mut().filter(|item| item.origin == Origin::Stroke).for_each(|item| item.kind = Kind::Curve);
+    }
+}
+
+/// Whether a node draws strokes without fills, and nothing else.
+fn is_all_strokes(node: &Node) -> bool {
+    match &node.content {
+        Content::Group(children) => children.iter().all(|child| is_all_strokes(child)),
+        Content::Shape(geometry) => geometry.paint == Painted::Style && !is_filled(node, geometry),
+    }
+}
+
+fn is_spread(parts: &[(Affine, Rc<Node>)]) -> bool {
+    let boxes = parts.iter().flat_map(|(parent, node)| {
+        let world = *parent * node.transform;
+        node.children().iter().map(move |child| bounds(child, world))
+    });
+    clusters(&boxes.collect::<Vec<_>>(), GAP) > 1
+}
+
+impl Selector<'_, '_, '_> {
+    fn share(&self, b: &Bounds<2>) -> f64 {
+        b.measure() / self.frame.measure()
+    }
+
+    /// Looks at the content of a container.
+    fn open(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
+        let world = at.parent * node.transform;
+        let clip = self.inker.clip(node, world)?;
+        let clip = match (&at.clip, clip) {
+            (Some(a), Some(b)) => Some(Rc::new(a.intersection(&b))),
+            (a, b) => b.map(Rc::new).or_else(|| a.clone()),
+        };
+        let opacity = at.opacity * node.own.get("opacity").map_or(1.0, fraction);
+        if opacity == 0.0 {
+            return Ok(());
+        }
+        if node.own.has_effects() {
+            self.inker.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());
+        }
+        let name = node.meta.label.as_ref().or(node.meta.id.as_ref());
+        let layer = if node.meta.is_layer { name.map(|l| l.as_str().into()) } else { at.layer.clone() };
+        let mark = node.meta.mark.or(at.mark);
+        let inside = Context { parent: world, layer, opacity, clip, mark, without: Rc::clone(&at.without) };
+        node.children().iter().try_for_each(|child| self.visit(child, &inside))
+    }
+
+    fn visit(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
+        let meta = &node.meta;
+        if matches!(meta.part, Some(part) if part != Part::Exemplar) || at.excludes(meta) {
+            return Ok(());
+        }
+        if meta.is_layer || self.opened.contains(&meta.xml) {
+            return if meta.mark == Some(Mark::Ignore) { Ok(()) } else { self.open(node, at) };
+        }
+        match meta.mark.or(at.mark) {
+            Some(Mark::Ignore) => return Ok(()),
+            Some(Mark::Element) => return self.take(node, at, Kind::Element, Origin::Whole),
+            Some(Mark::Curve) => return self.take(node, at, Kind::Curve, Origin::Stroke),
+            None if meta.source.is_some() => return self.take(node, at, Kind::Element, Origin::Whole),
+            None => {}
+        }
+        if let (Some((leaf, parent)), true) = (sole_shape(node, at.parent), meta.tag != "use") {
+            return self.shape(node, leaf, parent, at);
+        }
+        let extent = self.visible(node, at)?;
+        if extent.is_empty() {
+            return Ok(());
+        }
+        if self.method == Method::Curves && is_all_strokes(node) {
+            return self.open(node, at);
+        }
+        if self.is_container(node, &extent, at) {
+            return self.open(node, at);
+        }
+        self.take(node, at, Kind::Element, Origin::Whole)
+    }
+
+    /// Box around what the clips leave of a node.
+    fn visible(&self, node: &Node, at: &Context) -> Result<Bounds<2>> {
+        let mut extent = bounds(node, at.parent);
+        if let Some(clip) = self.inker.clip(node, at.parent * node.transform)? {
+            let clip = clip.bounds();
+            extent = Bounds::new(extent.min.zip(clip.min, f64::max), extent.max.zip(clip.max, f64::min));
+        }
+        Ok(extent)
+    }
+
+    fn is_container(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Context) -> bool {
+        let share = self.share(extent);
+        if share >= HALF {
+            return true;
+        }
+        if node.meta.tag == "use" || share < ROOMY {
+            return false;
+        }
+        let world = at.parent * node.transform;
+        let boxes: Vec<_> = node.children().iter().map(|child| bounds(child, world)).collect();
+        clusters(&boxes, GAP) >= 4
+    }
+
+    /// Takes a node as a whole.
+    fn take(&mut self, node: &Rc<Node>, at: &Context, kind: Kind, origin: Origin) -> Result<()> {
+        self.found.items.extend(Item::taken(self.inker, node, at, kind, origin)?);
+        Ok(())
+    }
+
+    /// Decides about a node that is, or wraps, a single shape.
+    fn shape(&mut self, node: &Rc<Node>, leaf: &Rc<Node>, parent: Affine, at: &Context) -> Result<()> {
+        let Content::Shape(geometry) = &leaf.content else { return Ok(()) };
+        let extent = self.visible(node, at)?;
+        let world = parent * leaf.transform;
+        let filled = geometry.paint == Painted::Picture || is_filled(leaf, geometry);
+        if filled && self.covers_frame(node, &extent, at)? {
+            self.found.background.push((at.parent, Rc::clone(node)));
+            return Ok(());
+        }
+        let closed = is_all_closed(&geometry.path);
+        let origin = if filled { Origin::Fill } else { Origin::Stroke };
+        if filled {
+            let compound = match geometry.paint {
+                Painted::Style => Compound::new(self.inker, node, (leaf, parent), at)?.map(Rc::new),
+                Painted::Picture => None,
+            };
+            if let Some(compound) = compound.as_ref().filter(|compound| !self.is_compact(compound)) {
+                return self.split(compound);
+            }
+            let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
+            let whole = Item::taken(self.inker, node, at, kind, origin)?;
+            self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
+            return Ok(());
+        }
+        if closed && self.is_frame(leaf, geometry, world) {
+            self.inker.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
+            return Ok(());
+        }
+        let is_small = closed && self.share(&extent) < HALF && self.method != Method::Curves;
+        let kind = if is_small { Kind::Element } else { Kind::Curve };
+        self.take(node, at, kind, origin)
+    }
+
+    /// Whether a stroke encloses nearly the whole frame and hardly more.
+    fn is_frame(&self, leaf: &Node, geometry: &Geometry, world: Affine) -> bool {
+        let extent = bounds(leaf, world * leaf.transform.inverse());
+        let near = 0.04 * longer(&self.frame);
+        let close = |a: f64, b: f64| (a - b).abs() < near;
+        let along = (0..2).all(|k| close(extent.min[k], self.frame.min[k]) && close(extent.max[k], self.frame.max[k]));
+        along && flatten::filled(&geometry.path, world, FillRule::NonZero).area() >= 0.85 * self.frame.measure()
+    }
+
+    fn covers_frame(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Context) -> Result<bool> {
+        let low = extent.min.zip(self.frame.min, f64::max);
+        let high = extent.max.zip(self.frame.max, f64::min);
+        let common = Bounds::new(low, high);
+        if common.measure() < COVER * self.frame.measure() {
+            return Ok(false);
+        }
+        let (a, b) = (self.frame.min, self.frame.max);
+        let corners = vec![a, arabesque_core::Vector::xy(b[0], a[1]), b, arabesque_core::Vector::xy(a[0], b[1])];
+        let outline = self.inker.ink(node, at.parent)?.outline().intersection(&Outline { rings: vec![corners] });
+        Ok(outline.area() >= COVER * self.frame.measure())
+    }
+
+    /// Takes the pieces of a compound path, those in the hole of another with it.
+    fn split(&mut self, compound: &Rc<Compound>) -> Result<()> {
+        compound.note_losses(self.inker);
+        let mut sets = DisjointSets::new(compound.pieces.len());
+        for (k, p) in compound.pieces.iter().enumerate() {
+            if let Some(home) = p.within.filter(|&home| self.share(&compound.boxes[home]) < HALF) {
+                sets.join(k, home);
+            }
+        }
+        for group in sets.groups() {
+            self.found.items.extend(Item::of_pieces(compound, self.inker, group, self.frame)?);
+        }
+        Ok(())
+    }
+
+    fn is_compact(&self, compound: &Compound) -> bool {
+        let all = compound.boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b));
+        self.share(&all) < ROOMY && clusters(&compound.boxes, GAP) == 1
+    }
+}
+
+/// Whether a fill covers more than a line.
+fn is_filled(leaf: &Node, geometry: &Geometry) -> bool {
+    if !leaf.style.fills() {
+        return false;
+    }
+    let extent = geometry.path.control_box();
+    let rings = flatten::rings(&geometry.path);
+    let area: f64 = rings.iter().map(|r| ring::area(r).abs()).sum();
+    area > 1e-9 * (extent.width() + extent.height()).powi(2)
+}

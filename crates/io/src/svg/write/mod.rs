@@ -1,0 +1,17 @@
+//! Results as SVG text.
+
+pub(crate) mod areas;
+pub(crate) mod background;
+pub(crate) mod curves;
+pub(crate) mod cut;
+pub(crate) mod document;
+pub(crate) mod elements;
+pub(crate) mod flat;
+pub(crate) mod kept;
+pub(crate) mod pieces;
+pub(crate) mod result;
+pub(crate) mod ribbon;
+pub(crate) mod sheet;
+pub(crate) mod survey;
+pub(crate) mod text;
+pub(crate) mod writer;

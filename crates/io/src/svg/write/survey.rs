@@ -1,0 +1,85 @@
+//! A drawing of what was understood of an exemplar.
+
+use std::fmt::Write as _;
+
+use arabesque_core::{Decimals, Role};
+
+use crate::{
+    svg::{
+        drawing::{Drawing, Page},
+        write::{
+            document::{PREFIXES, Root},
+            text::{outline_data, rectangle},
+        },
+    },
+    text::{path_data::path_data, xml::escape},
+};
+
+/// Colours of the classes; further classes start again.
+const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
+
+/// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres, every curve in the
+/// colour of its style with dots at its ends, and the frame.
+pub fn write_survey(drawing: &Drawing) -> String {
+    let exemplar = &drawing.exemplar;
+    let view =
+        exemplar.elements.iter().fold(drawing.page.view.union(&exemplar.window), |b, e| b.union(&e.outline.bounds()));
+    let size = view.size();
+    let d = Decimals::for_extent(size[0].max(size[1]));
+    let line = (0.02 * exemplar.spacing()).min(0.003 * size[0].max(size[1]));
+    let page = Page { view, ..drawing.page };
+    let mut out = Root { page, decimals: d, lengths: d, prefixes: &PREFIXES[..1], attributes: "" }.start_tag();
+    let _ = write!(out, "<defs>{}</defs>\n<g opacity=\"0.3\">\n", drawing.definitions);
+    out.extend(drawing.background.iter().chain(drawing.fragments.iter().map(|f| &f.markup)).map(|m| format!("{m}\n")));
+    faded_curves(&mut out, drawing, d);
+    let _ = writeln!(out, "</g>\n<g fill=\"none\" stroke-width=\"{}\">", d.plus(2).format(line));
+    let frame = outline_data(&rectangle(&exemplar.window), d);
+    let _ = writeln!(out, "<path d=\"{frame}\" stroke=\"#000000\"/>");
+    elements(&mut out, drawing, d, line);
+    curves(&mut out, drawing, d, line);
+    out.push_str("</g>\n</svg>\n");
+    out
+}
+
+fn elements(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
+    for (k, e) in drawing.exemplar.elements.iter().enumerate() {
+        let colour = PALETTE[e.class % PALETTE.len()];
+        let dash = if e.role == Role::Context {
+            format!(" stroke-dasharray=\"{}\"", d.plus(2).format(4.0 * line))
+        } else {
+            String::new()
+        };
+        let label = escape(&format!("element {k}, {}", drawing.exemplar.classes[e.class].name));
+        let (x, y) = (d.format(e.centre[0]), d.format(e.centre[1]));
+        let _ = writeln!(
+            out,
+            "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{}\"{dash}/><circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill=\"{colour}\"/></g>",
+            outline_data(&e.outline, d),
+            d.plus(2).format(1.5 * line)
+        );
+    }
+}
+
+/// The curves as the file has them.
+fn faded_curves(out: &mut String, drawing: &Drawing, d: Decimals) {
+    for (curve, stroke) in drawing.exemplar.curves.iter().zip(&drawing.strokes) {
+        let (paint, width) = (&stroke.paint, d.plus(2).format(stroke.width));
+        let _ = writeln!(out, "<path d=\"{}\"{paint} stroke-width=\"{width}\"/>", path_data(&curve.path, d));
+    }
+}
+
+fn curves(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
+    for (k, curve) in drawing.exemplar.curves.iter().enumerate() {
+        // Classes come first in the palette.
+        let colour = PALETTE[(drawing.exemplar.classes.len() + curve.style) % PALETTE.len()];
+        let label = escape(&format!("curve {k}, {}", drawing.exemplar.styles[curve.style].name));
+        let data = path_data(&curve.path, d);
+        let _ = write!(out, "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{data}\"/>");
+        let ends = if curve.path.closed { [None, None] } else { [curve.path.start(), curve.path.end()] };
+        for p in ends.into_iter().flatten() {
+            let (x, y, r) = (d.format(p[0]), d.format(p[1]), d.plus(2).format(1.5 * line));
+            let _ = write!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"{colour}\"/>");
+        }
+        out.push_str("</g>\n");
+    }
+}

@@ -1,0 +1,135 @@
+//! A file of a result while it grows, and what all of its parts need: ids, definitions, shifts.
+
+use std::{collections::BTreeSet, fmt::Write as _};
+
+use arabesque_core::{Bounds, Decimals, Domain, Placement, Vector, Warning};
+
+use crate::svg::write::{
+    document::recipe_element,
+    sheet::{Sheet, Style},
+    text::outline_data,
+};
+
+/// A file on its way.
+pub(crate) struct Writer<'a> {
+    pub(crate) sheet: &'a Sheet<'a>,
+    pub(crate) decimals: Decimals,
+    pub(crate) prefix: String,
+    pub(crate) out: String,
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl<'a> Writer<'a> {
+    /// Nothing yet.
+    pub(crate) fn new(sheet: &'a Sheet<'a>) -> Self {
+        let extent = sheet.page.view.size();
+        let decimals = Decimals::for_extent(extent[0].max(extent[1]));
+        Self { sheet, decimals, prefix: free_prefix(sheet), out: String::new(), warnings: Vec::new() }
+    }
+
+    /// The recipe, where there is one.
+    pub(crate) fn metadata(&mut self) {
+        if let Some(recipe) = self.sheet.recipe {
+            let _ = write!(self.out, "<metadata>\n{}\n</metadata>\n", recipe_element(recipe, ""));
+        }
+    }
+
+    pub(crate) fn definitions(&mut self) {
+        self.out.push_str("<defs>\n");
+        let of_kept = self.sheet.kept.map(|k| &k.definitions);
+        let of_host = self.sheet.host.map(|h| &h.definitions);
+        for text in [Some(&self.sheet.drawing.definitions), of_kept, of_host].into_iter().flatten() {
+            if !text.trim().is_empty() {
+                self.out.push_str(text.trim_end());
+                self.out.push('\n');
+            }
+        }
+        if let Some(shape) = self.sheet.shape {
+            let _ = writeln!(
+                self.out,
+                "<clipPath id=\"{}-domain\"><path d=\"{}\" clip-rule=\"evenodd\"/></clipPath>",
+                self.prefix,
+                outline_data(shape, self.decimals)
+            );
+        }
+        if self.sheet.style == Style::Linked {
+            for source in self.linked_sources() {
+                let markup = &self.sheet.drawing.fragments[source].markup;
+                let _ = writeln!(self.out, "<g id=\"{}-element-{source}\">{markup}</g>", self.prefix);
+            }
+        }
+        self.out.push_str("</defs>\n");
+    }
+
+    /// The exemplar elements that are placed by `<use>`, each once.
+    fn linked_sources(&self) -> BTreeSet<usize> {
+        let is_new = |p: &&Placement<2>| !self.is_hosted(p) && self.kept_markup(p).is_none();
+        let own = self.sheet.placements.iter().filter(|p| !self.is_bent(p)).filter(is_new);
+        own.map(|p| p.source).collect()
+    }
+
+    pub(crate) fn shifted(&self, shift: Vector<2>) -> String {
+        if shift == Vector::ZERO {
+            return String::new();
+        }
+        format!(" transform=\"translate({} {})\"", self.decimals.format(shift[0]), self.decimals.format(shift[1]))
+    }
+
+    pub(crate) fn is_bent(&self, placement: &Placement<2>) -> bool {
+        self.sheet.bend.is_some() && !placement.control.is_empty()
+    }
+
+    /// The shifts under which a box is seen: none, or on a torus one for every tile that it reaches into.
+    pub(crate) fn shifts(&self, bounds: &Bounds<2>) -> Vec<Vector<2>> {
+        let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
+        if bounds.is_empty() {
+            return vec![Vector::ZERO];
+        }
+        let size = tile.size();
+        let range = |k: usize| {
+            let first = ((tile.min[k] - bounds.max[k]) / size[k]).ceil() as i64;
+            let last = ((tile.max[k] - bounds.min[k]) / size[k]).floor() as i64;
+            first..=last
+        };
+        let mut shifts: Vec<_> = range(1).flat_map(|y| range(0).map(move |x| (x, y))).collect();
+        shifts.sort_by_key(|&(x, y)| (x != 0 || y != 0, y, x));
+        shifts.into_iter().map(|(x, y)| Vector::xy(x as f64 * size[0], y as f64 * size[1])).collect()
+    }
+
+    /// Whether a placement stands in the file already.
+    pub(crate) fn is_hosted(&self, placement: &Placement<2>) -> bool {
+        self.sheet.host.is_some() && placement.frozen.is_some()
+    }
+
+    pub(crate) fn kept_markup(&self, placement: &Placement<2>) -> Option<&'a str> {
+        let fragment = self.sheet.kept?.fragments.get(placement.frozen?)?;
+        Some(&fragment.markup)
+    }
+}
+
+/// A prefix for new ids that no id of the exemplar starts with.
+pub(crate) fn free_prefix(sheet: &Sheet<'_>) -> String {
+    let kept = sheet.kept.into_iter().flat_map(|k| {
+        k.fragments
+            .iter()
+            .chain(&k.obstacle_fragments)
+            .chain(k.curve_fragments.iter().map(|(f, _)| f))
+            .map(|f| &f.markup)
+            .chain(std::iter::once(&k.definitions))
+    });
+    let texts: Vec<&String> = sheet
+        .drawing
+        .fragments
+        .iter()
+        .map(|f| &f.markup)
+        .chain(std::iter::once(&sheet.drawing.definitions))
+        .chain(&sheet.drawing.background)
+        .chain(kept)
+        .collect();
+    let host = sheet.host.into_iter().flat_map(|h| [&h.head, &h.tail, &h.moved, &h.definitions]);
+    let texts: Vec<&String> = texts.into_iter().chain(host).collect();
+    let starts = |t: &str, prefix: &str| ['"', '\''].iter().any(|q| t.contains(&format!("{q}{prefix}-")));
+    let taken = |prefix: &str| texts.iter().any(|t| starts(t, prefix));
+    let candidates = std::iter::once("arabesque".to_owned()).chain((2..).map(|n| format!("arabesque{n}")));
+    candidates.into_iter().find(|p| !taken(p)).unwrap_or_else(|| "arabesque".to_owned())
+}

@@ -1,0 +1,3 @@
+//! Tables of points.
+
+pub mod csv;

@@ -1,0 +1,215 @@
+//! Where an element may be put, given the domain and what happens at its border.
+
+use std::{any::Any, sync::Arc};
+
+use arabesque_core::{
+    Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Outline, Placement, Region, Request,
+    ScalarField, Shape, Similarity, Vector,
+};
+
+/// The domain together with its border rule.
+pub(crate) struct Extent<'a, const D: usize> {
+    request: &'a Request<D>,
+    exemplar: &'a Exemplar<D>,
+    radius: &'a [f64],
+    base: u32,
+    /// The ink that is in the way.
+    obstacles: Option<Arc<dyn Region<D>>>,
+    /// Places along the frozen strokes.
+    drawn: Option<GridIndex<D>>,
+    /// How far outside the domain centres may lie.
+    pub(crate) margin: f64,
+    /// Largest factor by which gaps between elements are wider than in the exemplar.
+    pub(crate) largest_spacing_scale: f64,
+    /// Smallest such factor.
+    pub(crate) smallest_spacing_scale: f64,
+}
+
+impl<'a, const D: usize> Extent<'a, D> {
+    /// `base`: first pseudo element, see [`crate::exemplar::level::Level::base`].
+    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a [f64], base: u32) -> Self {
+        let largest = |field: &ScalarField<D>| field.range().1;
+        let scale = largest(&request.fields.scale);
+        let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
+        let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
+        let smallest_spacing_scale = request.fields.scale.range().0 * dense;
+        let strokes = radius[base as usize..].iter().copied().fold(0.0, f64::max) * scale;
+        let margin = if request.border == Border::Clip { reach } else { strokes };
+        Self {
+            request,
+            exemplar,
+            radius,
+            obstacles: obstacles(request),
+            drawn: drawn(request, strokes),
+            margin,
+            base,
+            largest_spacing_scale: Self::largest_spacing_scale(request),
+            smallest_spacing_scale,
+        }
+    }
+
+    /// Largest factor by which gaps are wider than in the exemplar.
+    pub(crate) fn largest_spacing_scale(request: &Request<D>) -> f64 {
+        request.fields.scale.range().1 * request.fields.density.range().0.powf(-1.0 / D as f64)
+    }
+
+    /// The rule of the border for element `i`. Strokes reach over the border in any case, so that they can be cut there.
+    fn border(&self, i: u32) -> Border {
+        if i >= self.base { Border::Clip } else { self.request.border }
+    }
+
+    /// The rule of the border for elements.
+    pub(crate) fn rule(&self) -> Border {
+        self.request.border
+    }
+
+    /// Whether the domain has no border.
+    pub(crate) fn is_endless(&self) -> bool {
+        self.request.domain.period().is_some()
+    }
+
+    /// Whether something is in the way anywhere.
+    pub(crate) fn has_obstacles(&self) -> bool {
+        self.obstacles.is_some()
+    }
+
+    /// The style of an exemplar curve, and whether it is closed.
+    pub(crate) fn style(&self, curve: usize) -> (usize, bool) {
+        let curve = &self.exemplar.curves[curve];
+        (curve.style, curve.path.closed)
+    }
+
+    /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in space.
+    pub(crate) fn outline(&self) -> Option<Outline<2>> {
+        let request = (self.request as &dyn Any).downcast_ref::<Request<2>>()?;
+        let whole = request.domain.outline()?;
+        let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+        Some(whole.difference(&Outline::union(&rings, FillRule::NonZero)))
+    }
+
+    /// Distance to the border, negative outside.
+    pub(crate) fn depth(&self, p: Vector<D>) -> f64 {
+        self.request.domain.signed_distance(p)
+    }
+
+    /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
+    pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
+        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let distance = self.request.domain.signed_distance(p);
+        if self.is_blocked(p, 0.7 * reach) {
+            return false;
+        }
+        match self.border(i) {
+            Border::Cross => distance >= 0.0,
+            Border::Clip if distance >= 0.0 => true,
+            Border::Clip if i >= self.base && self.is_known(p) => false,
+            Border::Clip => {
+                !self.is_drawn(p, reach)
+                    && distance >= -reach
+                    && self.outline_at(i, p).points().any(|q| self.request.domain.contains(q))
+            }
+            Border::Inside | Border::Turn if distance >= reach => true,
+            Border::Inside | Border::Turn => {
+                distance >= 0.0 && self.outline_at(i, p).points().all(|q| self.request.domain.contains(q))
+            }
+        }
+    }
+
+    /// Whether everything at a place outside the domain stays as it is.
+    pub(crate) fn is_known(&self, p: Vector<D>) -> bool {
+        self.request.known.is_some_and(|known| known.contains(p))
+    }
+
+    /// Whether a frozen stroke lies within `reach` of `p`.
+    fn is_drawn(&self, p: Vector<D>, reach: f64) -> bool {
+        let mut near = false;
+        if let Some(drawn) = &self.drawn {
+            drawn.within(p, reach, |_, _| near = true);
+        }
+        near
+    }
+
+    /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check has the last word.
+    pub(crate) fn is_blocked(&self, p: Vector<D>, reach: f64) -> bool {
+        self.obstacles.as_ref().is_some_and(|o| o.signed_distance(p) > -reach)
+    }
+
+    /// Whether anything at all may have its centre at `p`: a quick test that ignores what would lie there.
+    pub(crate) fn may_hold(&self, p: Vector<D>) -> bool {
+        self.request.domain.signed_distance(p) >= -self.margin && !self.is_blocked(p, 0.0)
+    }
+
+    /// The shortest way for element `i` at `p` to where its centre may lie; zero where it already does.
+    pub(crate) fn way_back(&self, i: u32, p: Vector<D>) -> Vector<D> {
+        let domain = &self.request.domain;
+        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let allowed = match self.border(i) {
+            Border::Cross | Border::Inside | Border::Turn => 0.0,
+            Border::Clip if i >= self.base && self.is_known(p) => 0.0,
+            Border::Clip => -reach,
+        };
+        let distance = domain.signed_distance(p);
+        if distance >= allowed {
+            return Vector::ZERO;
+        }
+        let back = domain.offset(p, domain.nearest_inside(p));
+        back * ((allowed - distance) / back.norm().max(f64::MIN_POSITIVE))
+    }
+
+    /// Whether a finished element shows in the domain at all, or for [`Border::Cross`] has its centre in it. Elements that should lie
+    /// wholly inside are the business of the clearance check; without an outline their centre decides.
+    pub(crate) fn may_show(&self, placement: &Placement<D>) -> bool {
+        let element = &self.exemplar.elements[placement.source];
+        let p = placement.transform.apply(element.centre);
+        let distance = self.request.domain.signed_distance(p);
+        if distance >= 0.0 || self.request.border != Border::Clip {
+            return distance >= 0.0;
+        }
+        let ink = element.outline.transformed(&placement.transform);
+        ink.points().any(|q| self.request.domain.contains(q))
+    }
+
+    /// The outline of element `i` with its centre at `p`.
+    fn outline_at(&self, i: u32, p: Vector<D>) -> Outline<D> {
+        let element = &self.exemplar.elements[i as usize];
+        element.outline.transformed(&self.placement(i, p))
+    }
+
+    /// How element `i` lies with its centre at `p`.
+    pub(crate) fn placement(&self, i: u32, p: Vector<D>) -> Similarity<D> {
+        self.turned(i, p, &Matrix::identity())
+    }
+
+    /// How element `i` lies with its centre at `p` and an extra turn.
+    pub(crate) fn turned(&self, i: u32, p: Vector<D>, turn: &Matrix<D>) -> Similarity<D> {
+        let frame = self.request.fields.frame(p);
+        let rotation = frame.rotation.compose(turn);
+        Similarity::about(self.exemplar.elements[i as usize].centre, p, rotation, frame.element_scale)
+    }
+}
+
+/// Places along the frozen strokes, `step` apart.
+fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Option<GridIndex<D>> {
+    if request.frozen_curves.is_empty() || step <= 0.0 {
+        return None;
+    }
+    let places: Vec<_> = request
+        .frozen_curves
+        .iter()
+        .flat_map(|drawn| {
+            let measured = Measured::new(drawn.path.clone(), 0.1 * step);
+            let count = (measured.length() / step).ceil().clamp(1.0, 1e5) as usize;
+            (0..=count).map(|k| measured.point(measured.length() * k as f64 / count as f64)).collect::<Vec<_>>()
+        })
+        .collect();
+    let around = Domain::Box(Bounds::around(places.iter().copied()));
+    Some(GridIndex::new(&places, step, &around))
+}
+
+/// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
+fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>> {
+    let plane = (request as &dyn Any).downcast_ref::<Request<2>>()?;
+    let rings: Vec<_> = plane.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+    let region: Arc<dyn Region<2>> = Arc::new(Shape::new(&rings, FillRule::NonZero)?);
+    (&region as &dyn Any).downcast_ref::<Arc<dyn Region<D>>>().cloned()
+}

@@ -1,0 +1,5 @@
+//! Ends and crossings that the exemplar would not show, joined or removed: beyond the paper.
+
+pub(crate) mod crossings;
+pub(crate) mod dangles;
+pub(crate) mod mend;

@@ -1,0 +1,123 @@
+//! What the matched neighbourhoods say about edges.
+
+use rayon::prelude::*;
+
+use crate::{
+    exemplar::graph::net::{MAX_EDGE, Net, Piece},
+    output::state::State,
+};
+
+/// How strongly a poor match is discounted.
+const DISCOUNT: f64 = 8.0;
+
+/// A pair of output samples that some neighbourhood wants joined.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    /// The samples, the smaller number first.
+    pub(crate) ends: (u32, u32),
+    /// Share of the neighbourhoods with both ends that want them joined.
+    pub(crate) confidence: f64,
+    /// The stretches of exemplar line that were voted for, with their weights.
+    pub(crate) pieces: Vec<(Piece, f64)>,
+}
+
+/// All votes.
+#[derive(Clone, Debug)]
+pub(crate) struct Votes {
+    /// By ends.
+    pub(crate) candidates: Vec<Candidate>,
+    /// Expected number of edges of each sample [Tu 2020 eq. 18]; NaN for those nobody voted on.
+    pub(crate) degree: Vec<f64>,
+}
+
+/// One neighbourhood's opinion.
+struct Opinion {
+    /// (output sample, exemplar node), curve samples only.
+    pairs: Vec<(u32, u32)>,
+    weight: f64,
+}
+
+/// The votes on the present state; none where it has no curves.
+pub(crate) fn collect_votes<const D: usize>(state: &State<'_, D>) -> Votes {
+    match &state.level.net {
+        Some(net) => collect(state, net),
+        None => Votes { candidates: Vec::new(), degree: Vec::new() },
+    }
+}
+
+/// Collects the votes of all matched neighbourhoods.
+pub(crate) fn collect<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Votes {
+    let opinions: Vec<Opinion> = state.living.par_iter().filter_map(|&s| opinion(state, s)).collect();
+    let mut joined: Vec<((u32, u32), Piece, f64)> =
+        opinions.par_iter().flat_map_iter(|o| joined_pairs(state, net, o)).collect();
+    joined.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.line.cmp(&b.1.line)).then(a.1.from.total_cmp(&b.1.from)));
+    let mut candidates: Vec<Candidate> = joined.chunk_by(|a, b| a.0 == b.0).map(candidate).collect();
+    weigh(state, &opinions, &mut candidates);
+    Votes { candidates, degree: degrees(state, net, &opinions) }
+}
+
+fn candidate(votes: &[((u32, u32), Piece, f64)]) -> Candidate {
+    let same = |a: &Piece, b: &Piece| a == b;
+    let pieces = votes.chunk_by(|a, b| same(&a.1, &b.1)).map(|g| (g[0].1, g.iter().map(|v| v.2).sum()));
+    Candidate { ends: votes[0].0, confidence: votes.iter().map(|v| v.2).sum(), pieces: pieces.collect() }
+}
+
+fn opinion<const D: usize>(state: &State<'_, D>, s: u32) -> Option<Opinion> {
+    let matched = state.samples[s as usize].matched.as_ref()?;
+    let all = std::iter::once((s, matched.input)).chain(matched.pairs.iter().copied());
+    let node = |(o, i): (u32, u32)| Some((o, state.level.node_of(i)?)).filter(|_| state.is_alive(o));
+    let pairs: Vec<_> = all.filter_map(node).collect();
+    (pairs.len() > 1).then(|| Opinion { pairs, weight: 1.0 / (1.0 + DISCOUNT * matched.energy()) })
+}
+
+/// Output pairs whose exemplar nodes are joined.
+fn joined_pairs<const D: usize>(
+    state: &State<'_, D>,
+    net: &Net<D>,
+    opinion: &Opinion,
+) -> Vec<((u32, u32), Piece, f64)> {
+    let mut found = Vec::new();
+    for &(o, e) in &opinion.pairs {
+        for arm in &net.nodes[e as usize].arms {
+            let Some(&(p, _)) = opinion.pairs.iter().find(|(p, i)| *i == arm.to && *p > o) else { continue };
+            if state.reach(o, p) <= MAX_EDGE * net.spacing {
+                found.push(((o, p), arm.piece, opinion.weight));
+            }
+        }
+    }
+    found
+}
+
+/// Divides the weight of each candidate by that of all neighbourhoods that hold both its ends.
+fn weigh<const D: usize>(state: &State<'_, D>, opinions: &[Opinion], candidates: &mut [Candidate]) {
+    let mut of_sample: Vec<Vec<u32>> = vec![Vec::new(); state.samples.len()];
+    for (c, candidate) in candidates.iter().enumerate() {
+        of_sample[candidate.ends.0 as usize].push(c as u32);
+    }
+    let mut all = vec![0.0; candidates.len()];
+    let mut stamp = vec![u32::MAX; state.samples.len()];
+    for (n, opinion) in opinions.iter().enumerate() {
+        opinion.pairs.iter().for_each(|(o, _)| stamp[*o as usize] = n as u32);
+        for (o, _) in &opinion.pairs {
+            for &c in &of_sample[*o as usize] {
+                if stamp[candidates[c as usize].ends.1 as usize] == n as u32 {
+                    all[c as usize] += opinion.weight;
+                }
+            }
+        }
+    }
+    for (candidate, all) in candidates.iter_mut().zip(all) {
+        candidate.confidence /= f64::max(all, f64::MIN_POSITIVE);
+    }
+}
+
+fn degrees<const D: usize>(state: &State<'_, D>, net: &Net<D>, opinions: &[Opinion]) -> Vec<f64> {
+    let mut sum = vec![(0.0, 0.0); state.samples.len()];
+    for opinion in opinions {
+        for &(o, e) in &opinion.pairs {
+            let entry = &mut sum[o as usize];
+            *entry = (entry.0 + opinion.weight * net.degree(e) as f64, entry.1 + opinion.weight);
+        }
+    }
+    sum.into_iter().map(|(total, weight)| total / weight).collect()
+}

@@ -1,0 +1,60 @@
+//! Curve samples in the clothes of elements, so that the engine can handle them.
+
+use std::sync::Arc;
+
+use arabesque_core::{Class, Element, Exemplar, Outline, Role, Similarity};
+
+use crate::exemplar::graph::{
+    net::Net,
+    skeleton::{Knot, Skeleton},
+};
+
+/// The exemplar of one level: its elements, then one pseudo element a curve sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Cast<const D: usize> {
+    pub(crate) exemplar: Exemplar<D>,
+    /// First pseudo element.
+    pub(crate) base: usize,
+    pub(crate) net: Arc<Net<D>>,
+}
+
+impl<const D: usize> Cast<D> {
+    /// Samples the skeleton at `spacing` and appends the samples to the elements of `exemplar`.
+    pub(crate) fn new(exemplar: &Exemplar<D>, skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
+        let mut net = Net::new(skeleton, spacing);
+        let mut cast = exemplar.clone();
+        let mut kinds: Vec<Vec<usize>> = Vec::new();
+        for number in 0..net.nodes.len() as u32 {
+            let styles = styles(exemplar, &net, number);
+            net.nodes[number as usize].styles.clone_from(&styles);
+            let kind = kinds.iter().position(|k| *k == styles).unwrap_or_else(|| {
+                kinds.push(styles);
+                kinds.len() - 1
+            });
+            let node = &net.nodes[number as usize];
+            let tips = net.directions(number).into_iter().map(|t| node.position + t * spacing);
+            cast.elements.push(Element {
+                class: exemplar.classes.len() + kind,
+                centre: node.position,
+                pose: Similarity::shift(node.position),
+                outline: Outline { rings: vec![std::iter::once(node.position).chain(tips).collect()] },
+                colour: exemplar.curves[node.curve as usize].colour,
+                role: if node.knot == Some(Knot::Cut) { Role::Context } else { Role::Source },
+            });
+        }
+        cast.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
+        Self { exemplar: cast, base: exemplar.elements.len(), net: Arc::new(net) }
+    }
+}
+
+/// The styles of all strokes through a node, sorted: only samples with the same ones match.
+fn styles<const D: usize>(exemplar: &Exemplar<D>, net: &Net<D>, node: u32) -> Vec<usize> {
+    let lines = &net.skeleton.lines;
+    let own = &net.nodes[node as usize];
+    let arms = own.arms.iter().map(|arm| lines[arm.piece.line as usize].curve);
+    let mut styles: Vec<_> =
+        arms.chain(std::iter::once(own.curve)).map(|c| exemplar.curves[c as usize].style).collect();
+    styles.sort_unstable();
+    styles.dedup();
+    styles
+}

@@ -1,0 +1,200 @@
+//! The exemplar at one level of the hierarchy: its samples and their neighbourhoods, flattened for the search.
+
+use std::sync::{Arc, OnceLock};
+
+use arabesque_core::{Domain, GridIndex, Vector};
+
+use crate::exemplar::{
+    graph::net::{Net, Star},
+    library::Library,
+    samples::ElementSamples,
+};
+
+/// A neighbour of an exemplar sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near<const D: usize> {
+    /// From the centre to the neighbour.
+    pub(crate) offset: [f32; D],
+    /// The neighbour.
+    pub(crate) sample: u32,
+    /// Its weight by distance; 0 beyond the radius: there only to be matched.
+    pub(crate) weight: f32,
+}
+
+/// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample with an edge too few or too
+/// many an outlier; half of that lets it be matched and told to gain or lose the edge.
+const SINGLE: f64 = 0.5;
+
+/// A run of neighbours with the same key.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    key: u32,
+    start: u32,
+    end: u32,
+}
+
+/// Exemplar samples at one level.
+#[derive(Clone, Debug)]
+pub(crate) struct Level<const D: usize> {
+    /// Radius of an output neighbourhood, exemplar units.
+    pub(crate) radius: f64,
+    /// Offsets of the samples of each element from its centre.
+    pub(crate) parts: Vec<Vec<Vector<D>>>,
+    /// Position of each sample.
+    pub(crate) position: Vec<Vector<D>>,
+    /// Element of each sample.
+    pub(crate) element: Vec<u32>,
+    /// Which sample of its element each one is.
+    pub(crate) part: Vec<u32>,
+    /// First sample of each element.
+    pub(crate) first: Vec<u32>,
+    /// (class, part) of each sample as one number: only equal keys match [Tu 2020 eq. 4].
+    pub(crate) key: Vec<u32>,
+    /// Samples of each key.
+    pub(crate) of_key: Vec<Vec<u32>>,
+    /// Squared outlier distance of each key.
+    pub(crate) outlier2: Vec<f32>,
+    starts: Vec<u32>,
+    near: Vec<Near<D>>,
+    run_starts: Vec<u32>,
+    runs: Vec<Run>,
+    /// Most similar samples of each sample, best first [Ma 2011 §4.2]; found when they are first asked for.
+    alike: Vec<OnceLock<Vec<u32>>>,
+    /// The sample graph of the curves, where there are any.
+    pub(crate) net: Option<Arc<Net<D>>>,
+    /// First pseudo element: those before it are true elements, each of the others is a node of the net.
+    pub(crate) base: u32,
+    /// Edge set of each sample; empty for samples of elements, and for all where edges take no part in the comparison.
+    pub(crate) stars: Vec<Star<D>>,
+    /// Cost of an edge without a counterpart [Tu 2020 eq. 5].
+    pub(crate) single2: f32,
+}
+
+impl<const D: usize> Level<D> {
+    /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]), neighbourhoods of `radius`, input neighbourhoods
+    /// larger by `slack` so that border samples find a partner.
+    pub(crate) fn new(
+        library: &Library<D>,
+        samples: &ElementSamples<D>,
+        detail: f64,
+        (radius, slack): (f64, f64),
+    ) -> Self {
+        let mut level = Self::sampled(library, samples, detail, radius);
+        level.flatten(&Domain::Box(library.view.window), slack);
+        level
+    }
+
+    fn sampled(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, radius: f64) -> Self {
+        let parts: Vec<_> = (0..library.len()).map(|e| samples.at_detail(e, detail)).collect();
+        let most = parts.iter().map(Vec::len).max().unwrap_or(1);
+        let keys = library.classes() * most;
+        let mut level = Self {
+            radius,
+            position: Vec::new(),
+            element: Vec::new(),
+            part: Vec::new(),
+            first: Vec::new(),
+            key: Vec::new(),
+            of_key: vec![Vec::new(); keys],
+            outlier2: (0..keys).map(|k| (library.outlier[k / most] as f32).powi(2)).collect(),
+            starts: vec![0],
+            near: Vec::new(),
+            run_starts: vec![0],
+            runs: Vec::new(),
+            alike: Vec::new(),
+            net: None,
+            base: library.len() as u32,
+            stars: Vec::new(),
+            single2: 0.0,
+            parts,
+        };
+        for e in 0..library.len() {
+            level.first.push(level.position.len() as u32);
+            for (j, &offset) in level.parts[e].iter().enumerate() {
+                let key = library.class[e] * most as u32 + j as u32;
+                level.of_key[key as usize].push(level.position.len() as u32);
+                level.key.push(key);
+                level.element.push(e as u32);
+                level.part.push(j as u32);
+                level.position.push(library.centre[e] + offset);
+            }
+        }
+        level.stars = vec![Star::EMPTY; level.position.len()];
+        level.alike = vec![OnceLock::new(); level.position.len()];
+        level
+    }
+
+    fn flatten(&mut self, plane: &Domain<D>, slack: f64) {
+        let reach = self.radius + slack;
+        let index = GridIndex::new(&self.position, reach, plane);
+        for i in 0..self.position.len() {
+            let mut found = Vec::new();
+            index.within(self.position[i], reach, |j, offset| {
+                if j != i {
+                    let weight = if offset.norm() <= self.radius { fall_off(offset, self.radius) as f32 } else { 0.0 };
+                    let offset = offset.0.map(|v| v as f32);
+                    found.push((self.key[j], Near { offset, sample: j as u32, weight }));
+                }
+            });
+            found.sort_by_key(|(key, near)| (*key, near.sample));
+            self.push_runs(&found);
+        }
+    }
+
+    fn push_runs(&mut self, found: &[(u32, Near<D>)]) {
+        for group in found.chunk_by(|a, b| a.0 == b.0) {
+            let start = self.near.len() as u32;
+            self.near.extend(group.iter().map(|(_, near)| *near));
+            self.runs.push(Run { key: group[0].0, start, end: self.near.len() as u32 });
+        }
+        self.starts.push(self.near.len() as u32);
+        self.run_starts.push(self.runs.len() as u32);
+    }
+
+    /// Makes everything from element `base` on the nodes of `net`. Edge sets are compared when `with_edges`.
+    pub(crate) fn with_net(mut self, net: Arc<Net<D>>, base: u32, with_edges: bool) -> Self {
+        self.base = base;
+        self.single2 = (SINGLE * net.spacing * net.spacing) as f32;
+        if with_edges {
+            for i in 0..self.position.len() as u32 {
+                if let Some(node) = self.node_of(i) {
+                    self.stars[i as usize] = net.star(node);
+                }
+            }
+        }
+        self.net = Some(net);
+        self
+    }
+
+    /// The node of the net that sample `i` is, `None` for a sample of an element.
+    pub(crate) fn node_of(&self, i: u32) -> Option<u32> {
+        self.element[i as usize].checked_sub(self.base)
+    }
+
+    /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the same, and must not
+    /// wait for other threads.
+    pub(crate) fn alike(&self, i: u32, find: impl FnOnce() -> Vec<u32>) -> &[u32] {
+        self.alike[i as usize].get_or_init(find)
+    }
+
+    /// Neighbours of sample `i`, sorted by key.
+    pub(crate) fn neighbours(&self, i: u32) -> &[Near<D>] {
+        &self.near[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
+    }
+
+    /// Those of a key, as a range into [`Level::neighbours`].
+    pub(crate) fn neighbours_of_key(&self, i: u32, key: u32) -> std::ops::Range<usize> {
+        let base = self.starts[i as usize];
+        let runs = &self.runs[self.run_starts[i as usize] as usize..self.run_starts[i as usize + 1] as usize];
+        match runs.binary_search_by_key(&key, |run| run.key) {
+            Ok(k) => (runs[k].start - base) as usize..(runs[k].end - base) as usize,
+            Err(_) => 0..0,
+        }
+    }
+}
+
+/// Weight of a neighbour at `offset` in a neighbourhood of `radius`: 1 in the middle, 0.1 at the rim.
+pub(crate) fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f64 {
+    let x = (offset.norm2() / (radius * radius)).min(1.0);
+    0.1 + 0.9 * (1.0 - x) * (1.0 - x)
+}

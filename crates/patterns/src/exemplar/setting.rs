@@ -1,0 +1,107 @@
+//! What one level works with: the exemplar as it is sampled there, and its neighbourhoods.
+
+use std::sync::Arc;
+
+use arabesque_core::{Exemplar, Vector, parallel_line_spacing};
+
+use crate::{
+    exemplar::{
+        graph::{pseudo::Cast, skeleton::Skeleton},
+        level::Level,
+        library::Library,
+        samples::ElementSamples,
+    },
+    params::{Matching, Params, Switch},
+};
+
+/// Sampling distance of the finest level relative to the mean distance of neighbouring strokes (area over length).
+const STROKE_GAP: f64 = 1.0;
+
+/// It is no smaller than this share of the shorter side of the window, and no larger than that.
+const STEP_RANGE: (f64, f64) = (1.0 / 50.0, 1.0 / 16.0);
+
+/// Mean numbers of samples in a neighbourhood of curves at the coarsest and the finest level [Tu 2020 §C].
+const NEIGHBOURS: (f64, f64) = (30.0, 20.0);
+
+/// The exemplar at one level.
+#[derive(Clone, Debug)]
+pub(crate) struct Setting<const D: usize> {
+    /// Elements and, as pseudo elements, curve samples.
+    pub(crate) exemplar: Arc<Exemplar<D>>,
+    pub(crate) library: Arc<Library<D>>,
+    pub(crate) level: Level<D>,
+}
+
+/// The settings of all levels, coarsest first.
+pub(crate) fn settings<const D: usize>(
+    exemplar: &Exemplar<D>,
+    skeleton: Option<&Arc<Skeleton<D>>>,
+    params: &Params,
+) -> Vec<Setting<D>> {
+    let samples = ElementSamples::new(exemplar, params.samples);
+    let Some(skeleton) = skeleton else {
+        let (shared, library) = (Arc::new(exemplar.clone()), Arc::new(Library::new(exemplar, None)));
+        let setting = |number| {
+            let counts = (params.coarse_neighbours, params.fine_neighbours);
+            let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
+            Setting { exemplar: shared.clone(), library: library.clone(), level }
+        };
+        return (0..params.levels).map(setting).collect();
+    };
+    let step = finest_spacing(exemplar, skeleton, params);
+    let mut made: Vec<(f64, Cast<D>, Arc<Exemplar<D>>, Arc<Library<D>>)> = Vec::new();
+    let mut setting = |number| {
+        let spacing = step * params.coarsening.powf(1.0 - detail(params, number));
+        // Levels with the same sampling distance share everything but the radius.
+        if made.last().is_none_or(|m| m.0 != spacing) {
+            let cast = Cast::new(exemplar, skeleton, spacing);
+            let library = Arc::new(Library::new(&cast.exemplar, Some((exemplar.classes.len(), spacing))));
+            made.push((spacing, cast.clone(), Arc::new(cast.exemplar), library));
+        }
+        let (_, cast, shared, library) = &made[made.len() - 1];
+        let samples = samples.with_points(shared.elements.len() - cast.base);
+        let level = Level::new(library, &samples, detail(params, number), ball(library, params, number, NEIGHBOURS));
+        let level = level.with_net(Arc::clone(&cast.net), cast.base as u32, params.edges == Switch::On);
+        Setting { exemplar: Arc::clone(shared), library: Arc::clone(library), level }
+    };
+    (0..params.levels).map(&mut setting).collect()
+}
+
+/// 0 at the coarsest level, 1 at the finest.
+fn detail(params: &Params, number: usize) -> f64 {
+    if params.levels == 1 { 1.0 } else { number as f64 / (params.levels - 1) as f64 }
+}
+
+/// Radius of the neighbourhoods, and by how much those of the exemplar are larger.
+fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> (f64, f64) {
+    let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
+    let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(library.view.side()));
+    let slack = match params.matching {
+        // Where junctions lie closer than samples, the slack would take in many times the neighbourhood.
+        Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max).min(radius),
+        Matching::Hard => radius,
+    };
+    (radius, slack)
+}
+
+/// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as
+/// across.
+fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
+    let side = exemplar.view().side();
+    let gap = parallel_line_spacing::<D>(exemplar.view().measure(), length(skeleton));
+    params.spacing.unwrap_or((STROKE_GAP * gap).clamp(STEP_RANGE.0 * side, STEP_RANGE.1 * side))
+}
+
+fn length<const D: usize>(skeleton: &Skeleton<D>) -> f64 {
+    skeleton.lines.iter().map(|l| l.measured.length()).sum()
+}
+
+/// About how many samples the curves get at the finest level.
+pub(crate) fn expected_nodes<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
+    length(skeleton) / finest_spacing(exemplar, skeleton, params) + skeleton.knots.len() as f64
+}
+
+/// The shortest side of a box of this size.
+pub(crate) fn shortest<const D: usize>(v: Vector<D>) -> f64 {
+    v.0.into_iter().fold(f64::INFINITY, f64::min)
+}

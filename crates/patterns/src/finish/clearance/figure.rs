@@ -1,0 +1,273 @@
+//! One outline, prepared for the question whether it meets another.
+
+use arabesque_core::{Bounds, Outline, Similarity, Vector, segment};
+
+use crate::finish::clearance::edges::{Edge, EdgeBands};
+
+/// Coordinates closer than this share of the figures' extent may touch or cross; only the area of the overlap decides.
+const CONTACT: f64 = 1e-11;
+
+/// The ink of an element with what is looked up about it.
+#[derive(Clone, Debug)]
+pub(crate) struct Figure {
+    outline: Outline<2>,
+    edges: EdgeBands,
+    hull: Vec<Vector<2>>,
+    bounds: Bounds<2>,
+    /// Centre of the element; the radius is measured from it.
+    pub(crate) centre: Vector<2>,
+    /// Distance from the centre to the farthest ink.
+    pub(crate) radius: f64,
+    /// Area of the ink.
+    pub(crate) area: f64,
+}
+
+/// How the inks of two figures meet, before any area is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meeting {
+    /// They share nothing.
+    Apart,
+    /// They come so close that only the area can tell.
+    Touching,
+    /// They share area.
+    Overlapping,
+}
+
+impl Figure {
+    pub(crate) fn new(outline: Outline<2>, centre: Vector<2>) -> Self {
+        let radius = outline.radius(centre);
+        let (edges, hull) = (EdgeBands::new(&outline), convex_hull(outline.points()));
+        Self { edges, hull, bounds: outline.bounds(), area: outline.area(), centre, radius, outline }
+    }
+
+    /// Whether there is no ink at all: a point.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.outline.rings.is_empty()
+    }
+
+    /// The ink.
+    pub(crate) fn outline(&self) -> &Outline<2> {
+        &self.outline
+    }
+
+    /// Whether there is ink at `p`.
+    pub(crate) fn covers(&self, p: Vector<2>) -> bool {
+        self.edges.covers(p)
+    }
+
+    /// The edges after `place`.
+    pub(crate) fn placed_edges(&self, place: &Similarity<2>) -> impl Iterator<Item = Edge> {
+        self.outline.rings.iter().flat_map(move |ring| {
+            let last = ring.last().map(|&p| place.apply(p));
+            ring.iter().scan(last, move |before, &p| {
+                let p = place.apply(p);
+                before.replace(p).map(|a| (a, p))
+            })
+        })
+    }
+
+    /// Smallest box around the figure after `place`.
+    pub(crate) fn placed_bounds(&self, place: &Similarity<2>) -> Bounds<2> {
+        Bounds::around(self.hull.iter().map(|&p| place.apply(p)))
+    }
+
+    /// How much work the outline makes: the larger of two figures should be asked about the other.
+    pub(crate) fn complexity(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Whether the two inks certainly share area, where `place` carries the other figure into this one's coordinates.
+    /// `None` when they only come so close that their common area must decide.
+    pub(crate) fn meets(&self, other: &Self, place: &Similarity<2>) -> Option<bool> {
+        match self.meeting(other, place) {
+            Meeting::Apart => Some(false),
+            Meeting::Touching => None,
+            Meeting::Overlapping => Some(true),
+        }
+    }
+
+    /// The common part of the two inks, in this figure's coordinates; `None` when it has no area.
+    pub(crate) fn overlap(&self, other: &Self, place: &Similarity<2>) -> Option<Outline<2>> {
+        if self.meeting(other, place) == Meeting::Apart {
+            return None;
+        }
+        let common = self.outline.intersection(&other.outline.transformed(place));
+        (!common.rings.is_empty()).then_some(common)
+    }
+
+    /// Smallest distance between two inks that do not overlap.
+    pub(crate) fn gap(&self, other: &Self, place: &Similarity<2>) -> f64 {
+        let moved = other.outline.transformed(place);
+        let one_way = |points: &Outline<2>, edges: &Outline<2>| {
+            points
+                .points()
+                .flat_map(|p| edges.edges().map(move |e| (segment::nearest(e, p) - p).norm2()))
+                .fold(f64::INFINITY, f64::min)
+        };
+        one_way(&self.outline, &moved).min(one_way(&moved, &self.outline)).sqrt()
+    }
+
+    fn meeting(&self, other: &Self, place: &Similarity<2>) -> Meeting {
+        let hull: Vec<_> = other.hull.iter().map(|&p| place.apply(p)).collect();
+        let bounds = Bounds::around(hull.iter().copied());
+        if !self.bounds.intersects(&bounds) || separated(&self.hull, &hull, place.apply(other.centre) - self.centre) {
+            return Meeting::Apart;
+        }
+        let eps = CONTACT * (self.bounds.size().norm2() + bounds.size().norm2());
+        let mut meeting = Meeting::Apart;
+        for edge in other.placed_edges(place).filter(|edge| touches(&self.bounds, edge)) {
+            for mine in self.edges.between(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1])) {
+                match crossing(edge, *mine, eps) {
+                    Meeting::Overlapping => return Meeting::Overlapping,
+                    Meeting::Touching => meeting = Meeting::Touching,
+                    Meeting::Apart => {}
+                }
+            }
+        }
+        if meeting == Meeting::Apart && self.contains_or_is_contained(other, place) {
+            return Meeting::Overlapping;
+        }
+        meeting
+    }
+
+    /// Whether one figure holds a ring of the other; settles everything where no edges meet.
+    fn contains_or_is_contained(&self, other: &Self, place: &Similarity<2>) -> bool {
+        let starts = |figure: &Self| figure.outline.rings.iter().filter_map(|ring| ring.first().copied()).collect();
+        let (mine, others): (Vec<_>, Vec<_>) = (starts(self), starts(other));
+        let back = place.inverse();
+        others.iter().any(|&p| self.edges.covers(place.apply(p)))
+            || mine.iter().any(|&p| other.edges.covers(back.apply(p)))
+    }
+}
+
+/// Whether the projections on `axis` do not overlap.
+fn separated(a: &[Vector<2>], b: &[Vector<2>], axis: Vector<2>) -> bool {
+    let (low_a, high_a) = extent(a, axis);
+    let (low_b, high_b) = extent(b, axis);
+    high_a < low_b || high_b < low_a
+}
+
+/// Smallest and largest coordinate along `axis`, in multiples of its length.
+pub(crate) fn extent(points: &[Vector<2>], axis: Vector<2>) -> (f64, f64) {
+    points.iter().map(|p| p.dot(axis)).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
+}
+
+fn touches(window: &Bounds<2>, (a, b): &Edge) -> bool {
+    (0..2).all(|k| a[k].min(b[k]) <= window.max[k] && a[k].max(b[k]) >= window.min[k])
+}
+
+/// How two edges meet; cross products below `eps` count as contact.
+fn crossing((a, b): Edge, (c, d): Edge, eps: f64) -> Meeting {
+    let boxes_apart = (0..2).any(|k| a[k].min(b[k]) > c[k].max(d[k]) || a[k].max(b[k]) < c[k].min(d[k]));
+    if boxes_apart {
+        return Meeting::Apart;
+    }
+    let sides = |from: Vector<2>, to: Vector<2>, p: Vector<2>, q: Vector<2>| {
+        let along = to - from;
+        (along.cross(p - from), along.cross(q - from))
+    };
+    let same_side = |(s, t): (f64, f64)| (s > eps && t > eps) || (s < -eps && t < -eps);
+    let (ab, cd) = (sides(a, b, c, d), sides(c, d, a, b));
+    if same_side(ab) || same_side(cd) {
+        return Meeting::Apart;
+    }
+    let clear = |(s, t): (f64, f64)| s.abs() > eps && t.abs() > eps;
+    if clear(ab) && clear(cd) { Meeting::Overlapping } else { Meeting::Touching }
+}
+
+/// Corners of the convex hull, by the monotone chain of their order from left to right.
+fn convex_hull(points: impl Iterator<Item = Vector<2>>) -> Vec<Vector<2>> {
+    let mut sorted: Vec<_> = points.collect();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    sorted.dedup();
+    if sorted.len() < 3 {
+        return sorted;
+    }
+    let mut hull = half_hull(sorted.iter().copied());
+    hull.extend(half_hull(sorted.iter().rev().copied()));
+    hull
+}
+
+/// One side of the hull, from the first point up to but not including the last.
+fn half_hull(points: impl Iterator<Item = Vector<2>>) -> Vec<Vector<2>> {
+    let mut chain: Vec<Vector<2>> = Vec::new();
+    for p in points {
+        while let [.., a, b] = chain[..]
+            && (b - a).cross(p - b) <= 0.0
+        {
+            chain.pop();
+        }
+        chain.push(p);
+    }
+    chain.pop();
+    chain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arabesque_core::FillRule;
+
+    fn square(x: f64, y: f64, side: f64) -> Vec<Vector<2>> {
+        vec![Vector::xy(x, y), Vector::xy(x + side, y), Vector::xy(x + side, y + side), Vector::xy(x, y + side)]
+    }
+
+    fn figure(rings: &[Vec<Vector<2>>]) -> Figure {
+        let outline = Outline::union(rings, FillRule::EvenOdd);
+        let centre = outline.centroid().unwrap();
+        Figure::new(outline, centre)
+    }
+
+    fn area(a: &Figure, b: &Figure, shift: Vector<2>) -> f64 {
+        a.overlap(b, &Similarity::shift(shift)).map_or(0.0, |common| common.area())
+    }
+
+    #[test]
+    fn crossing_squares_overlap_and_distant_ones_do_not() {
+        let s = figure(&[square(0.0, 0.0, 2.0)]);
+        assert!((area(&s, &s, Vector::xy(1.5, 1.0)) - 0.5).abs() < 1e-6);
+        assert_eq!(s.meets(&s, &Similarity::shift(Vector::xy(1.5, 1.0))), Some(true));
+        assert_eq!(s.meets(&s, &Similarity::shift(Vector::xy(3.0, 1.0))), Some(false));
+    }
+
+    #[test]
+    fn squares_side_by_side_touch_without_area() {
+        let s = figure(&[square(0.0, 0.0, 2.0)]);
+        let place = Similarity::shift(Vector::xy(2.0, 0.0));
+        assert_eq!(s.meets(&s, &place), None);
+        assert!(area(&s, &s, place.translation) < 1e-6);
+    }
+
+    #[test]
+    fn aligned_squares_overlap_although_no_edges_cross() {
+        let s = figure(&[square(0.0, 0.0, 2.0)]);
+        assert!((area(&s, &s, Vector::xy(1.0, 0.0)) - 2.0).abs() < 1e-6);
+        assert!((area(&s, &s, Vector::ZERO) - 4.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_dot_in_a_leaf_overlaps_and_a_dot_in_a_hole_does_not() {
+        let leaf = figure(&[square(0.0, 0.0, 10.0)]);
+        let ring = figure(&[square(0.0, 0.0, 10.0), square(2.0, 2.0, 6.0)]);
+        let dot = figure(&[square(4.0, 4.0, 1.0)]);
+        assert!((area(&leaf, &dot, Vector::ZERO) - 1.0).abs() < 1e-6);
+        assert!((area(&dot, &leaf, Vector::ZERO) - 1.0).abs() < 1e-6);
+        assert_eq!(ring.meets(&dot, &Similarity::identity()), Some(false));
+        assert_eq!(dot.meets(&ring, &Similarity::identity()), Some(false));
+    }
+
+    #[test]
+    fn gap_between_squares() {
+        let s = figure(&[square(0.0, 0.0, 2.0)]);
+        assert!((s.gap(&s, &Similarity::shift(Vector::xy(5.0, 6.0))) - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn hull_of_a_star_drops_its_inner_corners() {
+        let star: Vec<_> = (0..10)
+            .map(|k| (f64::from(k) * std::f64::consts::PI / 5.0, if k % 2 == 0 { 2.0 } else { 0.7 }))
+            .map(|(a, r)| Vector::xy(r * a.cos(), r * a.sin()))
+            .collect();
+        assert_eq!(convex_hull(star.into_iter()).len(), 5);
+    }
+}

@@ -1,0 +1,226 @@
+//! How much the elements of the exemplar overlap: what the output may do as well.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Domain, Exemplar, Outline, Placement, Role, Similarity, Warp};
+
+use crate::finish::clearance::{
+    figure::Figure,
+    scene::{Body, Overlap, Scene},
+};
+
+/// Overlaps below this share of the smaller element are rounding.
+pub(crate) const NEGLIGIBLE: f64 = 1e-6;
+
+/// Elements of two classes that overlap by more than this share of the smaller one lie on top of each other on purpose.
+const LAYERED: f64 = 0.5;
+
+/// Gaps are measured between so many pairs of a pair of classes, those with the nearest circles.
+const MEASURED_PAIRS: usize = 64;
+
+/// Widest gap that is asked for when two elements are pushed apart, in mean spacings.
+const WIDEST_GAP: f64 = 0.02;
+
+/// Two classes, the lower index first.
+type ClassPair = (usize, usize);
+
+/// What the exemplar shows of two classes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Allowance {
+    /// Largest common area, as a share of the smaller element.
+    share: f64,
+    /// Smallest distance between elements that do not overlap, at most [`WIDEST_GAP`].
+    gap: Option<f64>,
+}
+
+/// Outlines of the exemplar's elements, and how they lie to each other.
+#[derive(Clone, Debug)]
+pub(crate) struct ExemplarClearance {
+    /// One figure an element.
+    pub(crate) figures: Vec<Figure>,
+    class: Vec<usize>,
+    /// Elements that may be copied, by class, largest first.
+    sources: Vec<Vec<usize>>,
+    /// Mean element spacing.
+    pub(crate) spacing: f64,
+    allowed: BTreeMap<ClassPair, Allowance>,
+    /// Common area as a share of all ink, classes that are layered on purpose left out.
+    ratio: f64,
+}
+
+impl ExemplarClearance {
+    /// Measures the exemplar. `None` when no element has an outline: points never overlap.
+    pub(crate) fn new(exemplar: &Exemplar<2>) -> Option<Self> {
+        let figures: Vec<_> = exemplar.elements.iter().map(|e| Figure::new(e.outline.clone(), e.centre)).collect();
+        if figures.iter().all(Figure::is_empty) {
+            return None;
+        }
+        let class = exemplar.elements.iter().map(|e| e.class).collect();
+        let sources = sources(exemplar, &figures);
+        let spacing = exemplar.spacing();
+        let mut clearance = Self { figures, class, sources, spacing, allowed: BTreeMap::new(), ratio: 0.0 };
+        clearance.measure(&Domain::Box(exemplar.window));
+        Some(clearance)
+    }
+
+    fn measure(&mut self, window: &Domain<2>) {
+        let bodies = (0..self.figures.len()).map(|i| self.body(i, Similarity::identity())).collect();
+        let scene = Scene::new(window, &self.figures, Vec::new(), bodies);
+        let overlaps = scene.overlaps();
+        let mut allowed = BTreeMap::<ClassPair, Allowance>::new();
+        for overlap in &overlaps {
+            let share = overlap.area / smaller_area(&scene, overlap);
+            let entry = allowed.entry(pair(self.class[overlap.a], self.class[overlap.b])).or_default();
+            entry.share = entry.share.max(share);
+        }
+        for (classes, gap) in smallest_gaps(&scene, &overlaps, WIDEST_GAP * self.spacing) {
+            allowed.entry(classes).or_default().gap = Some(gap);
+        }
+        let ratio = |this: &Self| this.unlayered_area(&scene, &overlaps) / ink(&scene).max(f64::MIN_POSITIVE);
+        self.allowed.clone_from(&allowed);
+        self.ratio = ratio(self);
+    }
+
+    /// Body of exemplar element `source` under `place`.
+    pub(crate) fn body(&self, source: usize, place: Similarity<2>) -> Body {
+        Body { class: Some(self.class[source]), ..Body::new(source, &self.figures[source], place) }
+    }
+
+    /// Bodies of placements, with figures of their own for the bent ones.
+    pub(crate) fn bodies(&self, placements: &[Placement<2>]) -> (Vec<Figure>, Vec<Body>) {
+        let mut own = Vec::new();
+        let bodies = placements.iter().map(|placement| {
+            let body = self.body(placement.source, placement.transform);
+            let fixed = placement.frozen.is_some();
+            if placement.control.is_empty() {
+                return Body { fixed, ..body };
+            }
+            let figure = bent(&self.figures[placement.source], placement);
+            let bent = Body::new(self.figures.len() + own.len(), &figure, Similarity::identity());
+            own.push(figure);
+            Body { class: body.class, fixed, ..bent }
+        });
+        let bodies = bodies.collect();
+        (own, bodies)
+    }
+
+    /// Elements of the class of `source` that may be copied and are smaller than it, largest first.
+    pub(crate) fn smaller_sources(&self, source: usize) -> impl Iterator<Item = usize> {
+        let own = &self.figures[source];
+        let fits = move |&&other: &&usize| {
+            let figure = &self.figures[other];
+            figure.area < own.area && figure.radius <= own.radius && other != source
+        };
+        self.sources[self.class[source]].iter().filter(fits).copied()
+    }
+
+    /// Largest common area that two bodies may have.
+    pub(crate) fn allowed_area(&self, a: &Body, b: &Body) -> f64 {
+        let share = self.allowance(a, b).map_or(0.0, |allowance| allowance.share);
+        share.max(NEGLIGIBLE) * (1.0 + NEGLIGIBLE) * a.area.min(b.area)
+    }
+
+    /// Whether any overlap at all is too much for two bodies.
+    pub(crate) fn must_be_apart(&self, a: &Body, b: &Body) -> bool {
+        self.allowance(a, b).is_none_or(|allowance| allowance.share <= NEGLIGIBLE)
+    }
+
+    /// Whether the classes of two bodies lie on top of each other on purpose.
+    fn layered(&self, a: &Body, b: &Body) -> bool {
+        self.allowance(a, b).is_some_and(|allowance| allowance.share > LAYERED)
+    }
+
+    /// Distance to leave between two bodies that are pushed apart, for elements of exemplar size: as close as the exemplar has
+    /// any, none for bodies that may overlap.
+    pub(crate) fn gap(&self, a: &Body, b: &Body) -> f64 {
+        let widest = WIDEST_GAP * self.spacing;
+        match self.allowance(a, b) {
+            Some(allowance) if allowance.share > NEGLIGIBLE => 0.0,
+            Some(allowance) => allowance.gap.unwrap_or(widest),
+            None => widest,
+        }
+    }
+
+    fn allowance(&self, a: &Body, b: &Body) -> Option<&Allowance> {
+        self.allowed.get(&pair(a.class?, b.class?))
+    }
+
+    fn unlayered_area(&self, scene: &Scene, overlaps: &[Overlap]) -> f64 {
+        let counts = |o: &&Overlap| !self.layered(&scene.bodies[o.a], &scene.bodies[o.b]);
+        overlaps.iter().filter(counts).fold(0.0, |sum, o| sum + o.area)
+    }
+
+    /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than in the
+    /// exemplar: pairs that are allowed one by one can still be too many.
+    pub(crate) fn surplus(&self, scene: &Scene, allowed: &[Overlap]) -> Vec<(usize, usize)> {
+        let budget = self.ratio * ink(scene);
+        let mut sum = self.unlayered_area(scene, allowed);
+        let is_free = |o: &&Overlap| {
+            let (a, b) = (&scene.bodies[o.a], &scene.bodies[o.b]);
+            !(self.layered(a, b) || a.fixed && b.fixed) && o.a != o.b && o.area > NEGLIGIBLE * a.area.min(b.area)
+        };
+        let mut candidates: Vec<_> = allowed.iter().filter(is_free).collect();
+        candidates.sort_by(|x, y| y.area.total_cmp(&x.area).then((x.a, x.b).cmp(&(y.a, y.b))));
+        let mut surplus = Vec::new();
+        for overlap in candidates {
+            if sum <= budget * (1.0 + NEGLIGIBLE) {
+                break;
+            }
+            sum -= overlap.area;
+            surplus.push((overlap.a, overlap.b));
+        }
+        surplus
+    }
+}
+
+fn pair(a: usize, b: usize) -> ClassPair {
+    (a.min(b), a.max(b))
+}
+
+fn smaller_area(scene: &Scene, overlap: &Overlap) -> f64 {
+    scene.bodies[overlap.a].area.min(scene.bodies[overlap.b].area).max(f64::MIN_POSITIVE)
+}
+
+/// Area of all elements together, overlaps counted twice.
+pub(crate) fn ink(scene: &Scene) -> f64 {
+    scene.bodies.iter().filter(|body| body.class.is_some()).map(|body| body.area).sum()
+}
+
+fn sources(exemplar: &Exemplar<2>, figures: &[Figure]) -> Vec<Vec<usize>> {
+    let mut sources = vec![Vec::new(); exemplar.classes.len()];
+    for (i, element) in exemplar.elements.iter().enumerate().filter(|(_, e)| e.role == Role::Source) {
+        sources[element.class].push(i);
+    }
+    for members in &mut sources {
+        members.sort_by(|&a, &b| figures[b].area.total_cmp(&figures[a].area).then(a.cmp(&b)));
+    }
+    sources
+}
+
+/// The outline of a placement that is bent, in output coordinates.
+fn bent(figure: &Figure, placement: &Placement<2>) -> Figure {
+    let warp = Warp::new(&placement.control);
+    let rings = figure.outline().rings.iter().map(|ring| ring.iter().map(|&p| warp.apply(p)).collect()).collect();
+    Figure::new(Outline { rings }, warp.apply(figure.centre))
+}
+
+/// Smallest distance between elements of two classes that do not overlap, no larger than `widest`.
+fn smallest_gaps(scene: &Scene, overlaps: &[Overlap], widest: f64) -> BTreeMap<ClassPair, f64> {
+    let mut near = BTreeMap::<ClassPair, Vec<(f64, usize, usize)>>::new();
+    for i in 0..scene.bodies.len() {
+        for j in scene.neighbours(i, 0.5 * widest).into_iter().filter(|&j| j > i) {
+            let (a, b) = (&scene.bodies[i], &scene.bodies[j]);
+            let between = (a.centre - b.centre).norm() - a.radius - b.radius;
+            let apart = overlaps.binary_search_by_key(&(i, j), |o| (o.a, o.b)).is_err();
+            if let (Some(x), Some(y), true) = (a.class, b.class, apart && between < widest) {
+                near.entry(pair(x, y)).or_default().push((between, i, j));
+            }
+        }
+    }
+    let smallest = |pairs: &mut Vec<(f64, usize, usize)>| {
+        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let gaps = pairs.iter().take(MEASURED_PAIRS).map(|&(_, i, j)| scene.gap(i, j));
+        gaps.fold(widest, f64::min)
+    };
+    near.into_iter().map(|(classes, mut pairs)| (classes, smallest(&mut pairs))).collect()
+}

@@ -1,0 +1,614 @@
+//! Pairing of the samples of two neighbourhoods at the least total cost.
+//!
+//! Shortest augmenting paths with the start of [Jonker 1987 §4]: rows take their cheapest column, rows that lost bid for another
+//! one (augmenting row reduction), and only what is left is settled by shortest paths. Column prices start at zero and only fall
+//! on columns that are taken, so that the start also holds for more columns than rows.
+//!
+//! Each row may stay alone at a cost of its own, the outlier cost [Tu 2020 §4.2.3]. That is a column which no other row can use:
+//! a row that once prefers it never leaves it, so these columns need neither price nor storage. A pair that costs as much as
+//! staying alone cannot be part of a better pairing and is dropped on entry; what remains is a short list a row.
+//!
+//! All buffers are kept between calls.
+
+/// In place of a column: the row has no partner.
+pub(crate) const OUTLIER: u32 = u32::MAX;
+
+/// No slot, no row.
+const NONE: u32 = u32::MAX;
+
+/// Entries of a row that are compared in one go when a full cost matrix is read.
+#[cfg(any(test, feature = "bench-stages"))]
+const LANES: usize = 16;
+
+/// Solver with its buffers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Assignment {
+    columns: usize,
+    /// Usable pairs of row `i`: slots `starts[i]..starts[i + 1]`; the last entry is the number of slots.
+    starts: Vec<u32>,
+    /// Column and cost of each slot.
+    pairs: Vec<(u32, f32)>,
+    /// Outlier cost of each row: what it costs to stay alone.
+    outlier: Vec<f32>,
+    /// Slot of the cheapest pair of each row.
+    cheapest: Vec<u32>,
+    /// Sum over rows of the cheaper of cheapest pair and outlier cost.
+    bound: f32,
+    /// Outlier cost of the open row.
+    gate: f32,
+    /// Slot by which each row is paired, or `NONE`.
+    slot_of: Vec<u32>,
+    column_of: Vec<u32>,
+    /// Row that holds each column.
+    row_of: Vec<u32>,
+    /// Dual value of each column, never positive, zero while the column is free.
+    price: Vec<f32>,
+    /// Rows that still wait for a decision.
+    waiting: Vec<u32>,
+    search: PathSearch,
+}
+
+/// Shortest path tree over columns.
+#[derive(Clone, Debug, Default)]
+struct PathSearch {
+    /// Shortest known distance of each column: infinite before it is reached, minus infinite once it is settled.
+    distance: Vec<f32>,
+    /// Slot through which each column was reached, and the row of the slot.
+    reached_by: Vec<(u32, u32)>,
+    /// Columns reached so far, the settled ones first.
+    reached: Vec<u32>,
+    /// Final distances of the settled columns.
+    settled: Vec<f32>,
+    /// Best end among rows that could become outliers.
+    leave: Option<(f32, u32)>,
+}
+
+/// What came of a row's bid for a column.
+enum Bid {
+    /// The row has found its place.
+    Placed,
+    /// The row took the column of another row.
+    Displaced(u32),
+    /// Bidding cannot decide: two options are equally good, or there is no second one.
+    Tied,
+}
+
+/// Where an augmenting path ends.
+enum End {
+    /// At a free column.
+    Column(usize),
+    /// At a row that becomes an outlier.
+    Row(u32),
+}
+
+impl Assignment {
+    /// Pairs every row with a column of its own at the least total cost, which is returned.
+    /// `cost` is finite and row-major; `rows <= columns`.
+    #[cfg(any(test, feature = "bench-stages"))]
+    pub(crate) fn solve(&mut self, rows: usize, columns: usize, cost: &[f32]) -> f32 {
+        debug_assert!(rows <= columns && cost.len() >= rows * columns);
+        self.begin(columns);
+        for i in 0..rows {
+            self.enter_row(&cost[i * columns..(i + 1) * columns], f32::INFINITY);
+        }
+        self.settle()
+    }
+
+    /// Pairs rows with columns, or leaves row `i` alone at `outlier[i]`, at the least total cost, which is returned.
+    /// `cost` is row-major; an infinite cost marks a pair that must not be. There may be fewer columns than rows.
+    #[cfg(any(test, feature = "bench-stages"))]
+    pub(crate) fn solve_with_outliers(&mut self, rows: usize, columns: usize, cost: &[f32], outlier: &[f32]) -> f32 {
+        debug_assert!(cost.len() >= rows * columns && outlier.len() >= rows);
+        self.begin(columns);
+        for (i, &alone) in outlier.iter().enumerate().take(rows) {
+            self.enter_row(&cost[i * columns..(i + 1) * columns], alone);
+        }
+        self.settle()
+    }
+
+    /// Enters a full matrix and [settles it greedily](Self::settle_greedily). `cost` is row-major.
+    #[cfg(any(test, feature = "bench-stages"))]
+    pub(crate) fn greedy(&mut self, rows: usize, columns: usize, cost: &[f32]) -> f32 {
+        self.begin(columns);
+        for i in 0..rows {
+            self.enter_row(&cost[i * columns..(i + 1) * columns], f32::INFINITY);
+        }
+        self.settle_greedily()
+    }
+
+    /// Partner of each row: a column, or [`OUTLIER`].
+    pub(crate) fn column_of(&self) -> &[u32] {
+        &self.column_of
+    }
+
+    /// Starts a problem whose pairs come one by one: for each row a [`Assignment::begin_row`], any number of
+    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`] or [`Assignment::settle_greedily`].
+    pub(crate) fn begin(&mut self, columns: usize) {
+        self.columns = columns;
+        self.pairs.clear();
+        self.outlier.clear();
+        self.cheapest.clear();
+        self.starts.clear();
+        self.starts.push(0);
+        self.bound = 0.0;
+    }
+
+    /// Opens a row. `outlier` is its cost of staying alone; infinite where it must have a partner.
+    pub(crate) fn begin_row(&mut self, outlier: f32) {
+        self.outlier.push(outlier);
+        self.gate = outlier;
+    }
+
+    /// Offers a partner to the open row; each column at most once a row.
+    #[inline]
+    pub(crate) fn pair(&mut self, column: u32, cost: f32) {
+        if cost < self.gate {
+            self.pairs.push((column, cost));
+        }
+    }
+
+    /// Closes the open row. Returns a lower bound of what [`Assignment::settle`] will return, from the rows entered so far.
+    pub(crate) fn end_row(&mut self) -> f32 {
+        let start = self.starts.last().map_or(0, |&s| s as usize);
+        let (mut best, mut slot) = (self.gate, NONE);
+        for (k, &(_, cost)) in self.pairs[start..].iter().enumerate() {
+            if cost < best {
+                (best, slot) = (cost, (start + k) as u32);
+            }
+        }
+        self.bound += best;
+        self.cheapest.push(slot);
+        self.starts.push(self.pairs.len() as u32);
+        self.bound
+    }
+
+    /// Solves the problem that was entered. Returns the least total cost: infinite when a row that must have a partner gets none.
+    pub(crate) fn settle(&mut self) -> f32 {
+        self.reset();
+        for row in 0..self.outlier.len() as u32 {
+            match self.cheapest[row as usize] {
+                NONE => {}
+                slot if self.row_of[self.column(slot)] == NONE => self.take(row, slot),
+                _ => self.waiting.push(row),
+            }
+        }
+        if self.waiting.is_empty() {
+            return self.bound;
+        }
+        self.bid_all();
+        if !self.waiting.is_empty() {
+            self.search.reset(self.columns);
+            while let Some(row) = self.waiting.pop() {
+                self.augment(row);
+            }
+        }
+        self.total()
+    }
+
+    /// Settles the problem that was entered by pairing the nearest pair first, then the nearest of the rest, and so on
+    /// [Ma 2011 §3.2]. Returns the sum over the pairs; rows left over are [`OUTLIER`]s and not counted.
+    pub(crate) fn settle_greedily(&mut self) -> f32 {
+        self.reset();
+        let mut total = 0.0;
+        while let Some((row, slot)) = self.nearest_open_pair() {
+            self.take(row, slot);
+            total += self.pairs[slot as usize].1;
+        }
+        total
+    }
+
+    /// Enters a full row, skipping stretches without a usable pair.
+    #[cfg(any(test, feature = "bench-stages"))]
+    fn enter_row(&mut self, row: &[f32], outlier: f32) {
+        self.begin_row(outlier);
+        let (chunks, rest) = row.as_chunks::<LANES>();
+        for (k, chunk) in chunks.iter().enumerate() {
+            if chunk.iter().fold(false, |any, &c| any | (c < outlier)) {
+                self.enter_entries(k * LANES, chunk);
+            }
+        }
+        self.enter_entries(chunks.len() * LANES, rest);
+        self.end_row();
+    }
+
+    #[cfg(any(test, feature = "bench-stages"))]
+    fn enter_entries(&mut self, first: usize, entries: &[f32]) {
+        for (k, &cost) in entries.iter().enumerate() {
+            self.pair((first + k) as u32, cost);
+        }
+    }
+
+    fn reset(&mut self) {
+        let rows = self.outlier.len();
+        refill(&mut self.slot_of, rows, NONE);
+        refill(&mut self.column_of, rows, OUTLIER);
+        refill(&mut self.row_of, self.columns, NONE);
+        refill(&mut self.price, self.columns, 0.0);
+        self.waiting.clear();
+    }
+
+    fn column(&self, slot: u32) -> usize {
+        self.pairs[slot as usize].0 as usize
+    }
+
+    fn slots(&self, row: u32) -> std::ops::Range<usize> {
+        self.starts[row as usize] as usize..self.starts[row as usize + 1] as usize
+    }
+
+    fn take(&mut self, row: u32, slot: u32) {
+        let column = self.column(slot);
+        self.slot_of[row as usize] = slot;
+        self.column_of[row as usize] = column as u32;
+        self.row_of[column] = row;
+    }
+
+    fn leave(&mut self, row: u32) {
+        self.slot_of[row as usize] = NONE;
+        self.column_of[row as usize] = OUTLIER;
+    }
+
+    fn total(&self) -> f32 {
+        let cost = |(&slot, &outlier): (&u32, &f32)| match slot {
+            NONE => outlier,
+            slot => self.pairs[slot as usize].1,
+        };
+        self.slot_of.iter().zip(&self.outlier).map(cost).sum()
+    }
+
+    /// Lets waiting rows outbid each other; those that bidding cannot place wait on.
+    fn bid_all(&mut self) {
+        // Bidding wars between nearly equal rows are cut short: a path search settles them in one go.
+        let mut bids = 4 * self.waiting.len() + 16;
+        let mut kept = 0;
+        for k in 0..self.waiting.len() {
+            if let Some(row) = self.bid_from(self.waiting[k], &mut bids) {
+                self.waiting[kept] = row;
+                kept += 1;
+            }
+        }
+        self.waiting.truncate(kept);
+    }
+
+    /// Bids for `row`, then for the row that it displaced, and so on. Returns the row that is left without a place.
+    fn bid_from(&mut self, mut row: u32, bids: &mut usize) -> Option<u32> {
+        while *bids > 0 {
+            *bids -= 1;
+            match self.bid(row) {
+                Bid::Placed => return None,
+                Bid::Displaced(other) => row = other,
+                Bid::Tied => return Some(row),
+            }
+        }
+        Some(row)
+    }
+
+    fn bid(&mut self, row: u32) -> Bid {
+        let (mut best, mut second, mut slot) = (self.outlier[row as usize], f32::INFINITY, NONE);
+        for k in self.slots(row) {
+            let (column, cost) = self.pairs[k];
+            let reduced = cost - self.price[column as usize];
+            if reduced < best {
+                (best, second, slot) = (reduced, best, k as u32);
+            } else if reduced < second {
+                second = reduced;
+            }
+        }
+        if slot == NONE {
+            // Prices only fall, so no column will ever become better than staying alone.
+            return Bid::Placed;
+        }
+        let column = self.column(slot);
+        let other = self.row_of[column];
+        let margin = second - best;
+        if other != NONE && (margin <= 0.0 || !margin.is_finite()) {
+            return Bid::Tied;
+        }
+        if margin.is_finite() {
+            self.price[column] -= margin;
+        }
+        self.take(row, slot);
+        if other == NONE {
+            return Bid::Placed;
+        }
+        self.leave(other);
+        Bid::Displaced(other)
+    }
+
+    /// Places `start` by a shortest augmenting path: along it rows change to other columns, and at its end a column is taken that
+    /// was free or a row becomes an outlier.
+    fn augment(&mut self, start: u32) {
+        let (mut row, mut shift) = (start, 0.0);
+        let (end, length) = loop {
+            self.relax(row, shift);
+            let nearest = self.search.nearest_open();
+            if let Some((length, row)) = self.search.leave
+                && nearest.is_none_or(|(_, d)| length <= d)
+            {
+                break (End::Row(row), length);
+            }
+            let Some((k, length)) = nearest else {
+                // No column left for a row that must have one: it stays without.
+                return self.search.clear();
+            };
+            let column = self.search.reached[k] as usize;
+            row = self.row_of[column];
+            if row == NONE {
+                break (End::Column(column), length);
+            }
+            self.search.settle(k);
+            shift = length - (self.pairs[self.slot_of[row as usize] as usize].1 - self.price[column]);
+        };
+        for (&column, &distance) in self.search.reached.iter().zip(&self.search.settled) {
+            self.price[column as usize] += distance - length;
+        }
+        self.flip(start, end);
+        self.search.clear();
+    }
+
+    /// Reaches the columns of `row`, which is itself reached at reduced distance `shift`.
+    fn relax(&mut self, row: u32, shift: f32) {
+        let alone = self.outlier[row as usize] + shift;
+        if alone.is_finite() && self.search.leave.is_none_or(|(d, _)| alone < d) {
+            self.search.leave = Some((alone, row));
+        }
+        for k in self.slots(row) {
+            let (column, cost) = self.pairs[k];
+            self.search.reach(column, cost - self.price[column as usize] + shift, (k as u32, row));
+        }
+    }
+
+    fn flip(&mut self, start: u32, end: End) {
+        let mut column = match end {
+            End::Column(column) => column,
+            End::Row(row) => {
+                let column = self.column_of[row as usize];
+                self.leave(row);
+                if row == start {
+                    return;
+                }
+                column as usize
+            }
+        };
+        loop {
+            let (slot, row) = self.search.reached_by[column];
+            let before = self.column_of[row as usize];
+            self.take(row, slot);
+            if row == start {
+                return;
+            }
+            column = before as usize;
+        }
+    }
+
+    /// The cheapest pair whose row and column are both still free: row and slot.
+    fn nearest_open_pair(&mut self) -> Option<(u32, u32)> {
+        let mut best: Option<(u32, u32, f32)> = None;
+        for row in 0..self.outlier.len() as u32 {
+            if self.slot_of[row as usize] == NONE {
+                self.refresh_cheapest(row);
+                let slot = self.cheapest[row as usize];
+                if slot != NONE && best.is_none_or(|(.., cost)| self.pairs[slot as usize].1 < cost) {
+                    best = Some((row, slot, self.pairs[slot as usize].1));
+                }
+            }
+        }
+        best.map(|(row, slot, _)| (row, slot))
+    }
+
+    /// Makes `cheapest` point to a free column again.
+    fn refresh_cheapest(&mut self, row: u32) {
+        let slot = self.cheapest[row as usize];
+        if slot == NONE || self.row_of[self.column(slot)] == NONE {
+            return;
+        }
+        let (mut best, mut slot) = (f32::INFINITY, NONE);
+        for k in self.slots(row) {
+            let (column, cost) = self.pairs[k];
+            if cost < best && self.row_of[column as usize] == NONE {
+                (best, slot) = (cost, k as u32);
+            }
+        }
+        self.cheapest[row as usize] = slot;
+    }
+}
+
+impl PathSearch {
+    /// Makes room for a problem. The tree is empty before and after each search.
+    fn reset(&mut self, columns: usize) {
+        refill(&mut self.distance, columns, f32::INFINITY);
+        self.reached_by.resize(columns, (NONE, NONE));
+    }
+
+    /// Forgets the tree.
+    fn clear(&mut self) {
+        for &column in &self.reached {
+            self.distance[column as usize] = f32::INFINITY;
+        }
+        self.reached.clear();
+        self.settled.clear();
+        self.leave = None;
+    }
+
+    fn reach(&mut self, column: u32, distance: f32, by: (u32, u32)) {
+        let known = &mut self.distance[column as usize];
+        if distance < *known {
+            if *known == f32::INFINITY {
+                self.reached.push(column);
+            }
+            *known = distance;
+            self.reached_by[column as usize] = by;
+        }
+    }
+
+    /// The nearest column that is reached but not settled: index into `reached`, and distance.
+    fn nearest_open(&self) -> Option<(usize, f32)> {
+        let open = self.reached.iter().enumerate().skip(self.settled.len());
+        open.map(|(k, &c)| (k, self.distance[c as usize])).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Makes the distance of `reached[k]` final. Rounding must not improve it any more: the tree would get a cycle.
+    fn settle(&mut self, k: usize) {
+        self.reached.swap(k, self.settled.len());
+        let column = self.reached[self.settled.len()] as usize;
+        self.settled.push(std::mem::replace(&mut self.distance[column], f32::NEG_INFINITY));
+    }
+}
+
+/// Sets the length and every entry of a buffer, keeping its memory.
+fn refill<T: Copy>(buffer: &mut Vec<T>, length: usize, value: T) {
+    buffer.clear();
+    buffer.resize(length, value);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pathfinding::{kuhn_munkres::kuhn_munkres_min, matrix::Matrix};
+    use proptest::prelude::*;
+
+    /// Least cost by the library, outliers as extra columns.
+    fn reference(rows: usize, columns: usize, cost: &[f32], outlier: &[f32]) -> i64 {
+        const FORBIDDEN: i64 = 1 << 32;
+        if rows == 0 {
+            return 0;
+        }
+        let width = columns + outlier.len();
+        let entry = |i: usize, j: usize| match j.checked_sub(columns) {
+            None if cost[i * columns + j].is_finite() => cost[i * columns + j] as i64,
+            Some(k) if k == i && outlier[i].is_finite() => outlier[i] as i64,
+            _ => FORBIDDEN,
+        };
+        let matrix = Matrix::from_fn(rows, width, |(i, j)| entry(i, j));
+        kuhn_munkres_min(&matrix).0
+    }
+
+    /// Cost of the pairing that the solver reports, which must use each column at most once.
+    fn cost_of(solver: &Assignment, columns: usize, cost: &[f32], outlier: &[f32]) -> f32 {
+        let mut used = vec![false; columns];
+        let mut total = 0.0;
+        for (i, &j) in solver.column_of().iter().enumerate() {
+            if j == OUTLIER {
+                total += outlier[i];
+            } else {
+                assert!(!std::mem::replace(&mut used[j as usize], true), "column {j} is used twice");
+                total += cost[i * columns + j as usize];
+            }
+        }
+        total
+    }
+
+    /// Integers up to `largest` as costs: exact in f32, and full of ties when `largest` is small.
+    fn costs(n: usize, largest: u32) -> impl Strategy<Value = Vec<f32>> {
+        prop::collection::vec((0..=largest).prop_map(|v| v as f32), n)
+    }
+
+    fn square_or_wide() -> impl Strategy<Value = (usize, usize, Vec<f32>)> {
+        (0_usize..14, 0_usize..10, prop::sample::select(vec![2_u32, 20, 3000]))
+            .prop_flat_map(|(r, extra, largest)| (Just(r), Just(r + extra), costs(r * (r + extra), largest)))
+    }
+
+    fn any_shape() -> impl Strategy<Value = (usize, usize, Vec<f32>, Vec<f32>)> {
+        (0_usize..14, 0_usize..18, prop::sample::select(vec![3_u32, 20, 3000])).prop_flat_map(|(r, c, largest)| {
+            let gated = prop::collection::vec(prop::bool::weighted(0.2), r * c);
+            let cost = (costs(r * c, largest), gated).prop_map(|(cost, gated)| {
+                cost.iter().zip(gated).map(|(&c, g)| if g { f32::INFINITY } else { c }).collect()
+            });
+            (Just(r), Just(c), cost, costs(r, largest / 2))
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn full_pairings_are_optimal((rows, columns, cost) in square_or_wide()) {
+            let mut solver = Assignment::default();
+            let total = solver.solve(rows, columns, &cost);
+            prop_assert_eq!(total as i64, reference(rows, columns, &cost, &[]));
+            prop_assert_eq!(total, cost_of(&solver, columns, &cost, &vec![f32::NAN; rows]));
+        }
+
+        #[test]
+        fn pairings_with_outliers_are_optimal((rows, columns, cost, outlier) in any_shape()) {
+            let mut solver = Assignment::default();
+            let total = solver.solve_with_outliers(rows, columns, &cost, &outlier);
+            prop_assert_eq!(total as i64, reference(rows, columns, &cost, &outlier));
+            prop_assert_eq!(total, cost_of(&solver, columns, &cost, &outlier));
+            prop_assert!(solver.bound <= total);
+        }
+
+        #[test]
+        fn a_used_solver_answers_as_a_new_one(a in any_shape(), b in any_shape()) {
+            let mut used = Assignment::default();
+            used.solve_with_outliers(a.0, a.1, &a.2, &a.3);
+            let mut new = Assignment::default();
+            let want = new.solve_with_outliers(b.0, b.1, &b.2, &b.3);
+            prop_assert_eq!(used.solve_with_outliers(b.0, b.1, &b.2, &b.3), want);
+            prop_assert_eq!(used.column_of(), new.column_of());
+        }
+
+        #[test]
+        fn greedy_pairs_the_nearest_first((rows, columns, cost, _) in any_shape()) {
+            let mut solver = Assignment::default();
+            let total = solver.greedy(rows, columns, &cost);
+            let mut order: Vec<_> = (0..rows * columns).filter(|&k| cost[k].is_finite()).collect();
+            order.sort_by(|&a, &b| cost[a].total_cmp(&cost[b]).then(a.cmp(&b)));
+            let (mut column_of, mut used, mut want) = (vec![OUTLIER; rows], vec![false; columns], 0.0);
+            for k in order {
+                let (i, j) = (k / columns, k % columns);
+                if column_of[i] == OUTLIER && !used[j] {
+                    (column_of[i], used[j]) = (j as u32, true);
+                    want += cost[k];
+                }
+            }
+            prop_assert_eq!(solver.column_of(), &column_of[..]);
+            prop_assert_eq!(total, want);
+        }
+    }
+
+    #[test]
+    fn nothing_to_pair_costs_nothing() {
+        let mut solver = Assignment::default();
+        assert_eq!(solver.solve(0, 5, &[]), 0.0);
+        assert_eq!(solver.solve_with_outliers(0, 0, &[], &[]), 0.0);
+        assert!(solver.column_of().is_empty());
+    }
+
+    #[test]
+    fn one_row_takes_the_only_column() {
+        let mut solver = Assignment::default();
+        assert_eq!(solver.solve(1, 1, &[3.0]), 3.0);
+        assert_eq!(solver.column_of(), [0]);
+    }
+
+    #[test]
+    fn everybody_stays_alone_when_partners_cost_as_much() {
+        let mut solver = Assignment::default();
+        assert_eq!(solver.solve_with_outliers(2, 2, &[5.0, 5.0, 5.0, 9.0], &[5.0, 5.0]), 10.0);
+        assert_eq!(solver.column_of(), [OUTLIER, OUTLIER]);
+        assert_eq!(solver.solve_with_outliers(2, 0, &[], &[1.0, 2.0]), 3.0);
+    }
+
+    #[test]
+    fn a_row_gives_way_where_that_is_cheaper_in_all() {
+        let mut solver = Assignment::default();
+        // Both want column 0; the second has nowhere else to go, the first has column 1.
+        let cost = [1.0, 2.0, 0.5, f32::INFINITY];
+        assert_eq!(solver.solve_with_outliers(2, 2, &cost, &[4.0, 4.0]), 2.5);
+        assert_eq!(solver.column_of(), [1, 0]);
+    }
+
+    #[test]
+    fn a_row_that_must_be_paired_pushes_the_other_out() {
+        let mut solver = Assignment::default();
+        let total = solver.solve_with_outliers(2, 1, &[1.0, 3.0], &[2.0, f32::INFINITY]);
+        assert_eq!((total, solver.column_of()), (5.0, &[OUTLIER, 0][..]));
+        let total = solver.solve_with_outliers(2, 1, &[1.0, 3.0], &[f32::INFINITY; 2]);
+        assert_eq!(total, f32::INFINITY);
+    }
+
+    #[test]
+    fn a_cost_that_is_no_number_is_never_used() {
+        let mut solver = Assignment::default();
+        assert_eq!(solver.solve_with_outliers(1, 2, &[f32::NAN, 1.0], &[2.0]), 1.0);
+        assert_eq!(solver.column_of(), [1]);
+    }
+}

@@ -1,0 +1,230 @@
+//! How alike two neighbourhoods are, and which samples correspond [Tu 2020 §4.2].
+//!
+//! The neighbourhood of an output sample is laid over the one of an exemplar sample, centres together, in the local frame. Pairs cost their
+//! squared distance in place and attributes. Robust matching assigns at the least total cost and lets a sample stay alone at the squared
+//! outlier distance; beyond the paper, exemplar samples inside the radius that find no partner cost the same, so that holes count as much
+//! as surplus elements. Hard matching pairs nearest first and charges nothing for what is missing [Ma 2011 §3.2].
+
+use arabesque_core::Vector;
+
+use crate::{
+    exemplar::{
+        graph::net::Star,
+        level::{Level, Near},
+        library::Library,
+    },
+    optimise::assignment::{Assignment, OUTLIER},
+    params::Matching,
+};
+
+/// Cost of a sample that hard matching leaves without a partner, in squared outlier distances.
+const LEFT_OVER: f32 = 4.0;
+
+/// A neighbour of an output sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<const D: usize> {
+    /// The neighbour.
+    pub(crate) sample: u32,
+    /// Its key.
+    pub(crate) key: u32,
+    /// Exemplar element that is drawn there now.
+    pub(crate) source: u32,
+    /// From the centre, in exemplar directions and units.
+    pub(crate) offset: Vector<D>,
+    /// Weight by distance.
+    pub(crate) weight: f32,
+    /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put them, and their neighbours
+    /// along the stroke serve as well.
+    pub(crate) frozen: bool,
+    /// Its edges, in exemplar directions and units.
+    pub(crate) star: Star<D>,
+}
+
+/// The neighbourhood of one output sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Surroundings<const D: usize> {
+    /// Exemplar element that is drawn at the centre now.
+    pub(crate) source: u32,
+    /// Edges of the centre.
+    pub(crate) star: Star<D>,
+    /// The neighbours.
+    pub(crate) rows: Vec<Row<D>>,
+}
+
+/// Partners under one exemplar sample.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Correspondence {
+    /// (row, exemplar sample), by row.
+    pub(crate) pairs: Vec<(u32, u32)>,
+    /// Exemplar samples within the radius that have no partner.
+    pub(crate) missing: Vec<u32>,
+}
+
+/// What is charged besides the pairs, relative to the cost of a surplus sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prices {
+    /// An exemplar sample inside the radius without a partner.
+    pub(crate) missing: f32,
+    /// An exemplar sample inside the radius that would come to lie outside the domain [Ma 2011 §5, eq. 6].
+    pub(crate) outside: f32,
+}
+
+/// Compares neighbourhoods; keeps its buffers between calls.
+pub(crate) struct Matcher<'a, const D: usize> {
+    level: &'a Level<D>,
+    library: &'a Library<D>,
+    matching: Matching,
+    prices: Prices,
+    assignment: Assignment,
+    used: Vec<bool>,
+}
+
+impl<'a, const D: usize> Matcher<'a, D> {
+    pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, prices: Prices) -> Self {
+        Self { level, library, matching, prices, assignment: Assignment::default(), used: Vec::new() }
+    }
+
+    /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
+    /// `wanted(p)` tells whether something that lies at offset `p` could be in the output at all.
+    pub(crate) fn cost(
+        &mut self,
+        around: &Surroundings<D>,
+        i: u32,
+        limit: f32,
+        wanted: &dyn Fn(Vector<D>) -> bool,
+    ) -> f32 {
+        let centre = self.difference((around.source, &around.star), i);
+        let pairs = match self.matching {
+            Matching::Robust => self.robust(around, i, limit - centre),
+            Matching::Hard => self.hard(around, i, limit - centre),
+        };
+        let cost = centre + pairs;
+        if cost > limit {
+            return cost;
+        }
+        cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted)
+    }
+
+    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
+    fn difference(&self, (source, star): (u32, &Star<D>), i: u32) -> f32 {
+        let element = self.level.element[i as usize];
+        if element >= self.level.base {
+            return star.distance2(&self.level.stars[i as usize], self.level.single2);
+        }
+        self.library.feature[source as usize].distance2(&self.library.feature[element as usize])
+    }
+
+    fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
+        let (level, library) = (self.level, self.library);
+        let near = level.neighbours(i);
+        let origin = level.position[i as usize];
+        self.assignment.begin(near.len());
+        for row in &around.rows {
+            let outlier2 = level.outlier2[row.key as usize];
+            // Nobody knows what lies beyond the frame of the exemplar: half the price.
+            let seen = library.view.contains(origin + row.offset);
+            let alone = if seen { outlier2 } else { 0.5 * outlier2 };
+            self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
+            let offset = row.offset.0.map(|v| v as f32);
+            for column in level.neighbours_of_key(i, row.key) {
+                let other = &near[column];
+                let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
+                if d2 < outlier2 || row.frozen {
+                    let d2 = d2 + self.difference((row.source, &row.star), other.sample);
+                    self.assignment.pair(column as u32, row.weight * d2);
+                }
+            }
+            if self.assignment.end_row() > limit {
+                return f32::INFINITY;
+            }
+        }
+        self.assignment.settle()
+    }
+
+    fn hard(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
+        let level = self.level;
+        let near = level.neighbours(i);
+        self.assignment.begin(near.len());
+        let mut bound = 0.0;
+        for row in &around.rows {
+            // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
+            let mut least = LEFT_OVER * level.outlier2[row.key as usize];
+            let offset = row.offset.0.map(|v| v as f32);
+            self.assignment.begin_row(f32::INFINITY);
+            for column in level.neighbours_of_key(i, row.key) {
+                let other = &near[column];
+                let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
+                let d2 = d2 + self.difference((row.source, &row.star), other.sample);
+                self.assignment.pair(column as u32, d2);
+                least = least.min(d2);
+            }
+            self.assignment.end_row();
+            bound += least;
+            if bound > limit {
+                return f32::INFINITY;
+            }
+        }
+        let total = self.assignment.settle_greedily();
+        let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| **column == OUTLIER);
+        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key as usize]).sum::<f32>()
+    }
+
+    fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
+        if self.prices.missing == 0.0 || self.matching == Matching::Hard {
+            return 0.0;
+        }
+        let near = self.level.neighbours(i);
+        self.mark_used(near.len());
+        let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
+        let sum: f32 = absent
+            .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
+            .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize])
+            .sum();
+        self.prices.missing * sum
+    }
+
+    fn outside_cost(&self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
+        if self.prices.outside == 0.0 {
+            return 0.0;
+        }
+        let near = self.level.neighbours(i).iter().filter(|other| other.weight > 0.0);
+        let outside = near.filter(|other| !wanted(Vector(other.offset.map(f64::from))));
+        let price =
+            |other: &Near<D>| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize];
+        self.prices.outside * outside.map(price).sum::<f32>()
+    }
+
+    fn mark_used(&mut self, columns: usize) {
+        self.used.clear();
+        self.used.resize(columns, false);
+        for &column in self.assignment.column_of() {
+            if column != OUTLIER {
+                self.used[column as usize] = true;
+            }
+        }
+    }
+
+    /// Partners under exemplar sample `i`.
+    pub(crate) fn correspondence(
+        &mut self,
+        around: &Surroundings<D>,
+        i: u32,
+        wanted: &dyn Fn(Vector<D>) -> bool,
+    ) -> Correspondence {
+        match self.matching {
+            Matching::Robust => self.robust(around, i, f32::INFINITY),
+            Matching::Hard => self.hard(around, i, f32::INFINITY),
+        };
+        let near = self.level.neighbours(i);
+        let columns = self.assignment.column_of().iter().enumerate();
+        let pairs =
+            columns.filter(|(_, c)| **c != OUTLIER).map(|(r, &c)| (r as u32, near[c as usize].sample)).collect();
+        self.mark_used(near.len());
+        let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
+        let missing = absent
+            .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
+            .map(|(other, _)| other.sample)
+            .collect();
+        Correspondence { pairs, missing }
+    }
+}

@@ -1,0 +1,283 @@
+//! Search: the exemplar neighbourhood most like that of each output sample.
+//!
+//! Candidates come from the matches of the neighbours: where neighbour `o` was matched, the exemplar sample that then corresponded to this
+//! sample is a candidate, and so are the ones most similar to it (k-coherence [Ma 2011 §4.2]) or random ones around it (PatchMatch
+//! [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the result does not depend on the number of threads).
+//! Samples around which nothing changed keep their match.
+
+use arabesque_core::{Stream, Vector};
+use rayon::prelude::*;
+
+use crate::{
+    exemplar::{
+        level::{Level, fall_off},
+        library::Library,
+    },
+    optimise::matching::{Matcher, Prices, Row, Surroundings},
+    output::state::{Match, State},
+    params::{Matching, Search},
+    streams,
+};
+
+/// A neighbourhood with less than this energy is as good as a copy: no better one is looked for.
+const COPY: f32 = 1e-3;
+
+/// How the search is done.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SearchParams {
+    pub(crate) search: Search,
+    pub(crate) matching: Matching,
+    pub(crate) prices: Prices,
+    /// Members of a similarity set.
+    pub(crate) coherence: usize,
+    /// Random candidates a sample.
+    pub(crate) random: usize,
+    /// Rounds of propagation.
+    pub(crate) rounds: usize,
+    /// Distinguishes the random draws of this step from those of other steps.
+    pub(crate) step: u64,
+}
+
+/// Finds a match for every living sample. Returns how many samples were searched anew.
+pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchParams) -> usize {
+    let mut searched = 0;
+    for round in 0..params.rounds as u64 {
+        let params = SearchParams { step: params.step + (round << 40), ..*params };
+        let found: Vec<Option<Match>> = state
+            .living
+            .par_iter()
+            .map_init(
+                || Matcher::new(state.level, state.library, params.matching, params.prices),
+                |matcher, &s| search_one(state, s, &params, matcher),
+            )
+            .collect();
+        searched += found.iter().flatten().count();
+        for (k, found) in found.into_iter().enumerate().filter(|(_, found)| found.is_some()) {
+            let s = state.living[k] as usize;
+            state.samples[s].matched = found;
+        }
+    }
+    state.samples.iter_mut().for_each(|sample| sample.dirty = false);
+    searched
+}
+
+/// The exemplar samples with the neighbourhoods most similar to that of `i`, best first [Ma 2011 §4.2].
+///
+/// Keys with very many samples are compared with an even selection of them: the sets need good members, not the best.
+fn most_similar<const D: usize>(
+    level: &Level<D>,
+    library: &Library<D>,
+    (matching, number): (Matching, usize),
+    i: u32,
+) -> Vec<u32> {
+    const MOST: usize = 256;
+    let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
+    let others = &level.of_key[level.key[i as usize] as usize];
+    let around = exemplar_surroundings(level, i);
+    let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
+    for &j in others.iter().step_by(others.len().div_ceil(MOST)).filter(|&&j| j != i) {
+        let full = best.len() == number;
+        let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
+        let cost = matcher.cost(&around, j, limit, &|_| true);
+        if cost < limit {
+            let at = best.partition_point(|b| b.0 <= cost);
+            best.insert(at, (cost, j));
+            best.truncate(number);
+        }
+    }
+    best.into_iter().map(|(_, j)| j).collect()
+}
+
+/// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that do not overlap it much.
+/// 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where too little of it is seen to tell.
+pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
+    const ASKED: usize = 96;
+    let inner: Vec<u32> = (0..level.position.len() as u32)
+        .filter(|&i| library.view.signed_distance(level.position[i as usize]) > 0.7 * level.radius)
+        .collect();
+    let asked: Vec<u32> = inner.iter().copied().step_by(inner.len().div_ceil(ASKED).max(1)).collect();
+    let energies: Vec<f64> = asked
+        .par_iter()
+        .filter_map(|&i| {
+            let mut matcher = Matcher::new(level, library, matching, Prices { missing: 1.0, outside: 0.0 });
+            let around = exemplar_surroundings(level, i);
+            let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key as usize]).sum();
+            let others = &level.of_key[level.key[i as usize] as usize];
+            let apart = |j: &&u32| (level.position[**j as usize] - level.position[i as usize]).norm() > level.radius;
+            let best = others
+                .iter()
+                .filter(apart)
+                .fold(f32::INFINITY, |best, &j| best.min(matcher.cost(&around, j, best, &|_| true)));
+            (scale > 0.0).then(|| f64::from((best / scale).min(2.0)))
+        })
+        .collect();
+    (energies.len() >= 8).then(|| energies.iter().sum::<f64>() / energies.len() as f64)
+}
+
+/// The neighbourhood of an exemplar sample, as if it were an output sample.
+fn exemplar_surroundings<const D: usize>(level: &Level<D>, i: u32) -> Surroundings<D> {
+    let near = level.neighbours(i).iter().filter(|n| n.weight > 0.0);
+    let mut rows: Vec<_> = near
+        .map(|n| Row {
+            sample: n.sample,
+            key: level.key[n.sample as usize],
+            source: level.element[n.sample as usize],
+            offset: Vector(n.offset.map(f64::from)),
+            weight: n.weight,
+            frozen: false,
+            star: level.stars[n.sample as usize],
+        })
+        .collect();
+    rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
+    Surroundings { source: level.element[i as usize], star: level.stars[i as usize], rows }
+}
+
+fn search_one<const D: usize>(
+    state: &State<'_, D>,
+    s: u32,
+    params: &SearchParams,
+    matcher: &mut Matcher<'_, D>,
+) -> Option<Match> {
+    let (around, dirty) = surroundings(state, s);
+    let old = state.samples[s as usize].matched.as_ref();
+    if !dirty && old.is_some_and(|m| m.members.len() == around.rows.len()) {
+        return None;
+    }
+    let position = state.samples[s as usize].position;
+    let frame = state.request.fields.frame(position);
+    let reach = (state.level.radius) * frame.spacing_scale;
+    let deep = state.domain().signed_distance(position) > reach;
+    let wanted = |offset: Vector<D>| deep || state.extent.may_hold(position + frame.to_output(offset));
+    let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key as usize]).sum();
+    let mut best = (f32::INFINITY, u32::MAX);
+    let mut candidates = likely(state, s, &around, params);
+    let seeds = candidates.len();
+    let mut next = 0;
+    while next < candidates.len() && best.0 > COPY * scale {
+        let i = candidates[next];
+        let cost = matcher.cost(&around, i, best.0, &wanted);
+        if cost < best.0 || (cost == best.0 && i < best.1) {
+            best = (cost, i);
+        }
+        next += 1;
+        if next == seeds && best.0 > COPY * scale {
+            add_unlikely(&mut candidates, state, s, params);
+        }
+    }
+    let input = best.1;
+    let found = matcher.correspondence(&around, input, &wanted);
+    let own = state.level.outlier2[state.samples[s as usize].key as usize];
+    Some(Match {
+        input,
+        cost: best.0,
+        scale: scale + own,
+        pairs: found.pairs.iter().map(|&(row, i)| (around.rows[row as usize].sample, i)).collect(),
+        members: around.rows.iter().map(|r| r.sample).collect(),
+        missing: found.missing,
+    })
+}
+
+/// The neighbourhood of sample `s`, and whether anything in it changed.
+fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D>, bool) {
+    let sample = &state.samples[s as usize];
+    let frame = state.request.fields.frame(sample.position);
+    let radius = state.level.radius;
+    let mut dirty = sample.dirty;
+    let mut rows = Vec::with_capacity(sample.matched.as_ref().map_or(24, |m| m.members.len() + 4));
+    state.index.within(sample.position, radius * frame.spacing_scale, |slot, offset| {
+        let other = state.living[slot];
+        if other == s {
+            return;
+        }
+        let neighbour = &state.samples[other as usize];
+        let item = &state.items[neighbour.item as usize].item;
+        let offset = frame.to_exemplar(offset);
+        dirty |= neighbour.dirty;
+        rows.push(Row {
+            sample: other,
+            key: neighbour.key,
+            source: item.source,
+            offset,
+            weight: fall_off(offset, radius) as f32,
+            frozen: item.frozen.is_some() && item.source < state.level.base,
+            star: state.star(other),
+        });
+    });
+    // Nearest first: the bound of the matcher then grows fastest.
+    rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
+    let source = state.items[sample.item as usize].item.source;
+    (Surroundings { source, star: state.star(s), rows }, dirty)
+}
+
+/// Exemplar samples to try first for sample `s`, the likeliest first.
+fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>, params: &SearchParams) -> Vec<u32> {
+    let sample = &state.samples[s as usize];
+    let all = &state.level.of_key[sample.key as usize];
+    if is_exhaustive(all, params) {
+        return all.clone();
+    }
+    let mut list = Vec::with_capacity(64);
+    if let Some(m) = &sample.matched {
+        push(&mut list, m.input);
+    }
+    push(&mut list, state.level.first[around.source as usize] + sample.part);
+    // PatchMatch asks the eight nearest neighbours [Tu 2020 §4.3.3], k-coherence all of them.
+    let asked = if params.search == Search::PatchMatch { 8 } else { around.rows.len() };
+    let from_neighbours = around.rows.iter().take(asked).filter_map(|row| implied(state, row.sample, s));
+    from_neighbours.for_each(|i| push(&mut list, i));
+    list
+}
+
+/// Exemplar samples to try when none of the likely ones in `list` is a copy: what is similar to these, and random ones.
+fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u32, params: &SearchParams) {
+    let level = state.level;
+    let all = &level.of_key[state.samples[s as usize].key as usize];
+    if is_exhaustive(all, params) {
+        return;
+    }
+    let seeds = list.len();
+    if params.search == Search::KCoherence {
+        for k in 0..seeds.min(6) {
+            let i = list[k];
+            let find = || most_similar(level, state.library, (params.matching, params.coherence), i);
+            level.alike(i, find).iter().for_each(|&j| push(list, j));
+        }
+    }
+    let mut random = Stream::new(state.request.seed ^ (params.step << 20), streams::SEARCH, u64::from(s));
+    for n in 0..params.random {
+        let seed = list[n % seeds];
+        push(list, random_near(state, seed, all, n, &mut random));
+    }
+}
+
+fn is_exhaustive(all: &[u32], params: &SearchParams) -> bool {
+    params.search == Search::Exhaustive || all.len() <= 8
+}
+
+fn push(list: &mut Vec<u32>, i: u32) {
+    if !list.contains(&i) {
+        list.push(i);
+    }
+}
+
+/// The exemplar sample that `s` corresponds to when neighbour `o` lies where it was matched.
+fn implied<const D: usize>(state: &State<'_, D>, o: u32, s: u32) -> Option<u32> {
+    let matched = state.samples[o as usize].matched.as_ref()?;
+    matched.pairs.iter().find(|(sample, _)| *sample == s).map(|&(_, i)| i)
+}
+
+/// A random sample of the same key, in a window around `seed` that halves with each draw.
+fn random_near<const D: usize>(state: &State<'_, D>, seed: u32, all: &[u32], n: usize, random: &mut Stream) -> u32 {
+    let size = state.library.view.window.size().0.into_iter().fold(0.0, f64::max);
+    let window = size * 0.5_f64.powi((n % 4) as i32);
+    let centre = state.level.position[seed as usize];
+    let mut pick = all[random.below(all.len())];
+    // A few draws suffice: an empty window falls back to anywhere.
+    for _ in 0..4 {
+        if (state.level.position[pick as usize] - centre).norm() <= window {
+            break;
+        }
+        pick = all[random.below(all.len())];
+    }
+    pick
+}

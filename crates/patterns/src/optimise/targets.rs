@@ -1,0 +1,67 @@
+//! How many elements of each class the output should have.
+
+use arabesque_core::{Border, Request};
+
+use crate::{border::Extent, exemplar::library::Library};
+
+/// Cells along the longest side of the grid that measures the output.
+const CELLS: f64 = 96.0;
+
+/// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output, each place counted by
+/// its local scale and density.
+pub(crate) fn class_targets<const D: usize>(
+    library: &Library<D>,
+    request: &Request<D>,
+    extent: &Extent<'_, D>,
+    base: u32,
+) -> Vec<f64> {
+    let reach = border_reach(library, request.border, base);
+    let bounds = match request.domain.period() {
+        Some(_) => request.domain.bounds(),
+        None => request.domain.bounds().grown(extent.margin),
+    };
+    let size = bounds.size();
+    let step = size.0.into_iter().fold(0.0, f64::max) / if D == 2 { CELLS } else { 0.4 * CELLS };
+    let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).max(1));
+    let count: usize = cells.iter().product();
+    let cell_measure = bounds.measure() / count as f64;
+    let mut usable = vec![0.0; library.classes()];
+    for c in 0..count {
+        let p = bounds.cell_centre(c, &cells);
+        let frame = request.fields.frame(p);
+        let distance = request.domain.signed_distance(p);
+        if extent.is_blocked(p, 0.0) {
+            continue;
+        }
+        for (sum, reach) in usable.iter_mut().zip(&reach) {
+            if distance >= reach * frame.element_scale {
+                *sum += cell_measure / frame.spacing_scale.powi(D as i32);
+            }
+        }
+    }
+    let intensity = intensities(library);
+    usable.iter().zip(intensity).map(|(area, per)| area * per).collect()
+}
+
+/// How far inside the border the centres of each class lie; negative outside.
+fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32) -> Vec<f64> {
+    (0..library.classes() as u32)
+        .map(|c| {
+            let members = library.members(c);
+            let mean = members.iter().map(|&e| library.radius[e as usize]).sum::<f64>() / members.len().max(1) as f64;
+            let is_stroke = members.first().is_some_and(|&e| e >= base);
+            match if is_stroke { Border::Clip } else { border } {
+                Border::Inside | Border::Turn => mean,
+                Border::Cross => 0.0,
+                Border::Clip => -0.8 * mean,
+            }
+        })
+        .collect()
+}
+
+/// Elements of each class per measure of the exemplar's window.
+fn intensities<const D: usize>(library: &Library<D>) -> Vec<f64> {
+    let inside = |e: &&u32| library.view.contains(library.centre[**e as usize]);
+    let count = |c: u32| library.members(c).iter().filter(inside).count() as f64;
+    (0..library.classes() as u32).map(|c| count(c) / library.view.measure()).collect()
+}

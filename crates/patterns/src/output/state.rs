@@ -1,0 +1,300 @@
+//! The output while it is optimised: items, their samples, and what each sample was matched with.
+
+use arabesque_core::{Domain, GridIndex, Matrix, Request, Similarity, Vector};
+
+use crate::{
+    border::Extent,
+    exemplar::{graph::net::Star, level::Level, library::Library, samples::pose_of},
+    output::draft::{Draft, Item},
+    params::Deform,
+};
+
+/// What the search found for one output sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Match {
+    /// Exemplar sample with the most similar neighbourhood.
+    pub(crate) input: u32,
+    /// Cost of the pairing, squared exemplar units.
+    pub(crate) cost: f32,
+    /// Cost if every neighbour were an outlier: what `cost` is measured against.
+    pub(crate) scale: f32,
+    /// (output sample, exemplar sample) of the neighbours that found a partner.
+    pub(crate) pairs: Vec<(u32, u32)>,
+    /// Output samples of the neighbourhood, with or without partner.
+    pub(crate) members: Vec<u32>,
+    /// Exemplar samples that should be there and are not.
+    pub(crate) missing: Vec<u32>,
+}
+
+impl Match {
+    /// Cost relative to a neighbourhood of outliers: 0 for a perfect copy, about 1 for no likeness.
+    pub(crate) fn energy(&self) -> f64 {
+        f64::from(self.cost / self.scale.max(f32::MIN_POSITIVE))
+    }
+}
+
+/// One output sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Sample<const D: usize> {
+    /// Its item.
+    pub(crate) item: u32,
+    /// Which sample of its item it is.
+    pub(crate) part: u32,
+    /// See [`Level::key`].
+    pub(crate) key: u32,
+    pub(crate) position: Vector<D>,
+    /// Position when its neighbours last took notice.
+    pub(crate) announced: Vector<D>,
+    /// Whether its neighbours must take notice.
+    pub(crate) dirty: bool,
+    pub(crate) matched: Option<Match>,
+}
+
+/// An output element while it is optimised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LiveItem<const D: usize> {
+    pub(crate) item: Item<D>,
+    /// Rotation relative to its source, on top of the local frame.
+    pub(crate) turn: Matrix<D>,
+    pub(crate) alive: bool,
+    /// Samples `first..first + count`.
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+}
+
+/// The output at one level.
+#[derive(Clone)]
+pub(crate) struct State<'a, const D: usize> {
+    pub(crate) library: &'a Library<D>,
+    pub(crate) level: &'a Level<D>,
+    pub(crate) request: &'a Request<D>,
+    pub(crate) extent: &'a Extent<'a, D>,
+    /// Whether samples may leave the shape of their element.
+    pub(crate) deform: Deform,
+    pub(crate) items: Vec<LiveItem<D>>,
+    pub(crate) samples: Vec<Sample<D>>,
+    /// The samples that each curve sample is joined to; empty for samples of elements.
+    pub(crate) links: Vec<Vec<u32>>,
+    /// Directions in which strokes leave each curve sample, unit vectors in output coordinates.
+    pub(crate) tangents: Vec<Vec<Vector<D>>>,
+    /// Living samples, parallel to the points of `index`.
+    pub(crate) living: Vec<u32>,
+    pub(crate) index: GridIndex<D>,
+}
+
+impl<'a, const D: usize> State<'a, D> {
+    pub(crate) fn new(
+        library: &'a Library<D>,
+        level: &'a Level<D>,
+        request: &'a Request<D>,
+        extent: &'a Extent<'a, D>,
+        (draft, deform): (&Draft<D>, Deform),
+    ) -> Self {
+        let mut state = Self {
+            library,
+            level,
+            request,
+            extent,
+            deform,
+            items: Vec::with_capacity(draft.items.len()),
+            samples: Vec::with_capacity(draft.items.len()),
+            links: Vec::new(),
+            tangents: Vec::new(),
+            living: Vec::new(),
+            index: GridIndex::new(&[], 1.0, &request.domain),
+        };
+        draft.items.iter().for_each(|&(item, turn)| state.push(item, turn));
+        for &(a, b) in &draft.links {
+            let [a, b] = [a, b].map(|i| state.items[i as usize].first);
+            if a != b && !state.links[a as usize].contains(&b) {
+                state.links[a as usize].push(b);
+                state.links[b as usize].push(a);
+            }
+        }
+        state.reindex();
+        state
+    }
+
+    /// Adds an item with its samples; [`State::reindex`] makes it visible.
+    pub(crate) fn push(&mut self, item: Item<D>, turn: Matrix<D>) {
+        let parts = &self.level.parts[item.source as usize];
+        let first_key = self.level.key[self.level.first[item.source as usize] as usize];
+        let (number, first) = (self.items.len() as u32, self.samples.len() as u32);
+        let item = Item { position: self.request.domain.wrap(item.position), ..item };
+        self.items.push(LiveItem { item, turn, alive: true, first, count: parts.len() as u32 });
+        for part in 0..parts.len() as u32 {
+            let position = self.part_position(number, part);
+            self.samples.push(Sample {
+                item: number,
+                part,
+                key: first_key + part,
+                position,
+                announced: position,
+                dirty: true,
+                matched: None,
+            });
+            self.links.push(Vec::new());
+            self.tangents.push(Vec::new());
+        }
+    }
+
+    /// From the source of item `i`, about its centre, to the output.
+    pub(crate) fn pose(&self, i: u32) -> Similarity<D> {
+        let live = &self.items[i as usize];
+        let frame = self.request.fields.frame(live.item.position);
+        let rotation = frame.rotation.compose(&live.turn);
+        Similarity::about(Vector::ZERO, live.item.position, rotation, frame.element_scale)
+    }
+
+    fn part_position(&self, item: u32, part: u32) -> Vector<D> {
+        let source = self.items[item as usize].item.source as usize;
+        self.pose(item).apply(self.level.parts[source][part as usize])
+    }
+
+    /// Makes the index fit the samples.
+    pub(crate) fn reindex(&mut self) {
+        self.living = (0..self.samples.len() as u32)
+            .filter(|&s| self.items[self.samples[s as usize].item as usize].alive)
+            .collect();
+        let points: Vec<_> = self.living.iter().map(|&s| self.samples[s as usize].position).collect();
+        let radius = self.level.radius * self.extent.largest_spacing_scale;
+        self.index = GridIndex::new(&points, 0.5 * radius, &self.request.domain);
+    }
+
+    /// Number of living items.
+    pub(crate) fn count(&self) -> usize {
+        self.items.iter().filter(|i| i.alive).count()
+    }
+
+    /// Mean energy of the living samples that were matched.
+    pub(crate) fn energy(&self) -> f64 {
+        let matched = self.living.iter().filter_map(|&s| self.samples[s as usize].matched.as_ref());
+        let (n, sum) = matched.fold((0.0, 0.0), |(n, sum), m| (n + 1.0, sum + m.energy()));
+        if n > 0.0 { sum / n } else { 0.0 }
+    }
+
+    /// Moves every item to where its samples went, turned as a whole; frozen items stay.
+    pub(crate) fn follow_samples(&mut self, position: &[Vector<D>]) {
+        for i in 0..self.items.len() as u32 {
+            let live = self.items[i as usize];
+            if !live.alive || live.item.frozen.is_some() {
+                continue;
+            }
+            let range = live.first as usize..(live.first + live.count) as usize;
+            let parts = &self.level.parts[live.item.source as usize];
+            let frame = self.request.fields.frame(position[range.start]);
+            let fallback = frame.rotation.compose(&live.turn);
+            let pose = pose_of(parts, &position[range.clone()], frame.element_scale, fallback);
+            let centre = self.request.domain.wrap(pose.apply(Vector::ZERO));
+            let item = &mut self.items[i as usize];
+            item.item.position = centre;
+            item.turn = frame.rotation.transpose().compose(&pose.rotation);
+            for s in range {
+                self.samples[s].position = match self.deform {
+                    Deform::Rigid => self.part_position(i, self.samples[s].part),
+                    Deform::AsRigidAsPossible => position[s],
+                };
+            }
+        }
+    }
+
+    /// Replaces the source of item `i`, which then lies as in the exemplar again.
+    pub(crate) fn set_source(&mut self, i: u32, source: u32) {
+        let live = &mut self.items[i as usize];
+        live.item.source = source;
+        live.turn = Matrix::identity();
+        let range = live.first..live.first + live.count;
+        for s in range {
+            let p = self.part_position(i, self.samples[s as usize].part);
+            let sample = &mut self.samples[s as usize];
+            (sample.position, sample.dirty) = (p, true);
+        }
+    }
+
+    /// Marks the samples that moved more than `noticeable` since their neighbours last looked. Returns whether any did.
+    pub(crate) fn announce_moves(&mut self, noticeable: f64) -> bool {
+        let domain = &self.request.domain;
+        let mut any = false;
+        for sample in &mut self.samples {
+            if domain.offset(sample.announced, sample.position).norm() > noticeable {
+                sample.announced = sample.position;
+                sample.dirty = true;
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Source of the item of a sample.
+    pub(crate) fn source(&self, s: u32) -> u32 {
+        self.items[self.samples[s as usize].item as usize].item.source
+    }
+
+    /// The node of the net that a curve sample was copied from; `None` for a sample of an element.
+    pub(crate) fn node(&self, s: u32) -> Option<u32> {
+        self.source(s).checked_sub(self.level.base)
+    }
+
+    /// Whether a stroke may run from one sample to the other.
+    pub(crate) fn share_style(&self, a: u32, b: u32) -> bool {
+        match (&self.level.net, self.node(a), self.node(b)) {
+            (Some(net), Some(a), Some(b)) => net.nodes[a as usize].shares_style(&net.nodes[b as usize]),
+            _ => false,
+        }
+    }
+
+    /// Whether the user placed the sample.
+    pub(crate) fn is_frozen(&self, s: u32) -> bool {
+        self.items[self.samples[s as usize].item as usize].item.frozen.is_some()
+    }
+
+    /// Whether the sample is part of the output.
+    pub(crate) fn is_alive(&self, s: u32) -> bool {
+        self.items[self.samples[s as usize].item as usize].alive
+    }
+
+    /// From one sample to another by the shortest way.
+    pub(crate) fn offset(&self, from: u32, to: u32) -> Vector<D> {
+        self.request.domain.offset(self.samples[from as usize].position, self.samples[to as usize].position)
+    }
+
+    /// Distance of two samples in exemplar units.
+    pub(crate) fn reach(&self, a: u32, b: u32) -> f64 {
+        self.offset(a, b).norm() / self.request.fields.frame(self.samples[a as usize].position).spacing_scale
+    }
+
+    /// The edges of a sample in exemplar directions and units; none where edges take no part in the comparison.
+    pub(crate) fn star(&self, s: u32) -> Star<D> {
+        let links = &self.links[s as usize];
+        if links.is_empty() || self.level.stars[self.level.first[self.source(s) as usize] as usize].len() == 0 {
+            return Star::EMPTY;
+        }
+        let frame = self.request.fields.frame(self.samples[s as usize].position);
+        Star::new(links.iter().map(|&o| frame.to_exemplar(self.offset(s, o))))
+    }
+
+    /// Width of the strokes of an exemplar curve.
+    pub(crate) fn width(&self, curve: u32) -> f64 {
+        let lines = self.level.net.as_ref().map_or(&[][..], |net| &net.skeleton.lines);
+        lines.iter().find(|line| line.curve == curve).map_or(0.0, |line| line.width)
+    }
+
+    /// Removes the item of a sample, and its edges.
+    pub(crate) fn kill(&mut self, s: u32) {
+        self.items[self.samples[s as usize].item as usize].alive = false;
+        self.unlink(s);
+    }
+
+    /// Removes the edges of a sample.
+    pub(crate) fn unlink(&mut self, s: u32) {
+        for o in std::mem::take(&mut self.links[s as usize]) {
+            self.links[o as usize].retain(|&p| p != s);
+            self.samples[o as usize].dirty = true;
+        }
+    }
+
+    /// The domain of the output.
+    pub(crate) fn domain(&self) -> &Domain<D> {
+        &self.request.domain
+    }
+}

@@ -7,11 +7,13 @@ use arabesque_core::{
     ScalarField, Shape, Similarity, Vector,
 };
 
+use crate::toolbox::numbered::Numbered;
+
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
     request: &'a Request<D>,
     exemplar: &'a Exemplar<D>,
-    radius: &'a [f64],
+    radius: &'a Numbered<f64>,
     base: u32,
     /// The ink that is in the way.
     obstacles: Option<Arc<dyn Region<D>>>,
@@ -27,13 +29,18 @@ pub(crate) struct Extent<'a, const D: usize> {
 
 impl<'a, const D: usize> Extent<'a, D> {
     /// `base`: first pseudo element, see [`crate::exemplar::level::Level::base`].
-    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a [f64], base: u32) -> Self {
+    pub(crate) fn new(
+        request: &'a Request<D>,
+        exemplar: &'a Exemplar<D>,
+        radius: &'a Numbered<f64>,
+        base: u32,
+    ) -> Self {
         let largest = |field: &ScalarField<D>| field.range().1;
         let scale = largest(&request.fields.scale);
         let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
         let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
         let smallest_spacing_scale = request.fields.scale.range().0 * dense;
-        let strokes = radius[base as usize..].iter().copied().fold(0.0, f64::max) * scale;
+        let strokes = radius.iter().skip(base as usize).copied().fold(0.0, f64::max) * scale;
         let margin = if request.border == Border::Clip { reach } else { strokes };
         Self {
             request,
@@ -94,7 +101,7 @@ impl<'a, const D: usize> Extent<'a, D> {
 
     /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
     pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
-        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let reach = self.radius[i] * self.request.fields.scale.at(p);
         let distance = self.request.domain.signed_distance(p);
         if self.is_blocked(p, 0.7 * reach) {
             return false;
@@ -142,7 +149,7 @@ impl<'a, const D: usize> Extent<'a, D> {
     /// The shortest way for element `i` at `p` to where its centre may lie; zero where it already does.
     pub(crate) fn way_back(&self, i: u32, p: Vector<D>) -> Vector<D> {
         let domain = &self.request.domain;
-        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let reach = self.radius[i] * self.request.fields.scale.at(p);
         let allowed = match self.border(i) {
             Border::Cross | Border::Inside | Border::Turn => 0.0,
             Border::Clip if i >= self.base && self.is_known(p) => 0.0,

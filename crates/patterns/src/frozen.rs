@@ -11,6 +11,7 @@ use crate::{
         setting::Setting,
     },
     output::draft::{Draft, Frozen, Item, Items},
+    toolbox::numbered::Numbered,
 };
 /// A frozen stroke that ends this near to the border of the domain goes on inside, as a share of the side of the exemplar.
 const NEAR_BORDER: f64 = 2e-3;
@@ -58,21 +59,21 @@ fn strokes<const D: usize>(request: &Request<D>, setting: &Setting<D>, net: &Net
     let drawn = Net::new(&skeleton, net.spacing * scale);
     // Farther out nothing sees them.
     let reach = 2.0 * setting.level.radius * scale;
-    let mut item_of = vec![None; drawn.nodes.len()];
-    for (n, node) in drawn.nodes.iter().enumerate() {
+    let mut item_of = Numbered::filled(None, drawn.nodes.len());
+    for (n, node) in (0..).zip(&drawn.nodes) {
         if request.domain.signed_distance(node.position) < -reach {
             continue;
         }
-        let ways = drawn.directions(n as u32);
+        let ways = drawn.directions(n);
         let style = request.frozen_curves[node.curve as usize].source;
         let source = alike(setting, net, &ways, setting.exemplar.curves[style].style);
         item_of[n] = Some(draft.items.len() as u32);
         let item = Item { source: setting.level.base + source, position: node.position, frozen: Some(Frozen::Stroke) };
         draft.items.push((item, Matrix::identity()));
     }
-    for (n, node) in drawn.nodes.iter().enumerate() {
-        for arm in node.arms.iter().filter(|arm| arm.to as usize > n) {
-            if let (Some(a), Some(b)) = (item_of[n], item_of[arm.to as usize]) {
+    for (n, node) in (0..).zip(&drawn.nodes) {
+        for arm in node.arms.iter().filter(|arm| arm.to > n) {
+            if let (Some(a), Some(b)) = (item_of[n], item_of[arm.to]) {
                 draft.links.push((a, b));
             }
         }
@@ -86,7 +87,7 @@ fn line<const D: usize>(number: u32, path: Path<D>, width: f64, tolerance: f64) 
 /// The node of the exemplar whose strokes leave it most alike; one of the same style where there is any.
 fn alike<const D: usize>(setting: &Setting<D>, net: &Net<D>, ways: &[Vector<D>], style: usize) -> u32 {
     let misfit = |n: u32| -> f64 {
-        let node = &net.nodes[n as usize];
+        let node = &net.nodes[n];
         let own = net.directions(n);
         let nearest = |w: &Vector<D>| own.iter().map(|t| 1.0 - t.dot(*w)).fold(2.0, f64::min);
         let other = if setting.exemplar.curves[node.curve as usize].style == style { 0.0 } else { 100.0 };

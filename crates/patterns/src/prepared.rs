@@ -17,6 +17,7 @@ use crate::{
     optimise::{search, targets::class_targets},
     params::Params,
     run::{Run, Stand},
+    toolbox::numbered::Numbered,
 };
 
 /// Curves with more [`search::strangeness`] than this have nothing to repeat.
@@ -109,7 +110,7 @@ impl<const D: usize> Prepared<D> {
 
     /// Number of samples of each exemplar element at the finest level.
     pub fn samples_per_element(&self) -> Vec<usize> {
-        let parts = |s: &Setting<D>| s.level.parts[..s.level.base as usize].iter().map(Vec::len).collect();
+        let parts = |s: &Setting<D>| s.level.parts.iter().take(s.level.base as usize).map(Vec::len).collect();
         self.settings.last().map_or_else(Vec::new, parts)
     }
 
@@ -210,8 +211,8 @@ impl<const D: usize> Prepared<D> {
 
     /// Curves in the window that are in no line of the skeleton and not part of a junction either.
     fn unseen(&self, skeleton: &Skeleton<D>) -> usize {
-        let mut is_seen = vec![false; self.exemplar.curves.len()];
-        skeleton.lines.iter().for_each(|line| is_seen[line.curve as usize] = true);
+        let mut is_seen = Numbered::filled(false, self.exemplar.curves.len());
+        skeleton.lines.iter().for_each(|line| is_seen[line.curve] = true);
         let side = self.exemplar.view().side();
         let is_lost = |n: &usize| {
             let centre = self.exemplar.curves[*n].path.bounds().centre();

@@ -30,6 +30,7 @@ use crate::{
         state::State,
     },
     params::{Attributes, Existence, Initialisation, Params, Search, Switch},
+    toolbox::numbered::Numbered,
 };
 
 /// Share of the progress that the first layout counts for.
@@ -53,7 +54,7 @@ pub(crate) struct Stand<'a, const D: usize> {
     pub(crate) setting: &'a Setting<D>,
     pub(crate) extent: &'a Extent<'a, D>,
     /// Elements of each class that the output should have.
-    pub(crate) targets: &'a [f64],
+    pub(crate) targets: &'a Numbered<f64>,
 }
 
 /// What one run works on.
@@ -292,7 +293,7 @@ impl<const D: usize> Run<'_, D> {
             Existence::Voted => existence::assign(state, stand.targets, floor),
             Existence::Fixed => Changes::default(),
         };
-        position.extend(state.samples[position.len()..].iter().map(|s| s.position));
+        position.extend(state.samples().iter().skip(position.len()).map(|s| s.position));
         state.follow_samples(&position);
         let (_, joined) = edges::assign(state);
         tangents::assign(state);
@@ -328,11 +329,11 @@ impl<const D: usize> Run<'_, D> {
             let votes = edge_votes::collect_votes(&state);
             mend::mend(&mut state, &votes);
         }
-        let mut number = vec![u32::MAX; state.items.len()];
-        let living_items = (0..state.items.len()).filter(|&i| state.items[i].alive);
+        let mut number = Numbered::filled(u32::MAX, state.items().len());
+        let living_items = (0..state.items().len()).filter(|&i| state.items()[i].alive);
         living_items.zip(0..).for_each(|(i, n)| number[i] = n);
-        let item = |s: u32| number[state.samples[s as usize].item as usize];
-        let pairs = (0..state.links.len() as u32).flat_map(|s| state.links[s as usize].iter().map(move |&o| (s, o)));
+        let item = |s: u32| number[state.sample(s).item];
+        let pairs = state.samples().numbers().flat_map(|s| state.links_of(s).iter().map(move |&o| (s, o)));
         let links = pairs.filter(|(s, o)| s < o).map(|(s, o)| (item(s), item(o))).collect();
         Draft { items: living(&state), links }
     }
@@ -348,7 +349,7 @@ impl<const D: usize> Run<'_, D> {
         let chains = chains::chains(state, &votes, params.orientations == Switch::On);
         if params.shapes == Switch::On {
             let position = shape::polish(state, &chains);
-            state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
+            state.set_positions(position);
         }
         chains
     }
@@ -372,5 +373,5 @@ impl<const D: usize> Run<'_, D> {
 }
 
 fn living<const D: usize>(state: &State<'_, D>) -> Vec<(Item<D>, Matrix<D>)> {
-    state.items.iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect()
+    state.items().iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect()
 }

@@ -29,6 +29,7 @@ use crate::{
     output::{draft::Draft, state::State},
     params::{Deform, Matching, Params, Switch},
     prepared::Prepared,
+    toolbox::numbered::Numbered,
 };
 
 /// A stage that is timed on its own.
@@ -59,7 +60,7 @@ pub struct Setup {
 #[expect(missing_debug_implementations, reason = "for benchmarks alone")]
 pub struct Bench<'a> {
     layout: Layout<'a, 2>,
-    targets: &'a [f64],
+    targets: &'a Numbered<f64>,
     fresh: State<'a, 2>,
     searched: State<'a, 2>,
 }
@@ -68,7 +69,7 @@ pub struct Bench<'a> {
 #[expect(missing_debug_implementations, reason = "for benchmarks alone")]
 pub struct Output<'a> {
     state: State<'a, 2>,
-    targets: &'a [f64],
+    targets: &'a Numbered<f64>,
 }
 
 /// Neighbourhoods of the exemplar, each with one of its kind.
@@ -137,7 +138,7 @@ impl<'a> Bench<'a> {
         Pairings {
             matcher: Matcher::new(level, state.library, Matching::Robust, prices),
             pairs: (0..level.position.len()).map(|i| (surroundings(state, i as u32), next(i))).collect(),
-            count: state.living.len(),
+            count: state.living().len(),
         }
     }
 }
@@ -221,7 +222,7 @@ fn lay_out(layout: &Layout<'_, 2>) -> Draft<2> {
 }
 
 fn reconstruct(state: &mut State<'_, 2>) {
-    let items = state.items.iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect();
+    let items = state.items().iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect();
     std::hint::black_box(placements::placements(&items, state.request, state.extent, state.level.base));
     if state.level.net.is_none() {
         return;
@@ -231,7 +232,7 @@ fn reconstruct(state: &mut State<'_, 2>) {
     state.reindex();
     let chains = chains(state, &votes, Params::default().orientations == Switch::On);
     let position = shape::polish(state, &chains);
-    state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
+    state.set_positions(position);
     std::hint::black_box(shape::strokes(state, &chains));
 }
 
@@ -240,15 +241,15 @@ fn surroundings(state: &State<'_, 2>, i: u32) -> Surroundings<2> {
     let level = state.level;
     let row = |near: &Near<2>| Row {
         sample: near.sample,
-        key: level.key[near.sample as usize],
-        source: level.element[near.sample as usize],
+        key: level.key[near.sample],
+        source: level.element[near.sample],
         offset: Vector(near.offset.map(f64::from)),
         weight: near.weight,
         frozen: false,
-        star: level.stars[near.sample as usize],
+        star: level.stars[near.sample],
     };
     let rows = level.neighbours(i).iter().filter(|n| n.weight > 0.0).map(row).collect();
-    Surroundings { source: level.element[i as usize], star: level.stars[i as usize], rows }
+    Surroundings { source: level.element[i], star: level.stars[i], rows }
 }
 
 /// The first step of a run at its coarsest level.

@@ -24,6 +24,7 @@ use crate::{
         state::State,
     },
     params::{Deform, Params},
+    toolbox::numbered::Numbered,
 };
 
 const SIDE: f64 = 100.0;
@@ -73,13 +74,13 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
 }
 
 /// The edges of all samples, sorted.
-fn links(state: &State<'_, 2>) -> Vec<Vec<u32>> {
-    let sorted = |l: &Vec<u32>| {
-        let mut l = l.clone();
+fn links(state: &State<'_, 2>) -> Numbered<Vec<u32>> {
+    let sorted = |s: u32| {
+        let mut l = state.links_of(s).to_vec();
         l.sort_unstable();
         l
     };
-    state.links.iter().map(sorted).collect()
+    state.samples().numbers().map(sorted).collect()
 }
 
 /// The edges of all nodes of the exemplar, sorted.
@@ -96,7 +97,7 @@ fn arms(net: &Net<2>) -> Vec<Vec<u32>> {
 fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
     with_state(paths, |state| {
         let net = state.level.net.clone().unwrap();
-        assert_eq!(links(&state), arms(&net));
+        assert_eq!(links(&state), arms(&net).into());
         let votes = collect_votes(&state);
         let chains = chains(&state, &votes, true);
         let strokes = draw(&state, &chains);
@@ -275,11 +276,10 @@ fn edges_side_by_side_become_one_line() {
     with_state(&[polyline(&[(5.0, 50.0), (95.0, 50.0)], false)], |mut state| {
         let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
         let known = links(&state);
-        for s in 0..known.len() as u32 {
-            for &next in &known[s as usize] {
-                for &o in known[next as usize].iter().filter(|&&o| o > s) {
-                    state.links[s as usize].push(o);
-                    state.links[o as usize].push(s);
+        for s in known.numbers() {
+            for &next in &known[s] {
+                for &o in known[next].iter().filter(|&&o| o > s) {
+                    state.link(s, o);
                 }
             }
         }
@@ -297,26 +297,19 @@ fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
         let known = links(&state);
         // From a sample of one line to a sample of the other that is not the opposite one, and the other way round.
         let row = |y: f64| {
-            let mut row: Vec<u32> = state
-                .living
-                .iter()
-                .copied()
-                .filter(|&s| (state.samples[s as usize].position[1] - y).abs() < 0.1)
-                .collect();
-            row.sort_by(|a, b| {
-                state.samples[*a as usize].position[0].total_cmp(&state.samples[*b as usize].position[0])
-            });
+            let mut row: Vec<u32> =
+                state.living().iter().copied().filter(|&s| (state.sample(s).position[1] - y).abs() < 0.1).collect();
+            row.sort_by(|a, b| state.sample(*a).position[0].total_cmp(&state.sample(*b).position[0]));
             row
         };
         let (low, high) = (row(45.0), row(50.0));
         for (a, b) in [(low[3], high[4]), (low[5], high[3])] {
             assert_eq!(Tangle::of(&net).allows(&state, a, b), (a, b) == (low[3], high[4]));
-            state.links[a as usize].push(b);
-            state.links[b as usize].push(a);
+            state.link(a, b);
         }
         assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
         let left = links(&state);
-        assert!(left[low[3] as usize].contains(&high[4]) && !left[low[5] as usize].contains(&high[3]));
+        assert!(left[low[3]].contains(&high[4]) && !left[low[5]].contains(&high[3]));
         assert_eq!(left.iter().map(Vec::len).sum::<usize>(), known.iter().map(Vec::len).sum::<usize>() + 2);
     });
 }

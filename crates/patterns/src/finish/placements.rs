@@ -38,7 +38,7 @@ pub(crate) type Bend<const D: usize> = Vec<(Vector<D>, Vector<D>)>;
 pub(crate) fn bends<const D: usize>(state: &State<'_, D>) -> Option<Vec<Bend<D>>> {
     (state.deform == Deform::AsRigidAsPossible).then(|| {
         state
-            .items
+            .items()
             .iter()
             .filter(|live| live.alive && live.item.source < state.level.base)
             .map(|live| bend(state, live))
@@ -50,10 +50,10 @@ fn bend<const D: usize>(state: &State<'_, D>, live: &LiveItem<D>) -> Bend<D> {
     if live.count < 2 || live.item.frozen.is_some() {
         return Vec::new();
     }
-    let (centre, origin) = (state.library.centre[live.item.source as usize], live.item.position);
-    let parts = &state.level.parts[live.item.source as usize];
+    let (centre, origin) = (state.library.centre[live.item.source], live.item.position);
+    let parts = &state.level.parts[live.item.source];
     // On a torus, samples across the edge are brought next to their element.
-    let near = |s: u32| origin + state.domain().offset(origin, state.samples[s as usize].position);
+    let near = |s: u32| origin + state.domain().offset(origin, state.sample(s).position);
     (live.first..live.first + live.count).zip(parts).map(|(s, &offset)| (centre + offset, near(s))).collect()
 }
 

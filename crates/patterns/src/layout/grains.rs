@@ -5,9 +5,12 @@
 //! [Tu 2020 §6] both name. What undoes them in a crystal is growth from one nucleus. So where a level ends in small grains, the best of
 //! them stays and the layout grows on from it. Frozen samples are such a nucleus already; then no grain is kept.
 
-use crate::output::{
-    draft::{Draft, Items},
-    state::State,
+use crate::{
+    output::{
+        draft::{Draft, Items},
+        state::State,
+    },
+    toolbox::numbered::Numbered,
 };
 
 /// Samples above this energy belong to no grain.
@@ -21,36 +24,36 @@ const ORDERED: f64 = 0.5;
 
 /// What an output in disorder keeps, `None` for one in order.
 pub(crate) fn nucleus<const D: usize>(state: &State<'_, D>) -> Option<Draft<D>> {
-    let matched = state.living.iter().filter_map(|&s| state.samples[s as usize].matched.as_ref());
+    let matched = state.living().iter().filter_map(|&s| state.sample(s).matched.as_ref());
     let members: usize = matched.map(|m| m.members.len() + 1).sum();
-    let large = LARGE * members as f64 / state.living.len().max(1) as f64;
+    let large = LARGE * members as f64 / state.living().len().max(1) as f64;
     let grains = grains(state);
     let ordered: usize = grains.iter().map(Vec::len).filter(|&n| n as f64 >= large).sum();
-    if ordered as f64 >= ORDERED * state.living.len() as f64 {
+    if ordered as f64 >= ORDERED * state.living().len() as f64 {
         return None;
     }
-    let is_drawn = state.items.iter().any(|live| live.item.frozen.is_some());
+    let is_drawn = state.items().iter().any(|live| live.item.frozen.is_some());
     let largest = grains.iter().filter(|_| !is_drawn).max_by_key(|grain| (grain.len(), std::cmp::Reverse(grain[0])));
     Some(Draft { items: largest.map_or_else(Vec::new, |grain| whole_items(state, grain)), links: Vec::new() })
 }
 
 /// Samples in groups that are each one coherent copy of the exemplar: neighbours whose matches correspond to one another.
 fn grains<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
-    let in_order = |s: u32| state.samples[s as usize].matched.as_ref().filter(|m| m.energy() < IN_ORDER);
-    let mut seen = vec![false; state.samples.len()];
+    let in_order = |s: u32| state.sample(s).matched.as_ref().filter(|m| m.energy() < IN_ORDER);
+    let mut seen = Numbered::filled(false, state.samples().len());
     let mut grains = Vec::new();
-    for &start in &state.living {
-        if seen[start as usize] || in_order(start).is_none() {
+    for &start in state.living() {
+        if seen[start] || in_order(start).is_none() {
             continue;
         }
-        seen[start as usize] = true;
+        seen[start] = true;
         let mut grain = vec![start];
         let mut next = 0;
         while let Some(&s) = grain.get(next) {
             next += 1;
             for &(o, i) in in_order(s).map_or(&[][..], |m| &m.pairs) {
-                if !seen[o as usize] && in_order(o).is_some_and(|m| m.input == i) {
-                    seen[o as usize] = true;
+                if !seen[o] && in_order(o).is_some_and(|m| m.input == i) {
+                    seen[o] = true;
                     grain.push(o);
                 }
             }
@@ -62,9 +65,9 @@ fn grains<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
 
 /// The items all of whose samples are in a grain.
 fn whole_items<const D: usize>(state: &State<'_, D>, grain: &[u32]) -> Items<D> {
-    let mut held = vec![0; state.items.len()];
-    grain.iter().for_each(|&s| held[state.samples[s as usize].item as usize] += 1);
-    let whole = state.items.iter().zip(held).filter(|(live, held)| live.alive && live.count == *held);
+    let mut held = Numbered::filled(0, state.items().len());
+    grain.iter().for_each(|&s| held[state.sample(s).item] += 1);
+    let whole = state.items().iter().zip(held).filter(|(live, held)| live.alive && live.count == *held);
     whole.map(|(live, _)| (live.item, live.turn)).collect()
 }
 

@@ -17,6 +17,7 @@ use crate::{
     exemplar::library::Library,
     layout::coverage::{Cell, Coverage},
     output::{canvas::Canvas, draft::Item},
+    toolbox::{buckets::Buckets, numbered::Numbered},
 };
 
 /// What the layout tells while it works: the state, and the share that is done.
@@ -77,7 +78,7 @@ pub(crate) struct Grower<'a, const D: usize> {
     extent: &'a Extent<'a, D>,
     params: GrowParams,
     /// Times each exemplar element was used.
-    usage: Vec<u32>,
+    usage: Numbered<u32>,
 }
 
 impl<'a, const D: usize> Grower<'a, D> {
@@ -87,7 +88,7 @@ impl<'a, const D: usize> Grower<'a, D> {
         extent: &'a Extent<'a, D>,
         params: GrowParams,
     ) -> Self {
-        Self { library, request, extent, params, usage: vec![0; library.len()] }
+        Self { library, request, extent, params, usage: Numbered::filled(0, library.len()) }
     }
 
     /// Fills every open cell of `coverage` with elements on `canvas`.
@@ -132,7 +133,7 @@ impl<'a, const D: usize> Grower<'a, D> {
     /// Sites in rounds: those of one round are too far apart to see one another.
     fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>, kept: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
         let patch = self.params.patch * self.smallest_scale();
-        let mut sites = site_order(coverage, start, patch);
+        let mut sites = Numbered::from(site_order(coverage, start, patch));
         if !kept.is_empty() {
             // Ring by ring around what is kept, so that a gap in it closes from all sides.
             let far = |site: &Vector<D>| {
@@ -142,14 +143,14 @@ impl<'a, const D: usize> Grower<'a, D> {
             sites.sort_by_cached_key(far);
         }
         let reach = (self.params.patch + self.params.context) * self.largest_scale();
-        let mut earlier = crate::toolbox::buckets::Buckets::new(&self.request.domain, self.extent.margin, reach);
-        let mut round_of: Vec<usize> = Vec::with_capacity(sites.len());
+        let mut earlier = Buckets::new(&self.request.domain, self.extent.margin, reach);
+        let mut round_of: Numbered<usize> = Numbered::new();
         let mut rounds: Vec<Vec<Vector<D>>> = Vec::new();
         for (i, &site) in sites.iter().enumerate() {
             let mut round = 0;
             earlier.near(site, reach, |j| {
-                if self.request.domain.offset(site, sites[j as usize]).norm() <= reach {
-                    round = round.max(round_of[j as usize] + 1);
+                if self.request.domain.offset(site, sites[j]).norm() <= reach {
+                    round = round.max(round_of[j] + 1);
                 }
             });
             earlier.insert(i as u32, site);
@@ -197,7 +198,7 @@ impl<'a, const D: usize> Grower<'a, D> {
         let frame = self.request.fields.frame(patch.site);
         for &(element, position) in &patch.elements {
             canvas.push(Item { source: element, position, frozen: None });
-            self.usage[element as usize] += 1;
+            self.usage[element] += 1;
         }
         let radius = self.params.patch * frame.spacing_scale;
         let view = self.library.view;
@@ -265,14 +266,14 @@ impl<'a, const D: usize> View<'a, D> {
         let base = self.grower.params.base;
         let mut centres = Vec::new();
         for (source, offset) in self.anchors(anchors) {
-            let members = library.members(library.class[source as usize]);
-            let usable = |i: &u32| library.view.contains(library.centre[*i as usize] - offset);
+            let members = library.members(library.class[source]);
+            let usable = |i: &u32| library.view.contains(library.centre[*i] - offset);
             if source < base || members.len() <= MEMBERS {
-                centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i as usize] - offset));
+                centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i] - offset));
             } else {
                 let usable = members.iter().copied().filter(usable).collect();
                 let alike = self.most_alike(usable, source, random);
-                centres.extend(alike.into_iter().map(|i| library.centre[i as usize] - offset));
+                centres.extend(alike.into_iter().map(|i| library.centre[i] - offset));
             }
         }
         let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
@@ -288,7 +289,7 @@ impl<'a, const D: usize> View<'a, D> {
         let nearest = self.around.iter().take(count);
         let mut anchors: Vec<_> = nearest.map(|&(source, offset, _)| (source, offset)).collect();
         let strokes = self.around.iter().filter(|(source, ..)| *source >= self.grower.params.base);
-        let size = |source: u32| library.members(library.class[source as usize]).len();
+        let size = |source: u32| library.members(library.class[source]).len();
         if let (Some(rarest), true) = (strokes.min_by_key(|(source, ..)| size(*source)), count > 0) {
             anchors.push((rarest.0, rarest.1));
         }
@@ -298,7 +299,7 @@ impl<'a, const D: usize> View<'a, D> {
     /// Of very many elements, some of those that are most like `source`.
     fn most_alike(&self, mut members: Vec<u32>, source: u32, random: &mut Stream) -> Vec<u32> {
         let feature = &self.grower.library.feature;
-        members.sort_by_cached_key(|&i| feature[i as usize].distance2(&feature[source as usize]).to_bits());
+        members.sort_by_cached_key(|&i| feature[i].distance2(&feature[source]).to_bits());
         members.truncate((members.len() / 4).max(MEMBERS));
         while members.len() > MEMBERS {
             members.swap_remove(random.below(members.len()));
@@ -318,12 +319,12 @@ impl<'a, const D: usize> View<'a, D> {
                 cost += UNSEEN * weight;
                 continue;
             }
-            let class = library.class[source as usize];
-            let alike = library.alike(class, p, &library.feature[source as usize]);
+            let class = library.class[source];
+            let alike = library.alike(class, p, &library.feature[source]);
             match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
                 Some((i, c)) => {
                     taken.push(i);
-                    cost += weight * f64::from(c) / library.outlier[class as usize].powi(2);
+                    cost += weight * f64::from(c) / library.outlier[class].powi(2);
                     repeated += weight * f64::from(u8::from(i == source));
                 }
                 None => cost += weight,
@@ -351,7 +352,7 @@ impl<'a, const D: usize> View<'a, D> {
                     weights += weight;
                 }
                 Cell::Open => {
-                    used += f64::from(self.grower.usage[i as usize]);
+                    used += f64::from(self.grower.usage[i]);
                     fresh += 1.0;
                 }
                 Cell::Outside => {}
@@ -367,9 +368,9 @@ impl<'a, const D: usize> View<'a, D> {
         let library = self.grower.library;
         let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
         for &(source, offset, weight) in &self.around {
-            let class = library.class[source as usize];
-            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[source as usize])[0] {
-                shift += (library.centre[i as usize] - centre - offset) * weight;
+            let class = library.class[source];
+            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[source])[0] {
+                shift += (library.centre[i] - centre - offset) * weight;
                 weights += weight;
             }
         }
@@ -381,14 +382,14 @@ impl<'a, const D: usize> View<'a, D> {
         let (library, params) = (self.grower.library, self.grower.params);
         let mut taken = Vec::new();
         for &(source, offset, _) in &self.around {
-            let class = library.class[source as usize];
-            let alike = library.alike(class, centre + offset, &library.feature[source as usize]);
+            let class = library.class[source];
+            let alike = library.alike(class, centre + offset, &library.feature[source]);
             taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
         }
         let mut found = Vec::new();
         library.within(centre, params.patch, |i, offset| {
             let p = self.site + self.frame.to_output(offset);
-            let wanted = library.copyable[i as usize] && !taken.contains(&i);
+            let wanted = library.copyable[i] && !taken.contains(&i);
             if wanted && self.has_room(i, p, offset) && self.grower.extent.admits(i, p) {
                 found.push((i, p));
             }
@@ -403,9 +404,9 @@ impl<const D: usize> View<'_, D> {
     /// covered cell at the seam, where registration may have moved it across, only if there is a gap of its own size.
     fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
         let library = self.grower.library;
-        let class = library.class[i as usize];
+        let class = library.class[i];
         let clear = |&(source, o, _): &(u32, Vector<D>, f64)| {
-            (o - offset).norm() >= ROOM * library.closest(class, library.class[source as usize])
+            (o - offset).norm() >= ROOM * library.closest(class, library.class[source])
         };
         if !self.around.iter().all(clear) {
             return false;
@@ -413,7 +414,7 @@ impl<const D: usize> View<'_, D> {
         match self.coverage.at(p) {
             Cell::Open => true,
             Cell::Covered => {
-                let own = library.nearest[i as usize];
+                let own = library.nearest[i];
                 let gap =
                     self.around.iter().map(|(_, o, _)| (*o - offset).norm2()).fold(f64::INFINITY, f64::min).sqrt();
                 let reach = 0.5 * own * self.frame.spacing_scale;

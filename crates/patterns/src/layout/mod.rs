@@ -102,7 +102,7 @@ impl<const D: usize> Layout<'_, D> {
     pub(crate) fn fill_holes(&self, state: &mut State<'_, D>) {
         let mut canvas = self.canvas();
         let mut coverage = self.coverage();
-        state.items.iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
+        state.items().iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
         let known = canvas.items.len();
         self.cover(&mut coverage, canvas.items.iter().map(|i| i.position));
         if self.has_strokes() {
@@ -112,7 +112,7 @@ impl<const D: usize> Layout<'_, D> {
         }
         // Holes are few and small: they are filled without asking whether to go on.
         let _ = self.grower(ANCHORS).fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
-        canvas.items[known..].iter().for_each(|&item| state.push(item, Matrix::identity()));
+        canvas.items.iter().skip(known).for_each(|&item| _ = state.push(item, Matrix::identity()));
         state.reindex();
     }
 

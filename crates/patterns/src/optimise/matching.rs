@@ -13,8 +13,9 @@ use crate::{
         level::{Level, Near},
         library::Library,
     },
-    optimise::assignment::{Assignment, OUTLIER},
+    optimise::assignment::Assignment,
     params::Matching,
+    toolbox::numbered::Numbered,
 };
 
 /// Cost of a sample that hard matching leaves without a partner, in squared outlier distances.
@@ -76,12 +77,12 @@ pub(crate) struct Matcher<'a, const D: usize> {
     matching: Matching,
     prices: Prices,
     assignment: Assignment,
-    used: Vec<bool>,
+    used: Numbered<bool>,
 }
 
 impl<'a, const D: usize> Matcher<'a, D> {
     pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, prices: Prices) -> Self {
-        Self { level, library, matching, prices, assignment: Assignment::default(), used: Vec::new() }
+        Self { level, library, matching, prices, assignment: Assignment::default(), used: Numbered::new() }
     }
 
     /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
@@ -107,20 +108,20 @@ impl<'a, const D: usize> Matcher<'a, D> {
 
     /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
     fn difference(&self, (source, star): (u32, &Star<D>), i: u32) -> f32 {
-        let element = self.level.element[i as usize];
+        let element = self.level.element[i];
         if element >= self.level.base {
-            return star.distance2(&self.level.stars[i as usize], self.level.single2);
+            return star.distance2(&self.level.stars[i], self.level.single2);
         }
-        self.library.feature[source as usize].distance2(&self.library.feature[element as usize])
+        self.library.feature[source].distance2(&self.library.feature[element])
     }
 
     fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
         let (level, library) = (self.level, self.library);
         let near = level.neighbours(i);
-        let origin = level.position[i as usize];
+        let origin = level.position[i];
         self.assignment.begin(near.len());
         for row in &around.rows {
-            let outlier2 = level.outlier2[row.key as usize];
+            let outlier2 = level.outlier2[row.key];
             // Nobody knows what lies beyond the frame of the exemplar: half the price.
             let seen = library.view.contains(origin + row.offset);
             let alone = if seen { outlier2 } else { 0.5 * outlier2 };
@@ -148,7 +149,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         let mut bound = 0.0;
         for row in &around.rows {
             // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
-            let mut least = LEFT_OVER * level.outlier2[row.key as usize];
+            let mut least = LEFT_OVER * level.outlier2[row.key];
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);
             for column in level.neighbours_of_key(i, row.key) {
@@ -165,8 +166,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
             }
         }
         let total = self.assignment.settle_greedily();
-        let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| **column == OUTLIER);
-        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key as usize]).sum::<f32>()
+        let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| column.is_none());
+        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key]).sum::<f32>()
     }
 
     fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
@@ -178,7 +179,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
         let sum: f32 = absent
             .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
-            .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize])
+            .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample]])
             .sum();
         self.prices.missing * sum
     }
@@ -189,18 +190,14 @@ impl<'a, const D: usize> Matcher<'a, D> {
         }
         let near = self.level.neighbours(i).iter().filter(|other| other.weight > 0.0);
         let outside = near.filter(|other| !wanted(Vector(other.offset.map(f64::from))));
-        let price =
-            |other: &Near<D>| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize];
+        let price = |other: &Near<D>| other.weight * self.level.outlier2[self.level.key[other.sample]];
         self.prices.outside * outside.map(price).sum::<f32>()
     }
 
     fn mark_used(&mut self, columns: usize) {
-        self.used.clear();
-        self.used.resize(columns, false);
-        for &column in self.assignment.column_of() {
-            if column != OUTLIER {
-                self.used[column as usize] = true;
-            }
+        self.used.refill(false, columns);
+        for column in self.assignment.column_of().flatten() {
+            self.used[column] = true;
         }
     }
 
@@ -216,9 +213,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
             Matching::Hard => self.hard(around, i, f32::INFINITY),
         };
         let near = self.level.neighbours(i);
-        let columns = self.assignment.column_of().iter().enumerate();
-        let pairs =
-            columns.filter(|(_, c)| **c != OUTLIER).map(|(r, &c)| (r as u32, near[c as usize].sample)).collect();
+        let columns = (0..).zip(self.assignment.column_of());
+        let pairs = columns.filter_map(|(row, column)| Some((row, near[column? as usize].sample))).collect();
         self.mark_used(near.len());
         let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
         let missing = absent

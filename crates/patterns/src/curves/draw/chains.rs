@@ -11,6 +11,7 @@ use crate::{
         skeleton::Knot,
     },
     output::state::State,
+    toolbox::numbered::Numbered,
 };
 
 /// Two directions are opposite when the cosine of their angle is below this: 143 degrees.
@@ -35,12 +36,12 @@ pub(crate) struct Chain {
 /// Chains all edges but those among frozen samples.
 pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tangents: bool) -> Vec<Chain> {
     let Some(net) = &state.level.net else { return Vec::new() };
-    let next = (0..state.samples.len() as u32).map(|s| continuations(state, s, by_tangents)).collect::<Vec<_>>();
-    let onwards = |from: u32, at: u32| next[at as usize].get(&from).copied().filter(|&to| !is_fixed(state, at, to));
+    let next = (0..state.samples().len() as u32).map(|s| continuations(state, s, by_tangents)).collect::<Numbered<_>>();
+    let onwards = |from: u32, at: u32| next[at].get(&from).copied().filter(|&to| !is_fixed(state, at, to));
     let mut seen: BTreeMap<(u32, u32), ()> = BTreeMap::new();
     let mut chains = Vec::new();
-    for s in 0..state.samples.len() as u32 {
-        for &o in state.links[s as usize].iter().filter(|&&o| o > s) {
+    for s in 0..state.samples().len() as u32 {
+        for &o in state.links_of(s).iter().filter(|&&o| o > s) {
             if is_fixed(state, s, o) || seen.contains_key(&(s, o)) {
                 continue;
             }
@@ -86,7 +87,7 @@ fn walk(a: u32, b: u32, onwards: &dyn Fn(u32, u32) -> Option<u32>) -> (Vec<u32>,
 
 /// Through sample `s`: coming from one neighbour, which one is next.
 fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool) -> BTreeMap<u32, u32> {
-    let links = &state.links[s as usize];
+    let links = state.links_of(s);
     let mut next = BTreeMap::new();
     let mut through = |a: u32, b: u32| {
         next.insert(a, b);
@@ -106,7 +107,7 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
             (free[i], free[j]) = (false, false);
         }
     }
-    let tangents = &state.tangents[s as usize];
+    let tangents = state.tangents_of(s);
     let directions = if by_tangents && tangents.len() >= ways.len() { matched(&ways, tangents) } else { ways };
     for (i, j) in opposite(&directions).into_iter().filter(|&(i, j)| free[i] && free[j]) {
         through(links[i], links[j]);
@@ -116,9 +117,9 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
 
 /// Pairs of edges that are one stroke at the source of a sample, where it has as many arms.
 fn as_in_exemplar<const D: usize>(state: &State<'_, D>, s: u32, ways: &[Vector<D>]) -> Vec<(usize, usize)> {
-    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e as usize]);
+    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e]);
     let Some(node) = node.filter(|node| node.arms.len() == ways.len()) else { return Vec::new() };
-    let frame = state.request.fields.frame(state.samples[s as usize].position);
+    let frame = state.request.fields.frame(state.sample(s).position);
     let arms: Vec<Vector<D>> = node.arms.iter().map(|arm| frame.rotation.apply(arm.tangent)).collect();
     let arm_of = assigned(ways, &arms);
     let way_of = |arm: usize| arm_of.iter().position(|a| *a == Some(arm));
@@ -128,7 +129,7 @@ fn as_in_exemplar<const D: usize>(state: &State<'_, D>, s: u32, ways: &[Vector<D
 
 /// Whether the source of a sample is a place where two strokes end.
 fn is_meeting<const D: usize>(state: &State<'_, D>, s: u32) -> bool {
-    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e as usize]);
+    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e]);
     node.is_some_and(|node| node.knot == Some(Knot::Junction) && node.arms.len() == 2)
 }
 
@@ -181,7 +182,7 @@ fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, (a, 
     let key = (a.min(b), a.max(b));
     let directed = |p: Piece| if a < b { p } else { p.reversed() };
     let offset = state.offset(key.0, key.1);
-    let frame = state.request.fields.frame(state.samples[key.0 as usize].position);
+    let frame = state.request.fields.frame(state.sample(key.0).position);
     let misfit = |p: &Piece| (frame.to_output(net.span(*p)) - offset).norm2() / offset.norm2().max(f64::MIN_POSITIVE);
     if let Ok(c) = votes.candidates.binary_search_by_key(&key, |c| c.ends) {
         let candidate = &votes.candidates[c];
@@ -190,9 +191,9 @@ fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, (a, 
         let best = candidate.pieces.iter().min_by(|x, y| cost(x).total_cmp(&cost(y)));
         return best.map(|(p, _)| directed(*p));
     }
-    let node = |s: u32| state.level.node_of(state.level.first[state.source(s) as usize]);
+    let node = |s: u32| state.level.node_of(state.level.first[state.source(s)]);
     let (from, to) = (node(key.0)?, node(key.1)?);
-    let arm = net.nodes[from as usize].arms.iter().find(|arm| arm.to == to)?;
+    let arm = net.nodes[from].arms.iter().find(|arm| arm.to == to)?;
     Some(directed(arm.piece))
 }
 

@@ -15,7 +15,10 @@ use crate::{
         skeleton::Knot,
     },
     output::state::State,
-    toolbox::solver::{NormalEquations, Prediction, Pull},
+    toolbox::{
+        numbered::Numbered,
+        solver::{NormalEquations, Prediction, Pull},
+    },
 };
 
 /// Weight of the place of a sample against the shapes of the edges around it.
@@ -25,15 +28,15 @@ const STAY: f64 = 0.08;
 const SHARP: f64 = 0.42;
 
 /// Places of the samples at which the edges come as close to the exemplar's as they can, near where they are.
-pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Vector<D>> {
-    let mut position: Vec<_> = state.samples.iter().map(|s| s.position).collect();
+pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Numbered<Vector<D>> {
+    let mut position: Numbered<_> = state.samples().iter().map(|s| s.position).collect();
     let Some(net) = &state.level.net else { return position };
     let mut predictions = Vec::new();
     for chain in chains {
         for (k, piece) in chain.pieces.iter().enumerate() {
             let (a, b) = (chain.samples[k], chain.samples[(k + 1) % chain.samples.len()]);
             let Some(piece) = piece else { continue };
-            let frame = state.request.fields.frame(position[a as usize]);
+            let frame = state.request.fields.frame(position[a]);
             let offset = frame.to_output(net.span(*piece)) - state.offset(a, b);
             predictions.push(Prediction { from: a, to: b, offset, weight: 1.0 });
         }
@@ -66,7 +69,7 @@ pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) ->
 
 /// The path of a chain, and the exemplar curve whose style it carries. On a torus the path is unrolled.
 fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (Path<D>, u32) {
-    let position = |s: u32| state.samples[s as usize].position;
+    let position = |s: u32| state.sample(s).position;
     let mut here = position(chain.samples[0]);
     let mut stretches: Vec<Vec<Cubic<D>>> = Vec::with_capacity(chain.pieces.len());
     let origin = here;
@@ -101,7 +104,7 @@ pub(crate) fn bent<const D: usize>(
     (piece, snapped): (Piece, [bool; 2]),
     (a, b): (Vector<D>, Vector<D>),
 ) -> Vec<Cubic<D>> {
-    let path = net.skeleton.lines[piece.line as usize].measured.part(piece.from, piece.to);
+    let path = net.skeleton.lines[piece.line].measured.part(piece.from, piece.to);
     if path.is_empty() {
         return vec![straight(a, b)];
     }
@@ -160,11 +163,11 @@ fn leaving<const D: usize>(c: &Cubic<D>) -> Vector<D> {
 /// Whether the exemplar has a corner where one piece ends and the next begins.
 fn is_corner<const D: usize>(net: &Net<D>, before: Option<Piece>, after: Option<Piece>) -> bool {
     let corner = |line: u32, arc: f64| {
-        let line = &net.skeleton.lines[line as usize];
+        let line = &net.skeleton.lines[line];
         let arc = line.measured.wrap(arc);
         let near = 1e-6 * line.measured.length();
         let hit = |a: f64| (a - arc).abs() < near || (line.measured.length() - (a - arc).abs()) < near;
-        line.stops.iter().any(|&(a, knot)| hit(a) && net.skeleton.knots[knot as usize].1 == Knot::Corner)
+        line.stops.iter().any(|&(a, knot)| hit(a) && net.skeleton.knots[knot].1 == Knot::Corner)
     };
     before.is_some_and(|p| corner(p.line, p.to)) || after.is_some_and(|p| corner(p.line, p.from))
 }
@@ -173,7 +176,7 @@ fn is_corner<const D: usize>(net: &Net<D>, before: Option<Piece>, after: Option<
 fn style<const D: usize>(net: &Net<D>, chain: &Chain) -> u32 {
     let mut lengths: Vec<(u32, f64)> = Vec::new();
     for piece in chain.pieces.iter().flatten() {
-        let curve = net.skeleton.lines[piece.line as usize].curve;
+        let curve = net.skeleton.lines[piece.line].curve;
         let length = (piece.to - piece.from).abs();
         match lengths.iter_mut().find(|(c, _)| *c == curve) {
             Some(entry) => entry.1 += length,

@@ -48,24 +48,22 @@ impl Tangle {
     /// Whether an edge from `a` to `b` would be in no tangle.
     pub(crate) fn allows<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
         let across = state.offset(a, b);
-        let is_free = |s: u32, way: Vector<D>| {
-            state.links[s as usize].iter().all(|&o| cosine(state.offset(s, o), way) <= self.narrow)
-        };
+        let is_free =
+            |s: u32, way: Vector<D>| state.links_of(s).iter().all(|&o| cosine(state.offset(s, o), way) <= self.narrow);
         is_free(a, across) && is_free(b, across * -1.0) && (!self.is_plane || !self.crosses_any(state, a, across, b))
     }
 
     /// Whether an edge crosses one that is there.
     fn crosses_any<const D: usize>(&self, state: &State<'_, D>, a: u32, across: Vector<D>, b: u32) -> bool {
         let Some(net) = &state.level.net else { return false };
-        let middle = state.samples[a as usize].position + across * 0.5;
+        let middle = state.sample(a).position + across * 0.5;
         let reach = 0.5 * across.norm() + MAX_EDGE * net.spacing * state.extent.largest_spacing_scale;
         let mut found = false;
-        state.index.within(middle, reach, |slot, offset| {
-            let c = state.living[slot];
+        state.within(middle, reach, |c, offset| {
             if found || c == a || c == b {
                 return;
             }
-            for &d in state.links[c as usize].iter().filter(|&&d| d != a && d != b) {
+            for &d in state.links_of(c).iter().filter(|&&d| d != a && d != b) {
                 let way = state.offset(c, d);
                 found |= cross(across, way, offset + way * 0.5);
             }
@@ -76,13 +74,12 @@ impl Tangle {
     /// Of two edges that leave a sample side by side, the longer one starts where the shorter one ends.
     fn straighten<const D: usize>(&self, state: &mut State<'_, D>) -> usize {
         let mut changed = 0;
-        for n in 0..state.living.len() {
-            let s = state.living[n];
+        for n in 0..state.living().len() {
+            let s = state.living()[n];
             while let Some((near, far)) = self.side_by_side(state, s) {
-                unlink(state, s, far);
-                if !state.links[near as usize].contains(&far) && state.share_style(near, far) {
-                    state.links[near as usize].push(far);
-                    state.links[far as usize].push(near);
+                state.unlink(s, far);
+                if !state.are_linked(near, far) && state.share_style(near, far) {
+                    state.link(near, far);
                 }
                 changed += 1;
             }
@@ -92,7 +89,7 @@ impl Tangle {
 
     /// The ends of two edges of `s` side by side, the farther one of an edge that may change.
     fn side_by_side<const D: usize>(&self, state: &State<'_, D>, s: u32) -> Option<(u32, u32)> {
-        let links = &state.links[s as usize];
+        let links = state.links_of(s);
         for (i, &a) in links.iter().enumerate() {
             for &b in &links[..i] {
                 let (to_a, to_b) = (state.offset(s, a), state.offset(s, b));
@@ -112,15 +109,14 @@ impl Tangle {
             return 0;
         }
         let edges: Vec<(u32, u32)> = state
-            .living
+            .living()
             .iter()
-            .flat_map(|&a| state.links[a as usize].iter().map(move |&b| (a, b)))
+            .flat_map(|&a| state.links_of(a).iter().map(move |&b| (a, b)))
             .filter(|(a, b)| a < b)
             .collect();
         let ways: Vec<_> = edges.iter().map(|&(a, b)| state.offset(a, b)).collect();
-        let middle = |(&(a, _), way): (&(u32, u32), &Vector<D>)| {
-            state.domain().wrap(state.samples[a as usize].position + *way * 0.5)
-        };
+        let middle =
+            |(&(a, _), way): (&(u32, u32), &Vector<D>)| state.domain().wrap(state.sample(a).position + *way * 0.5);
         let middles: Vec<_> = edges.iter().zip(&ways).map(middle).collect();
         let longest = ways.iter().map(|w| w.norm()).fold(f64::MIN_POSITIVE, f64::max);
         let index = GridIndex::new(&middles, longest, state.domain());
@@ -135,7 +131,7 @@ impl Tangle {
             });
         }
         let crossing = edges.into_iter().zip(gone).filter(|(_, gone)| *gone);
-        crossing.map(|((a, b), _)| unlink(state, a, b)).count()
+        crossing.map(|((a, b), _)| state.unlink(a, b)).count()
     }
 }
 
@@ -143,7 +139,7 @@ impl Tangle {
 fn sharpest_angle<const D: usize>(net: &Net<D>) -> f64 {
     let mut sharpest = NARROW.to_radians() / SIDE_BY_SIDE;
     for node in &net.nodes {
-        let ways: Vec<_> = node.arms.iter().map(|arm| net.nodes[arm.to as usize].position - node.position).collect();
+        let ways: Vec<_> = node.arms.iter().map(|arm| net.nodes[arm.to].position - node.position).collect();
         for (i, a) in ways.iter().enumerate() {
             let angles = ways[..i].iter().map(|b| cosine(*a, *b).acos());
             sharpest = angles.fold(sharpest, f64::min);
@@ -154,7 +150,7 @@ fn sharpest_angle<const D: usize>(net: &Net<D>) -> f64 {
 
 /// Whether edges cross between their nodes, taken as straight.
 fn has_crossings<const D: usize>(net: &Net<D>) -> bool {
-    let place = |n: u32| net.nodes[n as usize].position;
+    let place = |n: u32| net.nodes[n].position;
     let arms = net.nodes.iter().zip(0..).flat_map(|(node, n)| node.arms.iter().map(move |arm| (n, arm.to)));
     let edges: Vec<(u32, u32)> = arms.filter(|(a, b)| a < b).collect();
     let ways: Vec<_> = edges.iter().map(|&(a, b)| place(b) - place(a)).collect();
@@ -183,11 +179,6 @@ fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u3
     let (x, y) = (key(i), key(j));
     let order = x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then(x.2.total_cmp(&y.2));
     if order.is_le() { i } else { j }
-}
-
-fn unlink<const D: usize>(state: &mut State<'_, D>, a: u32, b: u32) {
-    state.links[a as usize].retain(|&o| o != b);
-    state.links[b as usize].retain(|&o| o != a);
 }
 
 fn cosine<const D: usize>(a: Vector<D>, b: Vector<D>) -> f64 {

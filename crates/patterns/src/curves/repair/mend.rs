@@ -12,6 +12,7 @@ use crate::{
     },
     exemplar::graph::net::Net,
     output::{draft::Item, state::State},
+    toolbox::numbered::Numbered,
 };
 
 /// How far an end looks for something to join, in sampling distances.
@@ -73,20 +74,19 @@ fn extend<const D: usize>(
     let mut joined = 0;
     for s in false_ends(state, net, votes, loose) {
         // An earlier one may have been joined to this.
-        if state.links[s as usize].len() != 1 {
+        if state.degree(s) != 1 {
             continue;
         }
-        let position = state.samples[s as usize].position;
+        let position = state.sample(s).position;
         let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
-        let before = state.links[s as usize][0];
+        let before = state.links_of(s)[0];
         let way = direction(state.offset(before, s));
         let mut ahead: Vec<(f64, u32)> = Vec::new();
-        state.index.within(position, SPAN * unit, |slot, offset| {
-            let o = state.living[slot];
+        state.within(position, SPAN * unit, |o, offset| {
             let cosine = way.dot(direction(offset));
             let cost = offset.norm() * (2.0 - cosine);
-            let is_own = o == s || o == before || state.links[before as usize].contains(&o);
-            let degree = state.links[o as usize].len();
+            let is_own = o == s || o == before || state.are_linked(before, o);
+            let degree = state.degree(o);
             let is_kept = state.is_frozen(s) && state.is_frozen(o);
             if !is_own && !is_kept && cosine > AHEAD && (1..=2).contains(&degree) && state.share_style(o, s) {
                 ahead.push((cost, o));
@@ -94,8 +94,7 @@ fn extend<const D: usize>(
         });
         ahead.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         if let Some(&(_, o)) = ahead.iter().find(|(_, o)| tangle.allows(state, s, *o)) {
-            state.links[s as usize].push(o);
-            state.links[o as usize].push(s);
+            state.link(s, o);
             joined += 1;
         }
     }
@@ -105,10 +104,10 @@ fn extend<const D: usize>(
 /// Takes strokes over the border where their sources go on beyond it.
 fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
     let inside: Vec<u32> = state
-        .living
+        .living()
         .iter()
         .copied()
-        .filter(|&s| !state.is_frozen(s) && state.domain().contains(state.samples[s as usize].position))
+        .filter(|&s| !state.is_frozen(s) && state.domain().contains(state.sample(s).position))
         .collect();
     let open: Vec<OpenArm<D>> = inside.iter().flat_map(|&s| open_arms(state, net, s)).collect();
     let beyond = |arm: &&OpenArm<D>| !state.domain().contains(arm.place) || state.extent.is_blocked(arm.place, 0.0);
@@ -116,10 +115,9 @@ fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize
     let is_open = |arm: &&OpenArm<D>| !state.extent.is_known(arm.place);
     let new: Vec<OpenArm<D>> = open.iter().filter(beyond).filter(is_open).cloned().collect();
     for arm in &new {
-        let sample = state.samples.len() as u32;
-        state.push(Item { source: base + arm.node, position: arm.place, frozen: None }, Matrix::identity());
-        state.links[sample as usize].push(arm.sample);
-        state.links[arm.sample as usize].push(sample);
+        let item = Item { source: base + arm.node, position: arm.place, frozen: None };
+        let sample = state.push(item, Matrix::identity());
+        state.link(sample, arm.sample);
     }
     new.len()
 }
@@ -132,8 +130,8 @@ fn bridge<const D: usize>(
     (loose, tangle): (&Loose, &Tangle),
 ) -> usize {
     let ends = false_ends(state, net, votes, loose);
-    let places: Vec<_> = ends.iter().map(|&s| state.samples[s as usize].position).collect();
-    let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links[s as usize][0], s))).collect();
+    let places: Vec<_> = ends.iter().map(|&s| state.sample(s).position).collect();
+    let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links_of(s)[0], s))).collect();
     let unit = net.spacing * state.extent.largest_spacing_scale;
     let index = GridIndex::new(&places, SPAN * unit, state.domain());
     let mut wishes: Vec<(f64, usize, usize)> = Vec::new();
@@ -154,8 +152,7 @@ fn bridge<const D: usize>(
         let is_bad = |a: u32, b: u32| !tangle.allows(state, a, b) || loose.forbids(state, a, b);
         if !taken[i] && !taken[j] && !is_bad(ends[i], ends[j]) {
             (taken[i], taken[j]) = (true, true);
-            state.links[ends[i] as usize].push(ends[j]);
-            state.links[ends[j] as usize].push(ends[i]);
+            state.link(ends[i], ends[j]);
             joined += 1;
         }
     }
@@ -166,7 +163,7 @@ fn bridge<const D: usize>(
 /// two run into each other, and nothing is there.
 fn restore<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
     let wanted = |arm: &OpenArm<D>| state.domain().contains(arm.place) && !state.extent.is_blocked(arm.place, 0.0);
-    let open: Vec<OpenArm<D>> = state.living.iter().flat_map(|&s| open_arms(state, net, s)).filter(wanted).collect();
+    let open: Vec<OpenArm<D>> = state.living().iter().flat_map(|&s| open_arms(state, net, s)).filter(wanted).collect();
     let unit = net.spacing * state.extent.smallest_spacing_scale;
     let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
     let index = GridIndex::new(&places, unit, state.domain());
@@ -191,13 +188,11 @@ fn restore<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
         // The node with as many edges as there are strokes reaching for it.
         let misfit = |j: usize| net.degree(open[j].node).abs_diff(group.len());
         let Some(node) = group.iter().copied().min_by_key(|&j| (misfit(j), j)).map(|j| open[j].node) else { continue };
-        let sample = state.samples.len() as u32;
         let item = Item { source: state.level.base + node, position: place, frozen: None };
-        state.push(item, Matrix::identity());
+        let sample = state.push(item, Matrix::identity());
         for j in group {
             used[j] = true;
-            state.links[sample as usize].push(open[j].sample);
-            state.links[open[j].sample as usize].push(sample);
+            state.link(sample, open[j].sample);
         }
         restored += 1;
     }
@@ -211,7 +206,7 @@ fn restore<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
 fn is_gap<const D: usize>(state: &State<'_, D>, open: &[OpenArm<D>], group: &[usize]) -> bool {
     let way = |j: usize| {
         let arm = &open[j];
-        direction(state.domain().offset(state.samples[arm.sample as usize].position, arm.place))
+        direction(state.domain().offset(state.sample(arm.sample).position, arm.place))
     };
     matches!(group, [i, j] if way(*i).dot(way(*j)) < -FACING)
 }
@@ -220,9 +215,9 @@ fn is_gap<const D: usize>(state: &State<'_, D>, open: &[OpenArm<D>], group: &[us
 fn is_taken<const D: usize>(state: &State<'_, D>, net: &Net<D>, node: u32, place: Vector<D>) -> bool {
     let mut taken = false;
     let room = SAME_PLACE * net.spacing * state.request.fields.frame(place).spacing_scale;
-    state.index.within(place, room, |slot, _| {
-        let other = state.node(state.living[slot]);
-        taken |= other.is_some_and(|e| net.nodes[e as usize].shares_style(&net.nodes[node as usize]));
+    state.within(place, room, |s, _| {
+        let other = state.node(s);
+        taken |= other.is_some_and(|e| net.nodes[e].shares_style(&net.nodes[node]));
     });
     taken
 }
@@ -230,23 +225,23 @@ fn is_taken<const D: usize>(state: &State<'_, D>, net: &Net<D>, node: u32, place
 /// Number of edges that a sample should have.
 fn expected<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> f64 {
     // Of a kept sample its strokes tell more than its neighbours.
-    let told = votes.degree.get(s as usize).copied().filter(|d| d.is_finite() && !state.is_frozen(s));
+    let told = votes.degree.get(s as usize).copied().flatten().filter(|_| !state.is_frozen(s));
     told.unwrap_or_else(|| state.node(s).map_or(0.0, |e| net.degree(e) as f64))
 }
 
 /// Whether a stroke ends at `s` that should go on. Beyond the border of the domain anything may end.
 fn is_false_end<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose, s: u32) -> bool {
-    let p = state.samples[s as usize].position;
+    let p = state.sample(s).position;
     let room = if state.is_frozen(s) { -AT_BORDER * net.spacing } else { 0.0 };
     state.node(s).is_some()
-        && state.links[s as usize].len() == 1
+        && state.degree(s) == 1
         && state.domain().signed_distance(p) > room
         && (expected(state, net, votes, s) > EXPECTED || (!state.is_frozen(s) && loose.is_too_long(state, s)))
 }
 
 /// The false ends of a state.
 fn false_ends<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> Vec<u32> {
-    state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, loose, s)).collect()
+    state.living().iter().copied().filter(|&s| is_false_end(state, net, votes, loose, s)).collect()
 }
 
 fn join<const D: usize>(
@@ -258,15 +253,14 @@ fn join<const D: usize>(
 ) -> usize {
     let mut wishes: Vec<(f64, u32, u32)> = ends.iter().flat_map(|&s| partners(state, net, votes, loose, s)).collect();
     wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut taken = vec![false; state.samples.len()];
+    let mut taken = Numbered::filled(false, state.samples().len());
     let mut joined = 0;
     for (_, a, b) in wishes {
-        if taken[a as usize] || taken[b as usize] || !tangle.allows(state, a, b) || loose.forbids(state, a, b) {
+        if taken[a] || taken[b] || !tangle.allows(state, a, b) || loose.forbids(state, a, b) {
             continue;
         }
-        (taken[a as usize], taken[b as usize]) = (true, true);
-        state.links[a as usize].push(b);
-        state.links[b as usize].push(a);
+        (taken[a], taken[b]) = (true, true);
+        state.link(a, b);
         joined += 1;
     }
     joined
@@ -280,22 +274,21 @@ fn partners<const D: usize>(
     loose: &Loose,
     s: u32,
 ) -> Vec<(f64, u32, u32)> {
-    let position = state.samples[s as usize].position;
+    let position = state.sample(s).position;
     let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
-    let Some(&before) = state.links[s as usize].first() else { return Vec::new() };
+    let Some(&before) = state.links_of(s).first() else { return Vec::new() };
     let way = direction(state.offset(before, s));
     let branches = net.branches();
     // What is too long would only grow with another end of a stroke.
     let takes_ends = expected(state, net, votes, s) > EXPECTED || !loose.has_single();
     let mut found = Vec::new();
-    state.index.within(position, REACH * unit, |slot, offset| {
-        let o = state.living[slot];
-        let is_near = o == s || o == before || state.links[before as usize].contains(&o);
+    state.within(position, REACH * unit, |o, offset| {
+        let is_near = o == s || o == before || state.are_linked(before, o);
         let is_kept = state.is_frozen(s) && state.is_frozen(o);
         if is_near || is_kept || !state.share_style(o, s) {
             return;
         }
-        let degree = state.links[o as usize].len();
+        let degree = state.degree(o);
         if degree == 0 || (degree == 1 && !takes_ends) {
             return;
         }
@@ -318,11 +311,11 @@ fn direction<const D: usize>(v: Vector<D>) -> Vector<D> {
 fn trim<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
     let is_stub = |s: u32| {
         let ended = is_false_end(state, net, votes, loose, s);
-        ended && state.links[s as usize].first().is_some_and(|&o| state.links[o as usize].len() != 2)
+        ended && state.links_of(s).first().is_some_and(|&o| state.degree(o) != 2)
     };
-    let alone = |s: u32| state.node(s).is_some() && state.links[s as usize].is_empty();
+    let alone = |s: u32| state.node(s).is_some() && state.links_of(s).is_empty();
     let gone: Vec<u32> =
-        state.living.iter().copied().filter(|&s| !state.is_frozen(s) && (alone(s) || is_stub(s))).collect();
+        state.living().iter().copied().filter(|&s| !state.is_frozen(s) && (alone(s) || is_stub(s))).collect();
     for &s in &gone {
         state.kill(s);
     }

@@ -26,12 +26,12 @@ impl<const D: usize> Cast<D> {
         let mut kinds: Vec<Vec<usize>> = Vec::new();
         for number in 0..net.nodes.len() as u32 {
             let styles = styles(exemplar, &net, number);
-            net.nodes[number as usize].styles.clone_from(&styles);
+            net.nodes[number].styles.clone_from(&styles);
             let kind = kinds.iter().position(|k| *k == styles).unwrap_or_else(|| {
                 kinds.push(styles);
                 kinds.len() - 1
             });
-            let node = &net.nodes[number as usize];
+            let node = &net.nodes[number];
             let tips = net.directions(number).into_iter().map(|t| node.position + t * spacing);
             cast.elements.push(Element {
                 class: exemplar.classes.len() + kind,
@@ -50,8 +50,8 @@ impl<const D: usize> Cast<D> {
 /// The styles of all strokes through a node, sorted: only samples with the same ones match.
 fn styles<const D: usize>(exemplar: &Exemplar<D>, net: &Net<D>, node: u32) -> Vec<usize> {
     let lines = &net.skeleton.lines;
-    let own = &net.nodes[node as usize];
-    let arms = own.arms.iter().map(|arm| lines[arm.piece.line as usize].curve);
+    let own = &net.nodes[node];
+    let arms = own.arms.iter().map(|arm| lines[arm.piece.line].curve);
     let mut styles: Vec<_> =
         arms.chain(std::iter::once(own.curve)).map(|c| exemplar.curves[c as usize].style).collect();
     styles.sort_unstable();

@@ -30,3 +30,4 @@ pub(crate) mod repair;
 #[cfg(test)]
 mod tests;
 pub(crate) mod votes;
+pub(crate) mod wishes;

@@ -9,7 +9,7 @@ use crate::{
     border::Extent,
     curves::{
         draw::{chains::chains, shape::strokes as draw},
-        repair::crossings::Tangle,
+        repair::crossings::EdgeRules,
         votes::{edge_votes::collect_votes, edges},
     },
     exemplar::{
@@ -284,7 +284,7 @@ fn edges_side_by_side_become_one_line() {
             }
         }
         assert_ne!(links(&state), known);
-        assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
+        assert!(EdgeRules::of(&net).restore(&mut state, &votes) > 0);
         assert_eq!(links(&state), known);
     });
 }
@@ -304,10 +304,10 @@ fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
         };
         let (low, high) = (row(45.0), row(50.0));
         for (a, b) in [(low[3], high[4]), (low[5], high[3])] {
-            assert_eq!(Tangle::of(&net).allows(&state, a, b), (a, b) == (low[3], high[4]));
+            assert_eq!(EdgeRules::of(&net).allow(&state, a, b), (a, b) == (low[3], high[4]));
             state.link(a, b);
         }
-        assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
+        assert!(EdgeRules::of(&net).restore(&mut state, &votes) > 0);
         let left = links(&state);
         assert!(left[low[3]].contains(&high[4]) && !left[low[5]].contains(&high[3]));
         assert_eq!(left.iter().map(Vec::len).sum::<usize>(), known.iter().map(Vec::len).sum::<usize>() + 2);
@@ -315,14 +315,14 @@ fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
 }
 
 #[test]
-fn what_the_exemplar_does_is_no_tangle() {
+fn what_the_exemplar_does_is_left_as_it_is() {
     let narrow = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 50.0), (95.0, 58.0)], false)];
     let cross = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 5.0), (50.0, 95.0)], false)];
     for paths in [narrow, cross] {
         with_state(&paths, |mut state| {
             let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
             let known = links(&state);
-            assert_eq!(Tangle::of(&net).undo(&mut state, &votes), 0);
+            assert_eq!(EdgeRules::of(&net).restore(&mut state, &votes), 0);
             assert_eq!(links(&state), known);
         });
     }

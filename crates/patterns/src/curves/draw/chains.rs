@@ -59,7 +59,7 @@ pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tan
 }
 
 fn is_fixed<const D: usize>(state: &State<'_, D>, a: u32, b: u32) -> bool {
-    state.is_frozen(a) && state.is_frozen(b)
+    state.is_frozen_edge(a, b)
 }
 
 /// The stroke through the edge from `a` to `b`, as far as it goes both ways, and whether it closes.

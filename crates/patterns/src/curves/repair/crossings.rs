@@ -1,4 +1,8 @@
-//! Tangles: edges that cross, or leave a sample side by side, as those of the exemplar never do.
+//! Edges that cross, or leave a sample side by side, as those of the exemplar never do.
+//!
+//! Such edges come from neighbourhoods that were matched with parts of the exemplar a little out of step: each of them is right for
+//! itself. Of two that cross, one goes; of two side by side, the longer one becomes a continuation of the shorter one, which keeps the
+//! line it belongs to in one piece.
 
 use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 
@@ -14,29 +18,29 @@ const SIDE_BY_SIDE: f64 = 0.6;
 /// No angle above this one is narrow, degrees.
 const NARROW: f64 = 35.0;
 
-/// Most rounds in which tangles are undone: each may leave another one beside it.
+/// Most rounds in which edges are taken apart: each may leave another fault beside it.
 const ROUNDS: usize = 8;
 
-/// What the edges of a net do not do.
+/// How the edges of a net lie to each other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tangle {
-    /// Edges enclose no angle with a larger cosine.
-    narrow: f64,
+pub(crate) struct EdgeRules {
+    /// Cosine of the smallest angle that two edges of a sample enclose.
+    max_cosine: f64,
     /// Whether edges never cross. In space they pass each other.
-    is_plane: bool,
+    is_planar: bool,
 }
 
-impl Tangle {
+impl EdgeRules {
     /// Looks at the edges of a net.
     pub(crate) fn of<const D: usize>(net: &Net<D>) -> Self {
-        Self { narrow: (SIDE_BY_SIDE * sharpest_angle(net)).cos(), is_plane: D == 2 && !has_crossings(net) }
+        Self { max_cosine: (SIDE_BY_SIDE * sharpest_angle(net)).cos(), is_planar: D == 2 && !has_crossings(net) }
     }
 
-    /// Undoes the tangles of a state. Returns how many edges changed.
-    pub(crate) fn undo<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
+    /// Takes edges apart until they keep to the rules. Returns how many changed.
+    pub(crate) fn restore<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
         let mut changed = 0;
         for _ in 0..ROUNDS {
-            let now = self.part(state, votes) + self.straighten(state);
+            let now = self.uncross(state, votes) + self.straighten(state);
             changed += now;
             if now == 0 {
                 break;
@@ -45,12 +49,13 @@ impl Tangle {
         changed
     }
 
-    /// Whether an edge from `a` to `b` would be in no tangle.
-    pub(crate) fn allows<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
+    /// Whether an edge from `a` to `b` would keep to the rules.
+    pub(crate) fn allow<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
         let across = state.offset(a, b);
-        let is_free =
-            |s: u32, way: Vector<D>| state.links_of(s).iter().all(|&o| cosine(state.offset(s, o), way) <= self.narrow);
-        is_free(a, across) && is_free(b, across * -1.0) && (!self.is_plane || !self.crosses_any(state, a, across, b))
+        let is_free = |s: u32, way: Vector<D>| {
+            state.links_of(s).iter().all(|&o| cosine(state.offset(s, o), way) <= self.max_cosine)
+        };
+        is_free(a, across) && is_free(b, across * -1.0) && (!self.is_planar || !self.crosses_any(state, a, across, b))
     }
 
     /// Whether an edge crosses one that is there.
@@ -94,8 +99,8 @@ impl Tangle {
             for &b in &links[..i] {
                 let (to_a, to_b) = (state.offset(s, a), state.offset(s, b));
                 let (near, far) = if to_a.norm2() <= to_b.norm2() { (a, b) } else { (b, a) };
-                let is_fixed = state.is_frozen(s) && state.is_frozen(far);
-                if !is_fixed && cosine(to_a, to_b) > self.narrow {
+                let is_fixed = state.is_frozen_edge(s, far);
+                if !is_fixed && cosine(to_a, to_b) > self.max_cosine {
                     return Some((near, far));
                 }
             }
@@ -104,8 +109,8 @@ impl Tangle {
     }
 
     /// Of two edges that cross, the one goes that fewer neighbourhoods want.
-    fn part<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
-        if !self.is_plane {
+    fn uncross<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
+        if !self.is_planar {
             return 0;
         }
         let edges: Vec<(u32, u32)> = state
@@ -126,7 +131,7 @@ impl Tangle {
                 let (c, d) = edges[j];
                 let apart = ![c, d].contains(&a) && ![c, d].contains(&b);
                 if j > i && apart && !gone[i] && !gone[j] && cross(ways[i], ways[j], offset) {
-                    gone[weaker(state, votes, &edges, (i, j))] = true;
+                    gone[weaker(state, votes, &edges, [i, j])] = true;
                 }
             });
         }
@@ -168,10 +173,10 @@ fn has_crossings<const D: usize>(net: &Net<D>) -> bool {
 }
 
 /// The weaker of two edges: one that may change, then the less wanted, then the longer one.
-fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u32)], (i, j): (usize, usize)) -> usize {
+fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u32)], [i, j]: [usize; 2]) -> usize {
     let key = |k: usize| {
         let (a, b) = edges[k];
-        let is_fixed = state.is_frozen(a) && state.is_frozen(b);
+        let is_fixed = state.is_frozen_edge(a, b);
         let found = votes.candidates.binary_search_by_key(&(a, b), |c| c.ends);
         let wanted = found.map_or(0.0, |c| votes.candidates[c].confidence);
         (is_fixed, wanted, -state.offset(a, b).norm())

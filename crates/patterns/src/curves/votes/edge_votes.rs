@@ -31,6 +31,13 @@ pub(crate) struct Votes {
     pub(crate) degree: Numbered<Option<f64>>,
 }
 
+impl Votes {
+    /// Expected number of edges of a sample; `None` for those nobody voted on, and for those that are younger than the votes.
+    pub(crate) fn degree(&self, s: u32) -> Option<f64> {
+        self.degree.get(s as usize).copied().flatten()
+    }
+}
+
 /// One neighbourhood's opinion.
 struct Opinion {
     /// (output sample, exemplar node), curve samples only.

@@ -5,7 +5,10 @@ use arabesque_core::{GridIndex, Vector};
 use rayon::prelude::*;
 
 use crate::{
-    curves::votes::edge_votes::{self, Votes},
+    curves::{
+        votes::edge_votes::{self, Votes},
+        wishes::{Wish, grant},
+    },
     exemplar::graph::net::Net,
     output::state::State,
     toolbox::numbered::Numbered,
@@ -21,9 +24,9 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize)
         return (Votes::default(), 0);
     };
     let mut votes = edge_votes::collect(state, net);
-    tell_kept(state, net, &mut votes);
+    count_frozen(state, net, &mut votes);
     let mut links = frozen_links(state);
-    switch_on(&votes, &mut links, &|a, b| state.is_frozen(a) && state.is_frozen(b));
+    switch_on(&votes, &mut links, &|a, b| state.is_frozen_edge(a, b));
     let mut changed = 0;
     for (s, mut new) in (0..).zip(links) {
         new.sort_unstable();
@@ -32,8 +35,8 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize)
     (votes, changed)
 }
 
-/// Of a kept sample its own strokes tell how many edges it has, more than its neighbours.
-fn tell_kept<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &mut Votes) {
+/// Of a frozen sample its own strokes tell how many edges it has, more than its neighbours.
+fn count_frozen<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &mut Votes) {
     for s in votes.degree.numbers().filter(|&s| state.is_frozen(s)) {
         if let Some(node) = state.node(s) {
             votes.degree[s] = Some(net.degree(node) as f64);
@@ -96,7 +99,7 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
     let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
     let unit = net.spacing * state.extent.largest_spacing_scale;
     let index = GridIndex::new(&places, unit, state.domain());
-    let mut wishes: Vec<(f64, usize, usize)> = Vec::new();
+    let mut wishes = Vec::new();
     for (i, arm) in open.iter().enumerate() {
         let p = state.sample(arm.sample).position;
         let near = NEAR * net.spacing * state.request.fields.frame(p).spacing_scale;
@@ -105,24 +108,21 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
             let other = &open[j];
             let back = state.domain().offset(state.sample(other.sample).position, arm.place).norm();
             if other.sample != arm.sample && back <= near && state.share_style(other.sample, arm.sample) {
-                wishes.push((back + offset.norm(), i.min(j), i.max(j)));
+                wishes.push(Wish { cost: back + offset.norm(), a: i.min(j), b: i.max(j) });
             }
         });
     }
-    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut used = vec![false; open.len()];
-    for (_, i, j) in wishes {
+    grant(wishes, open.len(), |i, j| {
         let (a, b) = (open[i].sample, open[j].sample);
-        let is_fixed = state.is_frozen(a) && state.is_frozen(b);
-        if used[i] || used[j] || is_fixed || state.are_linked(a, b) {
-            continue;
+        let may = !state.is_frozen_edge(a, b) && !state.are_linked(a, b);
+        if may {
+            state.link(a, b);
         }
-        (used[i], used[j]) = (true, true);
-        state.link(a, b);
-    }
+        may
+    });
 }
 
-/// The edges that the source of `s` has, but for those that `s` has too.
+/// The edges that the source of `s` has, except those that `s` has too.
 pub(crate) fn open_arms<const D: usize>(state: &State<'_, D>, net: &Net<D>, s: u32) -> Vec<OpenArm<D>> {
     let Some(number) = state.node(s) else { return Vec::new() };
     let position = state.sample(s).position;

@@ -1,13 +1,13 @@
 //! Where an element may be put, given the domain and what happens at its border.
 
-use std::{any::Any, sync::Arc};
+use std::sync::Arc;
 
 use arabesque_core::{
     Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Outline, Placement, Region, Request,
     ScalarField, Shape, Similarity, Vector,
 };
 
-use crate::toolbox::numbered::Numbered;
+use crate::{dimension::Dimension, toolbox::numbered::Numbered};
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
@@ -29,12 +29,10 @@ pub(crate) struct Extent<'a, const D: usize> {
 
 impl<'a, const D: usize> Extent<'a, D> {
     /// `base`: first pseudo element, see [`crate::exemplar::level::Level::base`].
-    pub(crate) fn new(
-        request: &'a Request<D>,
-        exemplar: &'a Exemplar<D>,
-        radius: &'a Numbered<f64>,
-        base: u32,
-    ) -> Self {
+    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a Numbered<f64>, base: u32) -> Self
+    where
+        Vector<D>: Dimension<D>,
+    {
         let largest = |field: &ScalarField<D>| field.range().1;
         let scale = largest(&request.fields.scale);
         let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
@@ -87,8 +85,11 @@ impl<'a, const D: usize> Extent<'a, D> {
     }
 
     /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in space.
-    pub(crate) fn outline(&self) -> Option<Outline<2>> {
-        let request = (self.request as &dyn Any).downcast_ref::<Request<2>>()?;
+    pub(crate) fn outline(&self) -> Option<Outline<2>>
+    where
+        Vector<D>: Dimension<D>,
+    {
+        let request = Vector::plane_request(self.request)?;
         let whole = request.domain.outline()?;
         let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
         Some(whole.difference(&Outline::union(&rings, FillRule::NonZero)))
@@ -214,9 +215,11 @@ fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Option<GridIndex<D>
 }
 
 /// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
-fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>> {
-    let plane = (request as &dyn Any).downcast_ref::<Request<2>>()?;
+fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>>
+where
+    Vector<D>: Dimension<D>,
+{
+    let plane = Vector::plane_request(request)?;
     let rings: Vec<_> = plane.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-    let region: Arc<dyn Region<2>> = Arc::new(Shape::new(&rings, FillRule::NonZero)?);
-    (&region as &dyn Any).downcast_ref::<Arc<dyn Region<D>>>().cloned()
+    Vector::from_plane(Arc::new(Shape::new(&rings, FillRule::NonZero)?))
 }

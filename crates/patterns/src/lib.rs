@@ -33,6 +33,7 @@
 
 mod border;
 mod curves;
+mod dimension;
 mod exemplar;
 mod finish;
 mod frozen;
@@ -47,6 +48,7 @@ mod run;
 pub mod stages;
 mod toolbox;
 
+pub use dimension::Dimension;
 pub use finish::{clearance::overlap_ratio, deform::warp};
 pub use params::{
     Attributes, Clearance, Deform, Existence, Initialisation, Matching, OptionInfo, Params, Search, Switch,

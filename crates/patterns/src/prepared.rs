@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Exemplar, Limits, Observer, Outcome, Request, Result, Role, StopReason, Warning};
+use arabesque_core::{Error, Exemplar, Limits, Observer, Outcome, Request, Result, Role, StopReason, Vector, Warning};
 
 use crate::{
     border::Extent,
+    dimension::Dimension,
     exemplar::{
         graph::{crowding, skeleton::Skeleton},
         setting::{Setting, expected_nodes, settings, shortest},
@@ -59,7 +60,10 @@ fn check_density(nodes: f64) -> Result<()> {
     })
 }
 
-impl<const D: usize> Prepared<D> {
+impl<const D: usize> Prepared<D>
+where
+    Vector<D>: Dimension<D>,
+{
     /// Analyses the exemplar.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Drawn, EnergyPoint, Matrix, Observer, Preview, Progress, Request};
+use arabesque_core::{Drawn, EnergyPoint, Matrix, Observer, Preview, Progress, Request, Vector};
 
 use crate::{
     border::Extent,
@@ -14,6 +14,7 @@ use crate::{
         repair::mend,
         votes::{edge_votes, edges, tangents},
     },
+    dimension::Dimension,
     exemplar::setting::Setting,
     finish::placements,
     frozen,
@@ -75,7 +76,10 @@ struct Finished<const D: usize> {
     curves: Vec<Drawn<D>>,
 }
 
-impl<const D: usize> Run<'_, D> {
+impl<const D: usize> Run<'_, D>
+where
+    Vector<D>: Dimension<D>,
+{
     /// Everything up to the clearance check, in the state in which the observer left it.
     pub(crate) fn synthesise(
         &self,

@@ -4,6 +4,7 @@ use arabesque_core::{Matrix, Placement, Request, Vector, Warning};
 
 use crate::{
     border::Extent,
+    dimension::Dimension,
     finish::clearance::{self, ExemplarClearance},
     output::{
         draft::{Frozen, Item, Items},
@@ -63,7 +64,10 @@ pub(crate) fn mend<const D: usize>(
     limits: Option<&ExemplarClearance>,
     (request, extent): (&Request<D>, &Extent<'_, D>),
     params: &Params,
-) -> Vec<Warning> {
+) -> Vec<Warning>
+where
+    Vector<D>: Dimension<D>,
+{
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
     if params.clearance == Clearance::Ignored {
         return Vec::new();

@@ -26,7 +26,7 @@ pub(crate) struct Place {
     pub(crate) arc: f64,
 }
 
-/// A stroke cut at the hem.
+/// A stroke cut at the rings.
 #[derive(Clone, Debug)]
 pub(crate) struct ClippedStroke {
     pub(crate) drawn: Drawn<2>,
@@ -38,7 +38,7 @@ pub(crate) struct ClippedStroke {
     pub(crate) is_closed: bool,
 }
 
-/// The rings of a hem.
+/// The border moved inside, in rings.
 #[derive(Clone, Debug)]
 pub(crate) struct OffsetRings {
     shape: Shape,

@@ -10,6 +10,7 @@ use crate::{
         border::{border_turn::BorderTurn, trim::at_border},
         draw::chains::Chain,
     },
+    dimension::Dimension,
     exemplar::graph::{
         net::{Net, Piece},
         skeleton::Knot,
@@ -49,7 +50,10 @@ pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> 
 }
 
 /// The strokes of all chains, frozen ones first.
-pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>> {
+pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>>
+where
+    Vector<D>: Dimension<D>,
+{
     let frozen = state.request.frozen_curves.iter().enumerate().map(|(n, d)| Drawn { frozen: Some(n), ..d.clone() });
     let Some(net) = &state.level.net else { return frozen.collect() };
     let free = chains.iter().map(|chain| {

@@ -14,10 +14,9 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
-use std::any::Any;
+use arabesque_core::{Domain, Exemplar, Placement, Request, Vector, Warning};
 
-use arabesque_core::{Domain, Exemplar, Placement, Request, Warning};
-
+use crate::dimension::Dimension;
 pub(crate) use limits::ExemplarClearance;
 use scene::Scene;
 
@@ -55,21 +54,25 @@ impl Summary {
 }
 
 /// Measures the exemplar. `None` where overlaps have no meaning: in space, and for points.
-pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<ExemplarClearance> {
-    (exemplar as &dyn Any).downcast_ref().and_then(ExemplarClearance::new)
+pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<ExemplarClearance>
+where
+    Vector<D>: Dimension<D>,
+{
+    Vector::plane_exemplar(exemplar).and_then(ExemplarClearance::new)
 }
 
 /// Mends overlaps and border violations in `placements`; those with a `frozen` entry stay untouched. Order is kept.
 ///
 /// `clearance` is [`measure`]d from the exemplar of the placements.
-#[expect(clippy::ptr_arg, reason = "a vector of another dimension is looked into; what is found loses elements")]
 pub(crate) fn repair<const D: usize>(
     clearance: Option<&ExemplarClearance>,
     request: &Request<D>,
     placements: &mut Vec<Placement<D>>,
-) -> Summary {
-    let request = (request as &dyn Any).downcast_ref::<Request<2>>();
-    let placements = (placements as &mut dyn Any).downcast_mut::<Vec<Placement<2>>>();
+) -> Summary
+where
+    Vector<D>: Dimension<D>,
+{
+    let (request, placements) = (Vector::plane_request(request), Vector::plane_placements(placements));
     match (clearance, request, placements) {
         (Some(clearance), Some(request), Some(placements)) => repair::repair(clearance, request, placements),
         _ => Summary::default(),

@@ -15,7 +15,7 @@ use crate::{
         votes::{edge_votes, edges, tangents},
     },
     dimension::Dimension,
-    exemplar::setting::Setting,
+    exemplar::level_exemplar::LevelExemplar,
     finish::placements,
     frozen,
     layout::{Layout, grains},
@@ -51,8 +51,8 @@ const NOTICEABLE: f64 = 0.01;
 const NOTICEABLE_STROKES: f64 = 0.04;
 
 /// A level, with what it means for the request.
-pub(crate) struct Stand<'a, const D: usize> {
-    pub(crate) setting: &'a Setting<D>,
+pub(crate) struct LevelContext<'a, const D: usize> {
+    pub(crate) sampled: &'a LevelExemplar<D>,
     pub(crate) extent: &'a Extent<'a, D>,
     /// Elements of each class that the output should have.
     pub(crate) targets: &'a Numbered<f64>,
@@ -63,7 +63,7 @@ pub(crate) struct Run<'a, const D: usize> {
     pub(crate) params: &'a Params,
     pub(crate) request: &'a Request<D>,
     /// The levels that are used, coarsest first.
-    pub(crate) stands: Vec<Stand<'a, D>>,
+    pub(crate) contexts: Vec<LevelContext<'a, D>>,
     /// Iterations a level.
     pub(crate) iterations: usize,
 }
@@ -89,17 +89,17 @@ where
         let mut flow = ControlFlow::Continue(());
         let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
         let from_noise = self.params.initialisation == Initialisation::WhiteNoise;
-        if let Some(stand) = if from_noise { self.stands.first() } else { self.stands.last() } {
-            let frozen = frozen::draft(self.request, stand.setting);
-            let layout = self.layout(stand);
+        if let Some(context) = if from_noise { self.contexts.first() } else { self.contexts.last() } {
+            let frozen = frozen::draft(self.request, context.sampled);
+            let layout = self.layout(context);
             (done.draft, flow) = layout.initialise(frozen, &mut |items, share| {
-                observer.step(&self.laid_out(items.len(), share), &|| self.layout_preview(stand, items))
+                observer.step(&self.laid_out(items.len(), share), &|| self.layout_preview(context, items))
             });
             if !from_noise {
                 done.draft = self.coarsened(&done.draft);
             }
         }
-        for k in 0..self.stands.len() {
+        for k in 0..self.contexts.len() {
             if flow.is_break() && k > 0 {
                 break;
             }
@@ -110,33 +110,37 @@ where
 
     /// A layout of the finest level, as the coarsest one sees it: patches agree best where they are sampled most densely.
     fn coarsened(&self, draft: &Draft<D>) -> Draft<D> {
-        let (Some(finest), Some(coarsest)) = (self.stands.last(), self.stands.first()) else { return draft.clone() };
+        let (Some(finest), Some(coarsest)) = (self.contexts.last(), self.contexts.first()) else {
+            return draft.clone();
+        };
         let mut state = self.state(finest, draft);
         edges::link_sources(&mut state);
-        match &coarsest.setting.level.net {
-            Some(net) if self.stands.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) => {
+        match &coarsest.sampled.level.net {
+            Some(net)
+                if self.contexts.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) =>
+            {
                 let chains = self.chains(&mut state);
-                let frozen = frozen::draft(self.request, coarsest.setting);
-                resample::resample(&state, &chains, (net, coarsest.setting.level.base), frozen)
+                let frozen = frozen::draft(self.request, coarsest.sampled);
+                resample::resample(&state, &chains, (net, coarsest.sampled.level.base), frozen)
             }
             _ => draft.clone(),
         }
     }
 
-    fn layout<'s>(&'s self, stand: &Stand<'s, D>) -> Layout<'s, D> {
+    fn layout<'s>(&'s self, context: &LevelContext<'s, D>) -> Layout<'s, D> {
         Layout {
-            library: &stand.setting.library,
+            library: &context.sampled.library,
             params: self.params,
             request: self.request,
-            extent: stand.extent,
-            base: stand.setting.level.base,
+            extent: context.extent,
+            base: context.sampled.level.base,
         }
     }
 
     fn result(&self, done: &Finished<D>) -> Preview<D> {
-        let Some(stand) = self.stands.last() else { return Preview::default() };
+        let Some(context) = self.contexts.last() else { return Preview::default() };
         let mut placements =
-            placements::placements(&done.draft.items, self.request, stand.extent, stand.setting.level.base);
+            placements::placements(&done.draft.items, self.request, context.extent, context.sampled.level.base);
         for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
             placement.control.clone_from(control);
         }
@@ -146,7 +150,7 @@ where
     fn laid_out(&self, elements: usize, share: f64) -> Progress {
         Progress {
             level: 0,
-            levels: self.stands.len(),
+            levels: self.contexts.len(),
             iteration: 0,
             iterations: self.iterations,
             fraction: LAYOUT_SHARE * share,
@@ -177,13 +181,13 @@ where
         if self.params.initialisation != Initialisation::WhiteNoise {
             return FLOOR;
         }
-        let done = (k as f64 + iteration as f64 / self.iterations.max(1) as f64) / self.stands.len() as f64;
+        let done = (k as f64 + iteration as f64 / self.iterations.max(1) as f64) / self.contexts.len() as f64;
         (NOISE_FLOOR + done).min(FLOOR)
     }
 
     /// After `done` iterations at level `k`.
     fn progress(&self, k: usize, done: usize, state: &State<'_, D>) -> Progress {
-        let (levels, expected) = (self.stands.len(), self.iterations.max(1));
+        let (levels, expected) = (self.contexts.len(), self.iterations.max(1));
         let within = (done as f64 / expected as f64).min(1.0);
         Progress {
             level: k,
@@ -198,16 +202,16 @@ where
     }
 
     /// The elements alone: strokes are not known before the samples are joined.
-    fn layout_preview(&self, stand: &Stand<'_, D>, items: &[Item<D>]) -> Preview<D> {
+    fn layout_preview(&self, context: &LevelContext<'_, D>, items: &[Item<D>]) -> Preview<D> {
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
-        let placements = placements::placements(&items, self.request, stand.extent, stand.setting.level.base);
-        let state = self.state(stand, &Draft { items, links: Vec::new() });
+        let placements = placements::placements(&items, self.request, context.extent, context.sampled.level.base);
+        let state = self.state(context, &Draft { items, links: Vec::new() });
         Preview { placements, curves: self.strokes(state), ..Preview::default() }
     }
 
-    fn state<'s>(&'s self, stand: &Stand<'s, D>, draft: &Draft<D>) -> State<'s, D> {
-        let setting = stand.setting;
-        State::new(&setting.library, &setting.level, self.request, stand.extent, (draft, self.params.deform))
+    fn state<'s>(&'s self, context: &LevelContext<'s, D>, draft: &Draft<D>) -> State<'s, D> {
+        let sampled = context.sampled;
+        State::new(&sampled.library, &sampled.level, self.request, context.extent, (draft, self.params.deform))
     }
 
     /// Search and assign at one level, then mend and hand over to the next.
@@ -218,12 +222,12 @@ where
         trace: &mut Vec<EnergyPoint>,
         observer: &mut dyn Observer<D>,
     ) -> (Finished<D>, ControlFlow<()>) {
-        let stand = &self.stands[k];
-        let mut state = self.state(stand, draft);
+        let context = &self.contexts[k];
+        let mut state = self.state(context, draft);
         edges::link_sources(&mut state);
         if k > 0 && flow.is_continue() {
             // Handing over takes as long as iterations do, and strokes have come out finer.
-            flow = observer.step(&self.progress(k, 0, &state), &|| self.snapshot(stand, &state));
+            flow = observer.step(&self.progress(k, 0, &state), &|| self.snapshot(context, &state));
         }
         if flow.is_continue() {
             flow = self.refine((k, 0), &mut state, trace, observer);
@@ -233,7 +237,7 @@ where
         }
         let params = self.params;
         if params.existence == Existence::Voted && flow.is_continue() {
-            self.layout(stand).fill_holes(&mut state);
+            self.layout(context).fill_holes(&mut state);
             edges::link_sources(&mut state);
         }
         (self.finish(k, state, flow), flow)
@@ -252,15 +256,15 @@ where
         trace: &mut Vec<EnergyPoint>,
         observer: &mut dyn Observer<D>,
     ) -> ControlFlow<()> {
-        let (Some(nucleus), Some(stand)) = (grains::nucleus(state), self.stands.first()) else {
+        let (Some(nucleus), Some(context)) = (grains::nucleus(state), self.contexts.first()) else {
             return ControlFlow::Continue(());
         };
         let known = self.progress(0, self.iterations, state);
-        let frozen = frozen::draft(self.request, stand.setting);
-        let (draft, flow) = self.layout(stand).regrow(frozen, &nucleus.items, &mut |items, _| {
-            observer.step(&Progress { elements: items.len(), ..known }, &|| self.layout_preview(stand, items))
+        let frozen = frozen::draft(self.request, context.sampled);
+        let (draft, flow) = self.layout(context).regrow(frozen, &nucleus.items, &mut |items, _| {
+            observer.step(&Progress { elements: items.len(), ..known }, &|| self.layout_preview(context, items))
         });
-        *state = self.state(stand, &draft);
+        *state = self.state(context, &draft);
         edges::link_sources(state);
         flow?;
         self.refine((0, self.iterations), state, trace, observer)
@@ -277,8 +281,8 @@ where
         for iteration in before..before + self.iterations {
             let searched = search::search(state, &self.search_params(k, iteration));
             trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
-            let changed = self.assign(state, &self.stands[k], self.floor(k, iteration));
-            observer.step(&self.progress(k, iteration + 1, state), &|| self.snapshot(&self.stands[k], state))?;
+            let changed = self.assign(state, &self.contexts[k], self.floor(k, iteration));
+            observer.step(&self.progress(k, iteration + 1, state), &|| self.snapshot(&self.contexts[k], state))?;
             if !changed || searched == 0 {
                 break;
             }
@@ -287,14 +291,14 @@ where
     }
 
     /// One assignment step: attributes, positions, existence, edges, tangents. Returns whether anything changed.
-    fn assign(&self, state: &mut State<'_, D>, stand: &Stand<'_, D>, floor: f64) -> bool {
+    fn assign(&self, state: &mut State<'_, D>, context: &LevelContext<'_, D>, floor: f64) -> bool {
         let exchanged = match self.params.attributes {
             Attributes::Selected => attributes::assign(state),
             Attributes::Kept => 0,
         };
         let mut position = positions::assign(state);
         let changes = match self.params.existence {
-            Existence::Voted => existence::assign(state, stand.targets, floor),
+            Existence::Voted => existence::assign(state, context.targets, floor),
             Existence::Fixed => Changes::default(),
         };
         position.extend(state.samples().iter().skip(position.len()).map(|s| s.position));
@@ -302,7 +306,7 @@ where
         let (_, joined) = edges::assign(state);
         tangents::assign(state);
         let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
-        let moved = state.announce_moves(noticeable * state.library.spacing * stand.extent.smallest_spacing_scale);
+        let moved = state.announce_moves(noticeable * state.library.spacing * context.extent.smallest_spacing_scale);
         state.reindex();
         moved || exchanged + joined > 0 || changes != Changes::default()
     }
@@ -311,8 +315,8 @@ where
     fn finish(&self, k: usize, mut state: State<'_, D>, flow: ControlFlow<()>) -> Finished<D> {
         let base = state.level.base;
         let bends = placements::bends(&state);
-        let next = self.stands.get(k + 1).filter(|_| flow.is_continue());
-        let finer = next.and_then(|next| next.setting.level.net.as_deref().map(|net| (next, net)));
+        let next = self.contexts.get(k + 1).filter(|_| flow.is_continue());
+        let finer = next.and_then(|next| next.sampled.level.net.as_deref().map(|net| (next, net)));
         let Some((next, net)) = finer else {
             let items = living(&state).into_iter().filter(|(item, _)| next.is_some() || item.source < base).collect();
             let curves = if next.is_some() { Vec::new() } else { self.strokes(state) };
@@ -322,8 +326,8 @@ where
             return Finished { draft: self.as_it_is(state), bends, curves: Vec::new() };
         }
         let chains = self.chains(&mut state);
-        let frozen = frozen::draft(self.request, next.setting);
-        let draft = resample::resample(&state, &chains, (net, next.setting.level.base), frozen);
+        let frozen = frozen::draft(self.request, next.sampled);
+        let draft = resample::resample(&state, &chains, (net, next.sampled.level.base), frozen);
         Finished { draft, bends, curves: Vec::new() }
     }
 
@@ -366,9 +370,9 @@ where
         shape::strokes(&state, &chains)
     }
 
-    fn snapshot(&self, stand: &Stand<'_, D>, state: &State<'_, D>) -> Preview<D> {
+    fn snapshot(&self, context: &LevelContext<'_, D>, state: &State<'_, D>) -> Preview<D> {
         let base = state.level.base;
-        let mut placements = placements::placements(&living(state), self.request, stand.extent, base);
+        let mut placements = placements::placements(&living(state), self.request, context.extent, base);
         for (placement, control) in placements.iter_mut().zip(placements::bends(state).into_iter().flatten()) {
             placement.control = control;
         }

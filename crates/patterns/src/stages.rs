@@ -12,7 +12,7 @@ use crate::{
         repair::mend::mend,
         votes::{edge_votes::collect_votes, edges, tangents},
     },
-    exemplar::{level::Near, setting::Setting},
+    exemplar::{level::Near, level_exemplar::LevelExemplar},
     finish::{
         clearance::{self, ExemplarClearance},
         placements,
@@ -102,9 +102,9 @@ impl Setup {
 
     /// Lays out the page, searches once, and hands both states over.
     pub fn with<R>(&self, time: impl FnOnce(&Bench<'_>) -> R) -> R {
-        let (request, setting) = (&self.request, finest(&self.prepared));
-        let (library, level) = (&*setting.library, &setting.level);
-        let extent = Extent::new(request, &setting.exemplar, &library.radius, level.base);
+        let (request, sampled) = (&self.request, finest(&self.prepared));
+        let (library, level) = (&*sampled.library, &sampled.level);
+        let extent = Extent::new(request, &sampled.exemplar, &library.radius, level.base);
         let targets = class_targets(library, request, &extent, level.base);
         let layout = Layout { library, params: &self.prepared.params, request, extent: &extent, base: level.base };
         let mut fresh = State::new(library, level, request, &extent, (&lay_out(&layout), Deform::Rigid));
@@ -132,7 +132,7 @@ impl<'a> Bench<'a> {
         let (state, level) = (&self.searched, self.searched.level);
         let prices = Prices { missing: 1.0, outside: 0.0 };
         let next = |i: usize| {
-            let alike = &level.of_key[level.key[i] as usize];
+            let alike = &level.of_key[level.key[i]];
             alike[(i + 1) % alike.len()]
         };
         Pairings {
@@ -207,14 +207,14 @@ impl Clearing {
     }
 }
 
-fn finest(prepared: &Prepared<2>) -> &Setting<2> {
-    prepared.settings.last().expect("there is a level")
+fn finest(prepared: &Prepared<2>) -> &LevelExemplar<2> {
+    prepared.levels.last().expect("there is a level")
 }
 
 /// Samples of the finest level that the exemplar shows, per area.
-fn density(setting: &Setting<2>) -> f64 {
-    let inside = setting.level.position.iter().filter(|p| setting.library.view.contains(**p)).count();
-    inside as f64 / setting.library.view.measure()
+fn density(sampled: &LevelExemplar<2>) -> f64 {
+    let inside = sampled.level.position.iter().filter(|p| sampled.library.view.contains(**p)).count();
+    inside as f64 / sampled.library.view.measure()
 }
 
 fn lay_out(layout: &Layout<'_, 2>) -> Draft<2> {

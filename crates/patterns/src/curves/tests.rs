@@ -17,7 +17,7 @@ use crate::{
             net::{Net, Node},
             skeleton::{Knot, Skeleton},
         },
-        setting::settings,
+        level_exemplar::level_exemplars,
     },
     output::{
         draft::{Draft, Item},
@@ -59,16 +59,16 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     let exemplar = exemplar(paths);
     let params = Params { levels: 1, ..Params::default() };
     let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.view()).unwrap());
-    let setting = settings(&exemplar, Some(&skeleton), &params).remove(0);
+    let sampled = level_exemplars(&exemplar, Some(&skeleton), &params).remove(0);
     let request = Request::new(Domain::Box(window().grown(SIDE)));
-    let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);
-    let net = setting.level.net.clone().unwrap();
+    let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
+    let net = sampled.level.net.clone().unwrap();
     let items = (0..net.nodes.len()).map(|n| {
-        let item = Item { source: setting.level.base + n as u32, position: net.nodes[n].position, frozen: None };
+        let item = Item { source: sampled.level.base + n as u32, position: net.nodes[n].position, frozen: None };
         (item, Matrix::identity())
     });
     let draft = Draft { items: items.collect(), links: Vec::new() };
-    let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
+    let mut state = State::new(&sampled.library, &sampled.level, &request, &extent, (&draft, Deform::Rigid));
     edges::link_sources(&mut state);
     work(state)
 }

@@ -6,6 +6,6 @@ pub(crate) mod features;
 pub(crate) mod graph;
 pub(crate) mod kinds;
 pub(crate) mod level;
+pub(crate) mod level_exemplar;
 pub(crate) mod library;
 pub(crate) mod samples;
-pub(crate) mod setting;

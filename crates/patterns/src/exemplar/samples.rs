@@ -10,7 +10,7 @@ use arabesque_core::{Element, Exemplar, Outline, Similarity, Vector};
 const ROUND: f64 = 1.6;
 
 /// Most samples that the shape alone asks for.
-const MOST: usize = 5;
+const MAX_SAMPLES: usize = 5;
 
 /// Samples of every element of the exemplar, offsets from the centre of the element in exemplar directions.
 #[derive(Clone, Debug)]
@@ -59,7 +59,8 @@ fn template<const D: usize>(element: &Element<D>, count: Option<usize>) -> Vec<V
     let Some((axis, elongation)) = principal_axis(&ink) else {
         return centre;
     };
-    let wanted = count.unwrap_or(if elongation < ROUND { 1 } else { (elongation.ceil() as usize).clamp(2, MOST) });
+    let wanted =
+        count.unwrap_or(if elongation < ROUND { 1 } else { (elongation.ceil() as usize).clamp(2, MAX_SAMPLES) });
     if wanted <= 1 {
         return centre;
     }

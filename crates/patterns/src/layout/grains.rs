@@ -80,7 +80,7 @@ mod tests {
     use super::*;
     use crate::{
         border::Extent,
-        exemplar::setting::settings,
+        exemplar::level_exemplar::level_exemplars,
         optimise::{
             matching::Prices,
             search::{SearchParams, search},
@@ -103,9 +103,9 @@ mod tests {
     fn nucleus_with_disorder_beyond(x: f64) -> Option<Vec<Item<2>>> {
         let exemplar = exemplar();
         let params = Params { levels: 1, ..Params::default() };
-        let setting = settings(&exemplar, None, &params).remove(0);
+        let sampled = level_exemplars(&exemplar, None, &params).remove(0);
         let request = Request::new(Domain::Box(exemplar.window));
-        let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);
+        let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
         let mut random = Stream::new(6, Stage::Test, 0);
         let items = exemplar.elements.iter().zip(0..).map(|(element, source)| {
             let place = Vector::xy(random.range(x, SIDE), random.range(0.0, SIDE));
@@ -113,7 +113,7 @@ mod tests {
             (Item { source, position, frozen: None }, Matrix::identity())
         });
         let draft = Draft { items: items.collect(), links: Vec::new() };
-        let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
+        let mut state = State::new(&sampled.library, &sampled.level, &request, &extent, (&draft, Deform::Rigid));
         let exhaustive = SearchParams {
             search: Search::Exhaustive,
             matching: Matching::Robust,

@@ -28,7 +28,7 @@ const ROOM: f64 = 0.6;
 const OWN_ROOM: f64 = 0.6;
 
 /// Adding stops at this multiple of the target number of a class.
-const MOST: f64 = 1.03;
+const MAX_SURPLUS: f64 = 1.03;
 
 /// How many elements were added and removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +53,7 @@ fn class_counts<const D: usize>(state: &State<'_, D>) -> Numbered<f64> {
     let mut counts = Numbered::filled(0.0, state.library.classes());
     let counts_in = |i: &&LiveItem<D>| i.item.frozen.is_none() || state.domain().contains(i.item.position);
     for live in state.items().iter().filter(|i| i.alive).filter(counts_in) {
-        counts[state.library.class[live.item.source] as usize] += 1.0;
+        counts[state.library.class[live.item.source]] += 1.0;
     }
     counts
 }
@@ -70,7 +70,7 @@ fn remove<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>, flo
     doubted.sort_by(|&a, &b| confidence[a].total_cmp(&confidence[b]).then(a.cmp(&b)));
     let mut removed = 0;
     for i in doubted {
-        let class = state.library.class[state.item(i).item.source] as usize;
+        let class = state.library.class[state.item(i).item.source];
         if counts[class] <= floor * targets[class] {
             continue;
         }
@@ -149,7 +149,7 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>) -> usi
     for cluster in &clusters {
         let n = cluster.votes.len() as f64;
         let position = cluster.centre + cluster.shift * (1.0 / n);
-        let class = cluster.class as usize;
+        let class = cluster.class;
         // Fewer than there should be: half the votes will do when a fifth is wanting.
         let share = ((counts[class] / targets[class].max(1.0) - 0.8) * 2.5 + 0.5).clamp(0.5, 1.0);
         if n >= HALF * share * covering(state, position) {
@@ -163,7 +163,7 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>) -> usi
     for (_, position, source) in accepted {
         let Some(source) = source else { continue };
         let class = state.library.class[source];
-        if counts[class] >= MOST * targets[class] {
+        if counts[class] >= MAX_SURPLUS * targets[class] {
             continue;
         }
         if state.extent.admits(source, position)

@@ -69,12 +69,12 @@ fn most_similar<const D: usize>(
     (matching, number): (Matching, usize),
     i: u32,
 ) -> Vec<u32> {
-    const MOST: usize = 256;
+    const MAX_COMPARED: usize = 256;
     let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
-    let others = &level.of_key[level.key[i] as usize];
+    let others = &level.of_key[level.key[i]];
     let around = exemplar_surroundings(level, i);
     let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
-    for &j in others.iter().step_by(others.len().div_ceil(MOST)).filter(|&&j| j != i) {
+    for &j in others.iter().step_by(others.len().div_ceil(MAX_COMPARED)).filter(|&&j| j != i) {
         let full = best.len() == number;
         let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
         let cost = matcher.cost(&around, j, limit, &|_| true);
@@ -89,7 +89,7 @@ fn most_similar<const D: usize>(
 
 /// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that do not overlap it much.
 /// 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where too little of it is seen to tell.
-pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
+pub(crate) fn dissimilarity<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
     const ASKED: usize = 96;
     let inner: Vec<u32> = (0..level.position.len() as u32)
         .filter(|&i| library.view.signed_distance(level.position[i]) > 0.7 * level.radius)
@@ -101,7 +101,7 @@ pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>
             let mut matcher = Matcher::new(level, library, matching, Prices { missing: 1.0, outside: 0.0 });
             let around = exemplar_surroundings(level, i);
             let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key]).sum();
-            let others = &level.of_key[level.key[i] as usize];
+            let others = &level.of_key[level.key[i]];
             let apart = |j: &&u32| (level.position[**j] - level.position[i]).norm() > level.radius;
             let best = others
                 .iter()

@@ -118,7 +118,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// Adds an item with its samples, and returns the number of its first sample; [`State::reindex`] makes it visible.
     pub(crate) fn push(&mut self, item: Item<D>, turn: Matrix<D>) -> u32 {
         let parts = &self.level.parts[item.source];
-        let first_key = self.level.key[self.level.first[item.source] as usize];
+        let first_key = self.level.key[self.level.first[item.source]];
         let first = self.samples.len() as u32;
         let item = Item { position: self.request.domain.wrap(item.position), ..item };
         let number = self.items.push(LiveItem { item, turn, alive: true, first, count: parts.len() as u32 });
@@ -148,14 +148,13 @@ impl<'a, const D: usize> State<'a, D> {
     }
 
     fn part_position(&self, item: u32, part: u32) -> Vector<D> {
-        let source = self.items[item].item.source as usize;
-        self.pose(item).apply(self.level.parts[source][part as usize])
+        let parts = &self.level.parts[self.items[item].item.source];
+        self.pose(item).apply(parts[part as usize])
     }
 
     /// Makes the index fit the samples.
     pub(crate) fn reindex(&mut self) {
-        self.living =
-            (0..self.samples.len() as u32).filter(|&s| self.items[self.samples[s].item as usize].alive).collect();
+        self.living = self.samples.numbers().filter(|&s| self.is_alive(s)).collect();
         let points: Vec<_> = self.living.iter().map(|&s| self.samples[s].position).collect();
         let radius = self.level.radius * self.extent.largest_spacing_scale;
         self.index = GridIndex::new(&points, 0.5 * radius, &self.request.domain);
@@ -316,7 +315,7 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Source of the item of a sample.
     pub(crate) fn source(&self, s: u32) -> u32 {
-        self.items[self.samples[s].item as usize].item.source
+        self.item_of(s).item.source
     }
 
     /// The node of the net that a curve sample was copied from; `None` for a sample of an element.
@@ -334,12 +333,12 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Whether the user placed the sample.
     pub(crate) fn is_frozen(&self, s: u32) -> bool {
-        self.items[self.samples[s].item as usize].item.frozen.is_some()
+        self.item_of(s).item.frozen.is_some()
     }
 
     /// Whether the sample is part of the output.
     pub(crate) fn is_alive(&self, s: u32) -> bool {
-        self.items[self.samples[s].item as usize].alive
+        self.item_of(s).alive
     }
 
     /// From one sample to another by the shortest way.
@@ -355,7 +354,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// The edges of a sample in exemplar directions and units; none where edges take no part in the comparison.
     pub(crate) fn star(&self, s: u32) -> Star<D> {
         let links = &self.links[s];
-        if links.is_empty() || self.level.stars[self.level.first[self.source(s)] as usize].len() == 0 {
+        if links.is_empty() || self.level.stars[self.level.first[self.source(s)]].len() == 0 {
             return Star::EMPTY;
         }
         let frame = self.request.fields.frame(self.samples[s].position);
@@ -370,7 +369,8 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Removes the item of a sample, and its edges.
     pub(crate) fn kill(&mut self, s: u32) {
-        self.items[self.samples[s].item as usize].alive = false;
+        let item = self.samples[s].item;
+        self.items[item].alive = false;
         self.unlink_all(s);
     }
 

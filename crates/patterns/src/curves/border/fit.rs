@@ -3,7 +3,7 @@
 use arabesque_core::{Cubic, Vector, cubic_at};
 
 /// Runs of so many points or fewer are not split further.
-const FEW: usize = 2;
+const MIN_POINTS: usize = 2;
 
 /// Places at which a cubic is compared with the points.
 const LOOKS: usize = 32;
@@ -11,13 +11,13 @@ const LOOKS: usize = 32;
 /// Cubics along a run of points, within `tolerance` of it and without corners. `ends`: unit directions of travel at its first and last point.
 pub(crate) fn fit(points: &[Vector<2>], ends: [Vector<2>; 2], tolerance: f64) -> Vec<Cubic<2>> {
     let (Some(&a), Some(&b)) = (points.first(), points.last()) else { return Vec::new() };
-    if a == b && points.len() <= FEW {
+    if a == b && points.len() <= MIN_POINTS {
         return Vec::new();
     }
     let arcs = arcs(points);
     let third = arcs[arcs.len() - 1] / 3.0;
     let cubic = [a, a + ends[0] * third, b - ends[1] * third, b];
-    if points.len() <= FEW || misfit(&cubic, points, &arcs) <= tolerance {
+    if points.len() <= MIN_POINTS || misfit(&cubic, points, &arcs) <= tolerance {
         return vec![cubic];
     }
     let half = 0.5 * arcs[arcs.len() - 1];

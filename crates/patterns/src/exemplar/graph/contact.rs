@@ -5,7 +5,7 @@ use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 use crate::{exemplar::graph::line::Line, toolbox::numbered::Numbered};
 
 /// No more crossings are looked for when there are so many.
-pub(crate) const MOST_CONTACTS: usize = 200_000;
+pub(crate) const MAX_CONTACTS: usize = 200_000;
 
 /// Two passages of lines through one place.
 #[derive(Clone, Copy, Debug)]
@@ -84,12 +84,12 @@ impl<const D: usize> Chords<D> {
     }
 }
 
-/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after [`MOST_CONTACTS`].
+/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after [`MAX_CONTACTS`].
 pub(crate) fn crossings<const D: usize>(lines: &Numbered<Line<D>>, side: f64, near: f64) -> Vec<Contact<D>> {
     let chords = Chords::new(lines, side / 100.0);
     let mut found = Vec::new();
     for (i, a) in chords.all.iter().enumerate() {
-        if found.len() >= MOST_CONTACTS {
+        if found.len() >= MAX_CONTACTS {
             break;
         }
         chords.index.within(a.middle(), chords.longest + near, |j, _| {

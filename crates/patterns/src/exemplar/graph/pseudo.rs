@@ -11,18 +11,18 @@ use crate::exemplar::graph::{
 
 /// The exemplar of one level: its elements, then one pseudo element a curve sample.
 #[derive(Clone, Debug)]
-pub(crate) struct Cast<const D: usize> {
+pub(crate) struct PseudoElements<const D: usize> {
     pub(crate) exemplar: Exemplar<D>,
     /// First pseudo element.
     pub(crate) base: usize,
     pub(crate) net: Arc<Net<D>>,
 }
 
-impl<const D: usize> Cast<D> {
+impl<const D: usize> PseudoElements<D> {
     /// Samples the skeleton at `spacing` and appends the samples to the elements of `exemplar`.
     pub(crate) fn new(exemplar: &Exemplar<D>, skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
         let mut net = Net::new(skeleton, spacing);
-        let mut cast = exemplar.clone();
+        let mut pseudo = exemplar.clone();
         let mut kinds: Vec<Vec<usize>> = Vec::new();
         for number in 0..net.nodes.len() as u32 {
             let styles = styles(exemplar, &net, number);
@@ -33,7 +33,7 @@ impl<const D: usize> Cast<D> {
             });
             let node = &net.nodes[number];
             let tips = net.directions(number).into_iter().map(|t| node.position + t * spacing);
-            cast.elements.push(Element {
+            pseudo.elements.push(Element {
                 class: exemplar.classes.len() + kind,
                 centre: node.position,
                 pose: Similarity::shift(node.position),
@@ -42,8 +42,8 @@ impl<const D: usize> Cast<D> {
                 role: if node.knot == Some(Knot::Cut) { Role::Context } else { Role::Source },
             });
         }
-        cast.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
-        Self { exemplar: cast, base: exemplar.elements.len(), net: Arc::new(net) }
+        pseudo.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
+        Self { exemplar: pseudo, base: exemplar.elements.len(), net: Arc::new(net) }
     }
 }
 

@@ -7,7 +7,7 @@ use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View};
 
 use crate::{
     exemplar::graph::{
-        contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
+        contact::{Contact, MAX_CONTACTS, crossings, end_contacts},
         line::Line,
     },
     toolbox::{numbered::Numbered, spans::inside},
@@ -23,7 +23,7 @@ const TOUCH_SHARE: f64 = 0.003;
 const CORNER: f64 = 0.766;
 
 /// Most knots of an exemplar: with more, each neighbourhood would take minutes to be compared with all others.
-const MOST_KNOTS: usize = 10_000;
+const MAX_KNOTS: usize = 10_000;
 
 /// An end is at the frame when it is this near, as a share of the side of the window, however wide the stroke is.
 const AT_FRAME: f64 = 0.02;
@@ -63,21 +63,21 @@ impl<const D: usize> Skeleton<D> {
         let too_many = |found: String| Error::Limit {
             what: "places of the exemplar where strokes meet, end or turn sharply".into(),
             found,
-            limit: MOST_KNOTS.to_string(),
+            limit: MAX_KNOTS.to_string(),
             advice: "show a smaller part of the pattern, or draw it with fewer lines".into(),
         };
         let contacts = contacts(&lines, side);
-        if contacts.len() >= MOST_CONTACTS {
-            return Err(too_many(format!("{MOST_CONTACTS} or more")));
+        if contacts.len() >= MAX_CONTACTS {
+            return Err(too_many(format!("{MAX_CONTACTS} or more")));
         }
         let skeleton = Self::joined(lines, &contacts, side);
         match skeleton.knots.len() {
-            0..=MOST_KNOTS => Ok(skeleton),
+            0..=MAX_KNOTS => Ok(skeleton),
             found => Err(too_many(found.to_string())),
         }
     }
 
-    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first [`MOST_CONTACTS`] contacts
+    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first [`MAX_CONTACTS`] contacts
     /// count.
     pub(crate) fn of_lines(lines: Numbered<Line<D>>, side: f64) -> Self {
         let contacts = contacts(&lines, side);

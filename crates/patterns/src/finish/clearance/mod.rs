@@ -4,21 +4,21 @@
 //! Checked on the real outlines. What is wrong is mended with the smallest change that works: a shift, then a smaller element of
 //! the same class, then removal. In space, and for points, there is nothing to check.
 
+mod arrangement;
+mod border_check;
 mod edges;
 mod figure;
-mod ground;
 mod limits;
 mod relax;
 mod repair;
-mod scene;
 #[cfg(test)]
 mod tests;
 
 use arabesque_core::{Domain, Exemplar, Placement, Request, Vector, Warning};
 
 use crate::dimension::Dimension;
+use arrangement::Arrangement;
 pub(crate) use limits::ExemplarClearance;
-use scene::Scene;
 
 /// Share of the elements whose exchange or removal is nothing to speak of.
 const NORMAL: f64 = 0.02;
@@ -87,7 +87,7 @@ pub fn overlap_ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], domain
         return 0.0;
     };
     let (own, bodies) = clearance.bodies(placements);
-    let scene = Scene::new(domain, &clearance.figures, own, bodies);
-    let common = scene.overlaps().iter().fold(0.0, |sum, overlap| sum + overlap.area);
-    common / limits::ink(&scene).max(f64::MIN_POSITIVE)
+    let arrangement = Arrangement::new(domain, &clearance.figures, own, bodies);
+    let common = arrangement.overlaps().iter().fold(0.0, |sum, overlap| sum + overlap.area);
+    common / limits::ink(&arrangement).max(f64::MIN_POSITIVE)
 }

@@ -53,6 +53,11 @@ impl<'a, const D: usize> Extent<'a, D> {
         }
     }
 
+    /// What is asked for.
+    pub(crate) fn request(&self) -> &'a Request<D> {
+        self.request
+    }
+
     /// Largest factor by which gaps are wider than in the exemplar.
     pub(crate) fn largest_spacing_scale(request: &Request<D>) -> f64 {
         request.fields.scale.range().1 * request.fields.density.range().0.powf(-1.0 / D as f64)

@@ -156,12 +156,7 @@ where
         let mut trace = Vec::new();
         let (mut found, flow) = run.synthesise(&mut trace, observer);
         let last = &extents[extents.len() - 1];
-        warnings.extend(placements::mend(
-            &mut found.placements,
-            self.clearance.as_ref(),
-            (request, last),
-            &self.params,
-        ));
+        warnings.extend(placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params));
         if found.placements.is_empty() && found.curves.is_empty() {
             let what = if self.has_curves() { "stroke" } else { "element" };
             return Err(Error::no_result(

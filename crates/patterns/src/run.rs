@@ -103,7 +103,7 @@ where
             if flow.is_break() && k > 0 {
                 break;
             }
-            (done, flow) = self.level((k, &done.draft), flow, trace, observer);
+            (done, flow) = self.level(k, &done.draft, flow, trace, observer);
         }
         (self.result(&done), flow)
     }
@@ -121,7 +121,7 @@ where
             {
                 let chains = self.chains(&mut state);
                 let frozen = frozen::draft(self.request, coarsest.sampled);
-                resample::resample(&state, &chains, (net, coarsest.sampled.level.base), frozen)
+                resample::resample(&state, &chains, net, coarsest.sampled.level.base, frozen)
             }
             _ => draft.clone(),
         }
@@ -158,6 +158,7 @@ where
             elements,
         }
     }
+
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
         let params = self.params;
         let first = iteration.is_multiple_of(self.iterations);
@@ -210,14 +211,14 @@ where
     }
 
     fn state<'s>(&'s self, context: &LevelContext<'s, D>, draft: &Draft<D>) -> State<'s, D> {
-        let sampled = context.sampled;
-        State::new(&sampled.library, &sampled.level, self.request, context.extent, (draft, self.params.deform))
+        State::new(context.sampled, self.request, context.extent, self.params.deform, draft)
     }
 
     /// Search and assign at one level, then mend and hand over to the next.
     fn level(
         &self,
-        (k, draft): (usize, &Draft<D>),
+        k: usize,
+        draft: &Draft<D>,
         mut flow: ControlFlow<()>,
         trace: &mut Vec<EnergyPoint>,
         observer: &mut dyn Observer<D>,
@@ -230,7 +231,7 @@ where
             flow = observer.step(&self.progress(k, 0, &state), &|| self.snapshot(context, &state));
         }
         if flow.is_continue() {
-            flow = self.refine((k, 0), &mut state, trace, observer);
+            flow = self.refine(k, 0, &mut state, trace, observer);
         }
         if k == 0 && flow.is_continue() && self.may_regrow() {
             flow = self.regrow(&mut state, trace, observer);
@@ -267,13 +268,14 @@ where
         *state = self.state(context, &draft);
         edges::link_sources(state);
         flow?;
-        self.refine((0, self.iterations), state, trace, observer)
+        self.refine(0, self.iterations, state, trace, observer)
     }
 
     /// Iterations at level `k`; `before` is how many there were already.
     fn refine(
         &self,
-        (k, before): (usize, usize),
+        k: usize,
+        before: usize,
         state: &mut State<'_, D>,
         trace: &mut Vec<EnergyPoint>,
         observer: &mut dyn Observer<D>,
@@ -327,7 +329,7 @@ where
         }
         let chains = self.chains(&mut state);
         let frozen = frozen::draft(self.request, next.sampled);
-        let draft = resample::resample(&state, &chains, (net, next.sampled.level.base), frozen);
+        let draft = resample::resample(&state, &chains, net, next.sampled.level.base, frozen);
         Finished { draft, bends, curves: Vec::new() }
     }
 

@@ -107,7 +107,7 @@ impl Setup {
         let extent = Extent::new(request, &sampled.exemplar, &library.radius, level.base);
         let targets = class_targets(library, request, &extent, level.base);
         let layout = Layout { library, params: &self.prepared.params, request, extent: &extent, base: level.base };
-        let mut fresh = State::new(library, level, request, &extent, (&lay_out(&layout), Deform::Rigid));
+        let mut fresh = State::new(sampled, request, &extent, Deform::Rigid, &lay_out(&layout));
         edges::link_sources(&mut fresh);
         let mut searched = fresh.clone();
         search::search(&mut searched, &first_search(&self.prepared.params));

@@ -68,7 +68,7 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
         (item, Matrix::identity())
     });
     let draft = Draft { items: items.collect(), links: Vec::new() };
-    let mut state = State::new(&sampled.library, &sampled.level, &request, &extent, (&draft, Deform::Rigid));
+    let mut state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
     edges::link_sources(&mut state);
     work(state)
 }

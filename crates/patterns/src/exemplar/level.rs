@@ -36,6 +36,15 @@ struct Run {
     end: u32,
 }
 
+/// How far neighbourhoods reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    /// Radius of those of the output.
+    pub(crate) radius: f64,
+    /// By how much those of the exemplar are larger, so that samples near the rim find a partner.
+    pub(crate) slack: f64,
+}
+
 /// Exemplar samples at one level.
 #[derive(Clone, Debug)]
 pub(crate) struct Level<const D: usize> {
@@ -74,16 +83,10 @@ pub(crate) struct Level<const D: usize> {
 }
 
 impl<const D: usize> Level<D> {
-    /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]), neighbourhoods of `radius`, input neighbourhoods
-    /// larger by `slack` so that border samples find a partner.
-    pub(crate) fn new(
-        library: &Library<D>,
-        samples: &ElementSamples<D>,
-        detail: f64,
-        (radius, slack): (f64, f64),
-    ) -> Self {
-        let mut level = Self::sampled(library, samples, detail, radius);
-        level.flatten(&Domain::Box(library.view.window), slack);
+    /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]).
+    pub(crate) fn new(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, ball: Ball) -> Self {
+        let mut level = Self::sampled(library, samples, detail, ball.radius);
+        level.flatten(&Domain::Box(library.view.window), ball.slack);
         level
     }
 

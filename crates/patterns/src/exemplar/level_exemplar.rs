@@ -7,7 +7,7 @@ use arabesque_core::{Exemplar, Vector};
 use crate::{
     exemplar::{
         graph::{pseudo::PseudoElements, skeleton::Skeleton},
-        level::Level,
+        level::{Ball, Level},
         library::Library,
         samples::ElementSamples,
     },
@@ -73,7 +73,7 @@ fn detail(params: &Params, number: usize) -> f64 {
 }
 
 /// Radius of the neighbourhoods, and by how much those of the exemplar are larger.
-fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> (f64, f64) {
+fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> Ball {
     let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
     let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(library.view.side()));
     let slack = match params.matching {
@@ -81,7 +81,7 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
         Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max).min(radius),
         Matching::Hard => radius,
     };
-    (radius, slack)
+    Ball { radius, slack }
 }
 
 /// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as

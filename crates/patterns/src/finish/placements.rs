@@ -62,7 +62,7 @@ fn bend<const D: usize>(state: &State<'_, D>, live: &LiveItem<D>) -> Bend<D> {
 pub(crate) fn mend<const D: usize>(
     placements: &mut Vec<Placement<D>>,
     limits: Option<&ExemplarClearance>,
-    (request, extent): (&Request<D>, &Extent<'_, D>),
+    extent: &Extent<'_, D>,
     params: &Params,
 ) -> Vec<Warning>
 where
@@ -72,7 +72,7 @@ where
     if params.clearance == Clearance::Ignored {
         return Vec::new();
     }
-    let summary = clearance::repair(limits, request, placements);
+    let summary = clearance::repair(limits, extent.request(), placements);
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
     summary.warning(placements.len()).into_iter().collect()
 }

@@ -113,7 +113,7 @@ mod tests {
             (Item { source, position, frozen: None }, Matrix::identity())
         });
         let draft = Draft { items: items.collect(), links: Vec::new() };
-        let mut state = State::new(&sampled.library, &sampled.level, &request, &extent, (&draft, Deform::Rigid));
+        let mut state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
         let exhaustive = SearchParams {
             search: Search::Exhaustive,
             matching: Matching::Robust,

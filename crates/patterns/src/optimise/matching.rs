@@ -94,7 +94,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         limit: f32,
         wanted: &dyn Fn(Vector<D>) -> bool,
     ) -> f32 {
-        let centre = self.difference((around.source, &around.star), i);
+        let centre = self.difference(around.source, &around.star, i);
         let pairs = match self.matching {
             Matching::Robust => self.robust(around, i, limit - centre),
             Matching::Hard => self.hard(around, i, limit - centre),
@@ -107,7 +107,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
     }
 
     /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
-    fn difference(&self, (source, star): (u32, &Star<D>), i: u32) -> f32 {
+    fn difference(&self, source: u32, star: &Star<D>, i: u32) -> f32 {
         let element = self.level.element[i];
         if element >= self.level.base {
             return star.distance2(&self.level.stars[i], self.level.single2);
@@ -131,7 +131,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
                 if d2 < outlier2 || row.frozen {
-                    let d2 = d2 + self.difference((row.source, &row.star), other.sample);
+                    let d2 = d2 + self.difference(row.source, &row.star, other.sample);
                     self.assignment.pair(column as u32, row.weight * d2);
                 }
             }
@@ -155,7 +155,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             for column in level.neighbours_of_key(i, row.key) {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                let d2 = d2 + self.difference((row.source, &row.star), other.sample);
+                let d2 = d2 + self.difference(row.source, &row.star, other.sample);
                 self.assignment.pair(column as u32, d2);
                 least = least.min(d2);
             }

@@ -66,7 +66,8 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
 fn most_similar<const D: usize>(
     level: &Level<D>,
     library: &Library<D>,
-    (matching, number): (Matching, usize),
+    matching: Matching,
+    number: usize,
     i: u32,
 ) -> Vec<u32> {
     const MAX_COMPARED: usize = 256;
@@ -237,7 +238,7 @@ fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u3
     if params.search == Search::KCoherence {
         for k in 0..seeds.min(6) {
             let i = list[k];
-            let find = || most_similar(level, state.library, (params.matching, params.coherence), i);
+            let find = || most_similar(level, state.library, params.matching, params.coherence, i);
             level.alike(i, find).iter().for_each(|&j| push(list, j));
         }
     }

@@ -4,7 +4,7 @@ use arabesque_core::{Domain, GridIndex, Matrix, Request, Similarity, Vector};
 
 use crate::{
     border::Extent,
-    exemplar::{graph::net::Star, level::Level, library::Library, samples::pose_of},
+    exemplar::{graph::net::Star, level::Level, level_exemplar::LevelExemplar, library::Library, samples::pose_of},
     output::draft::{Draft, Item},
     params::Deform,
     toolbox::numbered::Numbered,
@@ -85,15 +85,15 @@ pub(crate) struct State<'a, const D: usize> {
 
 impl<'a, const D: usize> State<'a, D> {
     pub(crate) fn new(
-        library: &'a Library<D>,
-        level: &'a Level<D>,
+        sampled: &'a LevelExemplar<D>,
         request: &'a Request<D>,
         extent: &'a Extent<'a, D>,
-        (draft, deform): (&Draft<D>, Deform),
+        deform: Deform,
+        draft: &Draft<D>,
     ) -> Self {
         let mut state = Self {
-            library,
-            level,
+            library: &sampled.library,
+            level: &sampled.level,
             request,
             extent,
             deform,

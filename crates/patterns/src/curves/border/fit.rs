@@ -51,8 +51,16 @@ fn misfit(cubic: &Cubic<2>, points: &[Vector<2>], arcs: &[f64]) -> f64 {
     (1..LOOKS).map(apart).fold(0.0, f64::max)
 }
 
-/// A cubic from `a` to `b` that leaves and arrives in the unit directions given, an arc of a circle where there is one.
-pub(crate) fn arc((a, out): (Vector<2>, Vector<2>), (b, on): (Vector<2>, Vector<2>)) -> Cubic<2> {
+/// A place on a path, and the unit direction in which the path passes it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage {
+    pub(crate) place: Vector<2>,
+    pub(crate) way: Vector<2>,
+}
+
+/// A cubic from one passage to another, an arc of a circle where there is one.
+pub(crate) fn arc(from: Passage, to: Passage) -> Cubic<2> {
+    let (Passage { place: a, way: out }, Passage { place: b, way: on }) = (from, to);
     let turn = out.cross(on).atan2(out.dot(on)).abs();
     let reach = (b - a).norm() / (3.0 * (0.25 * turn).cos().powi(2));
     [a, a + out * reach, b - on * reach, b]
@@ -90,7 +98,8 @@ mod tests {
 
     #[test]
     fn an_arc_is_a_quarter_circle() {
-        let c = arc((Vector::xy(1.0, 0.0), Vector::xy(0.0, 1.0)), (Vector::xy(0.0, 1.0), Vector::xy(-1.0, 0.0)));
+        let start = Passage { place: Vector::xy(1.0, 0.0), way: Vector::xy(0.0, 1.0) };
+        let c = arc(start, Passage { place: Vector::xy(0.0, 1.0), way: Vector::xy(-1.0, 0.0) });
         assert!((cubic_at(&c, 0.5).norm() - 1.0).abs() < 1e-3);
     }
 }

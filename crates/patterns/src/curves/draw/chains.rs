@@ -51,7 +51,7 @@ pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tan
             ends.windows(2).for_each(|w| {
                 seen.insert((w[0].min(w[1]), w[0].max(w[1])), ());
             });
-            let pieces = ends.windows(2).map(|w| piece(state, net, votes, (w[0], w[1]))).collect();
+            let pieces = ends.windows(2).map(|w| piece(state, net, votes, [w[0], w[1]])).collect();
             chains.push(Chain { samples, pieces, is_closed });
         }
     }
@@ -178,7 +178,7 @@ fn unit<const D: usize>(v: Vector<D>) -> Vector<D> {
 }
 
 /// The exemplar line for an edge: of those voted for, the one whose ends lie best; else the one between the sources of its ends.
-fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, (a, b): (u32, u32)) -> Option<Piece> {
+fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, [a, b]: [u32; 2]) -> Option<Piece> {
     let key = (a.min(b), a.max(b));
     let directed = |p: Piece| if a < b { p } else { p.reversed() };
     let offset = state.offset(key.0, key.1);

@@ -16,7 +16,8 @@ use crate::{
 pub(crate) fn resample<const D: usize>(
     state: &State<'_, D>,
     chains: &[Chain],
-    (finer, base): (&Net<D>, u32),
+    finer: &Net<D>,
+    base: u32,
     frozen: Draft<D>,
 ) -> Draft<D> {
     let strokes = frozen.items.iter().enumerate().filter(|(_, (item, _))| item.frozen == Some(Frozen::Stroke));
@@ -95,7 +96,7 @@ impl<const D: usize> Resampled<'_, D> {
             let share = ((wanted - before) / lengths[edge].max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             let number = range.start + edge;
             let item =
-                self.between(net, (at(number), at(number + 1)), chain.pieces[number % chain.pieces.len()], share);
+                self.between(net, [at(number), at(number + 1)], chain.pieces[number % chain.pieces.len()], share);
             let Some(item) = item else { continue };
             let next = self.draft.items.len() as u32;
             self.draft.items.push((item, Matrix::identity()));
@@ -143,7 +144,7 @@ impl<const D: usize> Resampled<'_, D> {
     }
 
     /// A new item at a share of the way along an edge.
-    fn between(&self, net: &Net<D>, (a, b): (u32, u32), piece: Option<Piece>, share: f64) -> Option<Item<D>> {
+    fn between(&self, net: &Net<D>, [a, b]: [u32; 2], piece: Option<Piece>, share: f64) -> Option<Item<D>> {
         let start = self.state.sample(a).position;
         let end = start + self.state.offset(a, b);
         let Some(piece) = piece else {
@@ -151,7 +152,7 @@ impl<const D: usize> Resampled<'_, D> {
             return Some(Item { source: self.base + node, position: start + (end - start) * share, frozen: None });
         };
         let source = self.nearest(piece.line, piece.from + (piece.to - piece.from) * share)?;
-        let part = shape::bent(self.state, net, (piece, [true; 2]), (start, end));
+        let part = shape::bent(self.state, net, piece, [true; 2], [start, end]);
         let path = arabesque_core::Path { cubics: part, closed: false };
         let measured = arabesque_core::Measured::new(path, 0.05 * net.spacing);
         let position: Vector<D> = measured.point(share * measured.length());

@@ -88,7 +88,7 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
         // Inside the stroke the pieces meet; its ends keep the distance that the exemplar's keep to what they touch.
         let snapped = [chain.is_closed || k > 0, chain.is_closed || k + 1 < chain.pieces.len()];
         stretches.push(match piece {
-            Some(piece) => bent(state, net, (*piece, snapped), (here, there)),
+            Some(piece) => bent(state, net, *piece, snapped, [here, there]),
             None => vec![straight(here, there)],
         });
         here = there;
@@ -105,8 +105,9 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
 pub(crate) fn bent<const D: usize>(
     state: &State<'_, D>,
     net: &Net<D>,
-    (piece, snapped): (Piece, [bool; 2]),
-    (a, b): (Vector<D>, Vector<D>),
+    piece: Piece,
+    snapped: [bool; 2],
+    [a, b]: [Vector<D>; 2],
 ) -> Vec<Cubic<D>> {
     let path = net.skeleton.lines[piece.line].measured.part(piece.from, piece.to);
     if path.is_empty() {

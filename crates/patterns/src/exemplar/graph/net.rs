@@ -199,16 +199,16 @@ impl<const D: usize> Net<D> {
         for pair in line.stops.windows(2) {
             // Two lines between the same knots, and a line back to its knot, stay apart by a sample between.
             let least = if pair[0].1 == pair[1].1 { 3 } else { 1 + usize::from(self.are_joined(pair[0].1, pair[1].1)) };
-            self.stretch(line, (pair[0].0, pair[1].0), least, &mut along);
+            self.stretch(line, [pair[0].0, pair[1].0], least, &mut along);
         }
         match (line.stops.first(), line.stops.last()) {
             (Some(first), Some(last)) if measured.is_closed() => {
                 let least = [1, 3, 2][line.stops.len().min(3) % 3];
-                self.stretch(line, (last.0, first.0 + length), least, &mut along);
+                self.stretch(line, [last.0, first.0 + length], least, &mut along);
             }
             (None, _) => {
                 self.sample(line, 0.0, &mut along);
-                self.stretch(line, (0.0, length), 3, &mut along);
+                self.stretch(line, [0.0, length], 3, &mut along);
             }
             _ => {}
         }
@@ -218,7 +218,7 @@ impl<const D: usize> Net<D> {
     }
 
     /// Even samples inside a stretch of a line, at least so many that they divide it into `least` parts.
-    fn stretch(&mut self, line: &Line<D>, (from, to): (f64, f64), least: usize, along: &mut Vec<(f64, u32)>) {
+    fn stretch(&mut self, line: &Line<D>, [from, to]: [f64; 2], least: usize, along: &mut Vec<(f64, u32)>) {
         let n = (((to - from) / self.spacing).round() as usize).max(least);
         for k in 1..n {
             self.sample(line, line.measured.wrap(from + (to - from) * k as f64 / n as f64), along);
@@ -238,10 +238,10 @@ impl<const D: usize> Net<D> {
     fn connect(&mut self, line: &Line<D>, number: u32, along: &[(f64, u32)]) {
         let (measured, length) = (&line.measured, line.measured.length());
         for pair in along.windows(2) {
-            self.edge(measured, Piece { line: number, from: pair[0].0, to: pair[1].0 }, (pair[0].1, pair[1].1));
+            self.edge(measured, Piece { line: number, from: pair[0].0, to: pair[1].0 }, [pair[0].1, pair[1].1]);
         }
         if let (true, Some(first), Some(last)) = (measured.is_closed(), along.first(), along.last()) {
-            self.edge(measured, Piece { line: number, from: last.0, to: first.0 + length }, (last.1, first.1));
+            self.edge(measured, Piece { line: number, from: last.0, to: first.0 + length }, [last.1, first.1]);
         }
         for &(_, node) in along {
             let node = &mut self.nodes[node];
@@ -256,7 +256,7 @@ impl<const D: usize> Net<D> {
         }
     }
 
-    fn edge(&mut self, measured: &Measured<D>, piece: Piece, (a, b): (u32, u32)) {
+    fn edge(&mut self, measured: &Measured<D>, piece: Piece, [a, b]: [u32; 2]) {
         let out = tangent(measured, piece.from, 1.0, 0.3 * (piece.to - piece.from));
         let back = tangent(measured, piece.to, -1.0, 0.3 * (piece.to - piece.from));
         self.nodes[a].arms.push(Arm { to: b, piece, tangent: out });

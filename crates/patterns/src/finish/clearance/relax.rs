@@ -76,7 +76,7 @@ impl Repair<'_> {
         let Some((common, offset)) = self.arrangement.overlap_region(a, b) else {
             return [None, None];
         };
-        let (area, allowed) = (common.area(), self.allowed_area((i, j), a, b));
+        let (area, allowed) = (common.area(), self.allowed_area([i, j], a, b));
         if area <= allowed {
             return [None, None];
         }

@@ -131,7 +131,7 @@ impl<'a> Repair<'a> {
     }
 
     /// Common area that bodies `i` and `j` may have, as `a` and `b`.
-    pub(crate) fn allowed_area(&self, (i, j): (usize, usize), a: &PlacedFigure, b: &PlacedFigure) -> f64 {
+    pub(crate) fn allowed_area(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> f64 {
         if self.surplus.contains(&(i.min(j), i.max(j))) {
             return NEGLIGIBLE * a.area.min(b.area);
         }
@@ -139,11 +139,11 @@ impl<'a> Repair<'a> {
     }
 
     /// Whether bodies `i` and `j`, as `a` and `b`, overlap too much.
-    fn conflict(&self, (i, j): (usize, usize), a: &PlacedFigure, b: &PlacedFigure) -> bool {
+    fn conflict(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> bool {
         if a.fixed && b.fixed {
             return false;
         }
-        self.arrangement.overlap_area(a, b, i == j) > self.allowed_area((i, j), a, b)
+        self.arrangement.overlap_area(a, b, i == j) > self.allowed_area([i, j], a, b)
     }
 
     /// Violations of body `i` with the partners that `counts` lets through, ascending.
@@ -155,7 +155,7 @@ impl<'a> Repair<'a> {
         let excess = |j: usize| {
             let other = &self.arrangement.bodies[j];
             let area = if body.fixed && other.fixed { 0.0 } else { self.arrangement.overlap_area(body, other, i == j) };
-            (i.min(j), i.max(j), area - self.allowed_area((i, j), body, other))
+            (i.min(j), i.max(j), area - self.allowed_area([i, j], body, other))
         };
         let others = self.arrangement.neighbours(i, self.slack).into_iter().filter(|&j| self.alive[j] && counts(j));
         others.chain([i]).map(excess).filter(|v| v.2 > 0.0).collect()
@@ -164,20 +164,20 @@ impl<'a> Repair<'a> {
     /// Whether body `i`, changed to `candidate`, breaks no rule. `neighbours` are those of body `i`.
     fn is_clean(&self, i: usize, candidate: &PlacedFigure, neighbours: &[usize]) -> bool {
         self.admits(candidate)
-            && !self.conflict((i, i), candidate, candidate)
-            && neighbours.iter().all(|&j| !self.alive[j] || !self.blocks((i, j), candidate))
+            && !self.conflict([i, i], candidate, candidate)
+            && neighbours.iter().all(|&j| !self.alive[j] || !self.blocks([i, j], candidate))
     }
 
     /// Whether body `j` is in the way of `candidate` for body `i`: where nothing may overlap, a touch is enough.
-    fn blocks(&self, (i, j): (usize, usize), candidate: &PlacedFigure) -> bool {
+    fn blocks(&self, [i, j]: [usize; 2], candidate: &PlacedFigure) -> bool {
         let other = &self.arrangement.bodies[j];
-        if self.must_be_apart((i, j), candidate, other) {
+        if self.must_be_apart([i, j], candidate, other) {
             return self.arrangement.meet(candidate, other);
         }
-        self.conflict((i, j), candidate, other)
+        self.conflict([i, j], candidate, other)
     }
 
-    fn must_be_apart(&self, (i, j): (usize, usize), a: &PlacedFigure, b: &PlacedFigure) -> bool {
+    fn must_be_apart(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> bool {
         self.limits.must_be_apart(a, b) || self.surplus.contains(&(i.min(j), i.max(j)))
     }
 
@@ -223,7 +223,7 @@ impl<'a> Repair<'a> {
     fn is_violation(&self, i: usize, j: usize) -> bool {
         self.alive[i]
             && self.alive[j]
-            && self.conflict((i, j), &self.arrangement.bodies[i], &self.arrangement.bodies[j])
+            && self.conflict([i, j], &self.arrangement.bodies[i], &self.arrangement.bodies[j])
     }
 
     /// Puts body `i` on the nearest free place within its reach.

@@ -4,6 +4,7 @@ pub(crate) mod coverage;
 pub(crate) mod grains;
 pub(crate) mod grow;
 pub(crate) mod noise;
+pub(crate) mod patch_site;
 
 use std::ops::ControlFlow;
 
@@ -14,7 +15,8 @@ use crate::{
     exemplar::library::Library,
     layout::{
         coverage::Coverage,
-        grow::{GrowParams, Grower, Watch},
+        grow::{Grower, Watch},
+        patch_site::GrowParams,
     },
     output::{
         canvas::Canvas,

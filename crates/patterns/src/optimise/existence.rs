@@ -3,8 +3,7 @@
 //! An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods miss an exemplar element, it is
 //! added. The samples of an element come and go together; frozen elements stay.
 
-use arabesque_core::{Matrix, Vector};
-
+use arabesque_core::{Domain, Matrix, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -133,6 +132,15 @@ fn announce_removed<const D: usize>(state: &mut State<'_, D>) {
     }
 }
 
+/// An element that a neighbourhood misses.
+struct MissedElement<const D: usize> {
+    element: u32,
+    class: u32,
+    place: Vector<D>,
+    /// How near another neighbourhood must miss one of its class to mean the same.
+    near: f64,
+}
+
 /// A place where elements are missed.
 struct Cluster<const D: usize> {
     class: u32,
@@ -140,6 +148,36 @@ struct Cluster<const D: usize> {
     /// Sum of offsets from `centre` of the candidates.
     shift: Vector<D>,
     votes: Vec<u32>,
+}
+
+/// Places where elements are missed, quick to look up.
+struct Clusters<'a, const D: usize> {
+    domain: &'a Domain<D>,
+    all: Numbered<Cluster<D>>,
+    buckets: Buckets<D>,
+}
+
+impl<const D: usize> Clusters<'_, D> {
+    /// Counts a vote for the nearest cluster of its class, or for a new one.
+    fn vote(&mut self, missed: &MissedElement<D>) {
+        let MissedElement { element, class, place, near } = *missed;
+        let mut best = (near, None);
+        self.buckets.near(place, near, |c| {
+            let cluster = &self.all[c];
+            let distance = self.domain.offset(cluster.centre, place).norm();
+            if cluster.class == class && distance < best.0 {
+                best = (distance, Some(c));
+            }
+        });
+        if let Some(c) = best.1 {
+            let cluster = &mut self.all[c];
+            cluster.shift += self.domain.offset(cluster.centre, place);
+            cluster.votes.push(element);
+        } else {
+            let number = self.all.push(Cluster { class, centre: place, shift: Vector::ZERO, votes: vec![element] });
+            self.buckets.insert(number, place);
+        }
+    }
 }
 
 fn add<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>) -> usize {
@@ -199,54 +237,43 @@ fn is_clear<const D: usize>(state: &State<'_, D>, class: u32, p: Vector<D>, plac
     // Samples stand for their elements here: the centres of long elements lie between them.
     state.within(p, scale * state.library.widest(class), |s, offset| {
         let live = state.item_of(s);
-        if live.count == 1 {
-            clear &= keeps(state.library.class[live.item.source], offset);
-        } else {
-            let offset = state.domain().offset(p, live.item.position);
-            clear &= keeps(state.library.class[live.item.source], offset);
-        }
+        let offset = if live.count == 1 { offset } else { state.domain().offset(p, live.item.position) };
+        clear &= keeps(state.library.class[live.item.source], offset);
     });
     clear
 }
 
-/// Candidates for new elements, grouped by class and place.
+/// Elements that are missed, grouped by class and place.
 fn clusters<const D: usize>(state: &State<'_, D>) -> Numbered<Cluster<D>> {
-    let mut clusters: Numbered<Cluster<D>> = Numbered::new();
     let reach = state.library.spacing * state.extent.largest_spacing_scale;
-    let mut buckets = Buckets::new(state.domain(), state.extent.margin, reach);
+    let buckets = Buckets::new(state.domain(), state.extent.margin, reach);
+    let mut clusters = Clusters { domain: state.domain(), all: Numbered::new(), buckets };
     for &s in state.living() {
-        let sample = state.sample(s);
-        let Some(matched) = &sample.matched else { continue };
-        let frame = state.request.fields.frame(sample.position);
-        let origin = state.level.position[matched.input];
-        for &i in matched.missing.iter().filter(|&&i| state.level.part[i] == 0) {
-            let element = state.level.element[i];
-            let place = sample.position + frame.to_output(state.library.centre[element] - origin);
-            let place = state.domain().wrap(place);
-            let class = state.library.class[element];
-            let near = 0.5 * state.library.outlier[class] * frame.spacing_scale;
-            let mut best = (near, None);
-            buckets.near(place, near, |c| {
-                let cluster = &clusters[c];
-                let distance = state.domain().offset(cluster.centre, place).norm();
-                if cluster.class == class && distance < best.0 {
-                    best = (distance, Some(c));
-                }
-            });
-            match best.1 {
-                Some(c) => {
-                    let cluster = &mut clusters[c];
-                    cluster.shift += state.request.domain.offset(cluster.centre, place);
-                    cluster.votes.push(element);
-                }
-                None => {
-                    buckets.insert(clusters.len() as u32, place);
-                    clusters.push(Cluster { class, centre: place, shift: Vector::ZERO, votes: vec![element] });
-                }
-            }
-        }
+        missed_by(state, s).for_each(|missed| clusters.vote(&missed));
     }
-    clusters
+    clusters.all
+}
+
+/// The elements that the neighbourhood of a sample misses, where they should be by its match.
+fn missed_by<'a, const D: usize>(
+    state: &'a State<'_, D>,
+    s: u32,
+) -> impl Iterator<Item = MissedElement<D>> + use<'a, D> {
+    let sample = state.sample(s);
+    let (level, library) = (state.level, state.library);
+    let frame = state.request.fields.frame(sample.position);
+    sample.matched.iter().flat_map(move |matched| {
+        let origin = level.position[matched.input];
+        // The samples of an element come together: the first speaks for all.
+        let firsts = matched.missing.iter().filter(|&&i| level.part[i] == 0);
+        firsts.map(move |&i| {
+            let element = level.element[i];
+            let place = sample.position + frame.to_output(library.centre[element] - origin);
+            let class = library.class[element];
+            let near = 0.5 * library.outlier[class] * frame.spacing_scale;
+            MissedElement { element, class, place: state.domain().wrap(place), near }
+        })
+    })
 }
 
 /// Number of neighbourhoods that reach `p`, their rim not counted in full: a sample misses what is near more surely than what is far.

@@ -63,7 +63,8 @@ impl<'a, const D: usize> Extent<'a, D> {
         request.fields.scale.range().1 * request.fields.density.range().0.powf(-1.0 / D as f64)
     }
 
-    /// The rule of the border for element `i`. Strokes reach over the border in any case, so that they can be cut there.
+    /// The rule of the border for element `i`. Strokes reach over the border in any case, so that they can be cut
+    /// there.
     fn border(&self, i: u32) -> Border {
         if i >= self.base { Border::Clip } else { self.request.border }
     }
@@ -89,7 +90,8 @@ impl<'a, const D: usize> Extent<'a, D> {
         (curve.style, curve.path.closed)
     }
 
-    /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in space.
+    /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in
+    /// space.
     pub(crate) fn outline(&self) -> Option<Outline<2>>
     where
         Vector<D>: Dimension<D>,
@@ -142,7 +144,7 @@ impl<'a, const D: usize> Extent<'a, D> {
         near
     }
 
-    /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check has the last word.
+    /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check is exact.
     pub(crate) fn is_blocked(&self, p: Vector<D>, reach: f64) -> bool {
         self.obstacles.as_ref().is_some_and(|o| o.signed_distance(p) > -reach)
     }
@@ -169,8 +171,8 @@ impl<'a, const D: usize> Extent<'a, D> {
         back * ((allowed - distance) / back.norm().max(f64::MIN_POSITIVE))
     }
 
-    /// Whether a finished element shows in the domain at all, or for [`Border::Cross`] has its centre in it. Elements that should lie
-    /// wholly inside are the business of the clearance check; without an outline their centre decides.
+    /// Whether a finished element shows in the domain at all, or for [`Border::Cross`] has its centre in it. Elements
+    /// that should lie wholly inside are the business of the clearance check; without an outline their centre decides.
     pub(crate) fn may_show(&self, placement: &Placement<D>) -> bool {
         let element = &self.exemplar.elements[placement.source];
         let p = placement.transform.apply(element.centre);

@@ -12,8 +12,8 @@ mod sealed {
 
 /// The dimensions that patterns are made in, the plane and space, implemented for the vectors of both.
 ///
-/// The engine is written once for the two. Outlines of elements, things in the way and strokes that turn at the border have a meaning in
-/// the plane alone; what handles them asks here whether it is there.
+/// The engine is written once for the two. Outlines of elements, things in the way and strokes that turn at the border
+/// have a meaning in the plane alone; what handles them asks here whether it is there.
 pub trait Dimension<const D: usize>: sealed::Sealed {
     /// An exemplar of the plane.
     fn plane_exemplar(exemplar: &Exemplar<D>) -> Option<&Exemplar<2>>;

@@ -1,4 +1,4 @@
-//! What the user drew, in the words of the engine.
+//! What the user drew, as the engine sees it.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ use crate::{
     output::draft::{Draft, Frozen, Item, Items},
     toolbox::numbered::Numbered,
 };
-/// A frozen stroke that ends this near to the border of the domain goes on inside, as a share of the side of the exemplar.
+/// A frozen stroke that ends this near to the border of the domain goes on inside, as a share of the side of the
+/// exemplar.
 const NEAR_BORDER: f64 = 2e-3;
 
 /// Frozen elements and samples of frozen strokes.

@@ -67,10 +67,10 @@ where
     /// Analyses the exemplar.
     ///
     /// # Errors
-    /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`] when the exemplar
-    /// shows no curve and fewer than two elements that may be copied, for then nothing tells how far apart they belong, or when its
-    /// curves lie outside its frame; [`Error::Limit`] when its curves meet in too many places or
-    /// lie too densely.
+    /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`]
+    /// when the exemplar shows no curve and fewer than two elements that may be copied, for then nothing tells how far
+    /// apart they belong, or when its curves lie outside its frame; [`Error::Limit`] when its curves meet in too many
+    /// places or lie too densely.
     pub fn new(exemplar: &Exemplar<D>, params: &Params) -> Result<Self> {
         params.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
@@ -121,8 +121,8 @@ where
     /// Fills a domain.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too large;
-    /// [`Error::NoResult`] when nothing fits into the domain.
+    /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too
+    /// large; [`Error::NoResult`] when nothing fits into the domain.
     pub fn run(&self, request: &Request<D>, observer: &mut dyn Observer<D>) -> Result<Outcome<D>> {
         let (levels, mut warnings) = self.usable_levels(request);
         let iterations = if levels.is_empty() { 0 } else { self.params.iterations };
@@ -175,7 +175,10 @@ where
         let side = self.exemplar.view().side();
         if sampled.level.radius >= 0.5 * side {
             warnings.push(Warning::new(
-                format!("the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one", 2.0 * sampled.level.radius),
+                format!(
+                    "the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one",
+                    2.0 * sampled.level.radius
+                ),
                 "show more of the pattern, or set a smaller radius or spacing",
             ));
         }
@@ -192,7 +195,8 @@ where
         if covered > CROWDED {
             warnings.push(Warning::new(
                 format!(
-                    "strokes as wide as or wider than their spacing: they cover {:.0} % of the exemplar and run into one another",
+                    "strokes as wide as or wider than their spacing: they cover {:.0} % of the exemplar and run into one \
+                     another",
                     100.0 * covered
                 ),
                 "use thinner strokes; lines closer than their width are taken to touch",

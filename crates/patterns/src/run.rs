@@ -37,8 +37,8 @@ use crate::{
 /// Share of the progress that the first layout counts for.
 const LAYOUT_SHARE: f64 = 0.2;
 
-/// From white noise, elements are removed down to this share of their number at first: what is wrong everywhere is better thinned
-/// out and grown again.
+/// From white noise, elements are removed down to this share of their number at first: what is wrong everywhere is
+/// better thinned out and grown again.
 const NOISE_FLOOR: f64 = 0.3;
 
 /// Elements are never removed below this share of their number at the end, and not at all below it after patch copy.
@@ -64,7 +64,7 @@ pub(crate) struct Run<'a, const D: usize> {
     pub(crate) request: &'a Request<D>,
     /// The levels that are used, coarsest first.
     pub(crate) contexts: Vec<LevelContext<'a, D>>,
-    /// Iterations a level.
+    /// Iterations per level.
     pub(crate) iterations: usize,
 }
 
@@ -108,7 +108,8 @@ where
         (self.result(&done), flow)
     }
 
-    /// A layout of the finest level, as the coarsest one sees it: patches agree best where they are sampled most densely.
+    /// A layout of the finest level, as the coarsest one sees it: patches agree best where they are sampled most
+    /// densely.
     fn coarsened(&self, draft: &Draft<D>) -> Draft<D> {
         let (Some(finest), Some(coarsest)) = (self.contexts.last(), self.contexts.first()) else {
             return draft.clone();
@@ -244,7 +245,8 @@ where
         (self.finish(k, state, flow), flow)
     }
 
-    /// Patches that agree with one another are as much order as there is to find; any other start may have ended in disorder.
+    /// Patches that agree with one another are as much order as there is to find; any other start may have ended in
+    /// disorder.
     fn may_regrow(&self) -> bool {
         let params = self.params;
         params.regrowth == Switch::On && params.initialisation != Initialisation::PatchCopy && self.iterations > 0
@@ -313,7 +315,8 @@ where
         moved || exchanged + joined > 0 || changes != Changes::default()
     }
 
-    /// What a level leaves: elements and, for the next level, denser samples along its strokes; after the last level, the strokes.
+    /// What a level leaves: elements and, for the next level, denser samples along its strokes; after the last level,
+    /// the strokes.
     fn finish(&self, k: usize, mut state: State<'_, D>, flow: ControlFlow<()>) -> Finished<D> {
         let base = state.level.base;
         let bends = placements::bends(&state);

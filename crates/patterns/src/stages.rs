@@ -1,5 +1,5 @@
-//! The stages of the engine one by one, each from the state in which a run meets it first: what the benchmarks time. No part of the
-//! interface, and subject to change without notice.
+//! The stages of the engine one by one, each from the state in which a run meets it first: what the benchmarks time. No
+//! part of the interface, and subject to change without notice.
 
 use std::ops::ControlFlow;
 

@@ -143,7 +143,8 @@ fn drawn(rebuilt: &Rebuilt) -> Vec<Path<2>> {
     rebuilt.strokes.iter().map(|s| s.path.clone()).collect()
 }
 
-/// Rebuilds and compares the shape: what is drawn is the exemplar's own line, so that only rounding and sampling of this test may differ.
+/// Rebuilds and compares the shape: what is drawn is the exemplar's own line, so that only rounding and sampling of
+/// this test may differ.
 fn same_shape(paths: &[Path<2>]) -> Rebuilt {
     let rebuilt = rebuilt(paths);
     let distance = hausdorff(&drawn(&rebuilt), paths);
@@ -236,9 +237,10 @@ fn a_circle_is_one_closed_stroke_without_corners() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Rows that wave at random, columns from some of them down (T junctions) or through all (crossings), and loops between: paths, junctions
-    /// and ends come back, within 0.02 sampling distances. Each edge is the very piece of line that was sampled; only the handles at a sample
-    /// are turned to their mean direction, which on a smooth line changes little.
+    /// Rows that wave at random, columns from some of them down (T junctions) or through all (crossings), and loops
+    /// between: paths, junctions and ends come back, within 0.02 sampling distances. Each edge is the very piece of
+    /// line that was sampled; only the handles at a sample are turned to their mean direction, which on a smooth line
+    /// changes little.
     #[test]
     fn random_graphs_come_back(
         waves in prop::collection::vec((-4.0..4.0_f64, -4.0..4.0_f64), 3),
@@ -247,7 +249,8 @@ proptest! {
     ) {
         let row = |k: usize, (a, b): (f64, f64)| {
             let y = 22.0 + 25.0 * k as f64;
-            Path { closed: false, cubics: vec![[(10.0, 0.0), (35.0, a), (65.0, b), (90.0, 0.0)].map(|(x, d)| Vector::xy(x, y + d))] }
+            let control = [(10.0, 0.0), (35.0, a), (65.0, b), (90.0, 0.0)];
+            Path { closed: false, cubics: vec![control.map(|(x, d)| Vector::xy(x, y + d))] }
         };
         let mut paths: Vec<_> = waves.iter().enumerate().map(|(k, w)| row(k, *w)).collect();
         let first = Measured::new(paths[0].clone(), 1e-4);

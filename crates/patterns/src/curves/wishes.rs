@@ -10,8 +10,8 @@ pub(crate) struct Wish<N> {
     pub(crate) b: N,
 }
 
-/// Offers the wishes to `join` in order of cost, and of numbers where costs are equal, as long as neither side has been joined before.
-/// There are `count` things. Returns how many were joined.
+/// Offers the wishes to `join` in order of cost, and of numbers where costs are equal, as long as neither side has been
+/// joined before. There are `count` things. Returns how many were joined.
 pub(crate) fn grant<N: Number + Copy + Ord>(
     mut wishes: Vec<Wish<N>>,
     count: usize,

@@ -1,6 +1,7 @@
 //! Kinds: classes divided by colour, where a class clearly comes in several colours.
 //!
-//! Chips of one name in four colours are four kinds of chip: each keeps its number, and only chips of a colour correspond.
+//! Chips of one name in four colours are four kinds of chip: each keeps its number, and only chips of a colour
+//! correspond.
 
 use arabesque_core::Exemplar;
 

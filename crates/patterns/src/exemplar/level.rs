@@ -24,8 +24,8 @@ pub(crate) struct Near<const D: usize> {
     pub(crate) weight: f32,
 }
 
-/// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample with an edge too few or too
-/// many an outlier; half of that lets it be matched and told to gain or lose the edge.
+/// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample
+/// with an edge too few or too many an outlier; half of that lets it be matched and told to gain or lose the edge.
 const SINGLE: f64 = 0.5;
 
 /// A run of neighbours with the same key.
@@ -177,8 +177,8 @@ impl<const D: usize> Level<D> {
         self.element[i].checked_sub(self.base)
     }
 
-    /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the same, and must not
-    /// wait for other threads.
+    /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the
+    /// same, and must not wait for other threads.
     pub(crate) fn alike(&self, i: u32, find: impl FnOnce() -> Vec<u32>) -> &[u32] {
         self.alike[i].get_or_init(find)
     }

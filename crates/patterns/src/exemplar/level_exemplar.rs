@@ -84,8 +84,8 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
     Ball { radius, slack }
 }
 
-/// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as
-/// across.
+/// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that
+/// neighbourhoods are as dense along as across.
 fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
     let side = exemplar.view().side();
     let gap = (exemplar.view().measure() / length(skeleton).max(f64::MIN_POSITIVE)).powf(1.0 / (D as f64 - 1.0));

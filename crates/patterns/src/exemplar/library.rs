@@ -23,7 +23,8 @@ struct ClassIndex<const D: usize> {
 pub(crate) struct Library<const D: usize> {
     /// Centre of each element.
     pub(crate) centre: Numbered<Vector<D>>,
-    /// Kind of each element: its class, divided by colour where the class comes in several. What this crate calls a class of the library.
+    /// Kind of each element: its class, divided by colour where the class comes in several. What this crate calls a
+    /// class of the library.
     pub(crate) class: Numbered<u32>,
     /// Attributes of each element.
     pub(crate) feature: Numbered<Feature>,
@@ -41,15 +42,16 @@ pub(crate) struct Library<const D: usize> {
     pub(crate) nearest: Numbered<f64>,
     /// Radius of the largest ball without a centre that the exemplar surely shows.
     pub(crate) emptiness: f64,
-    /// Smallest distance between the centres of two classes, row by row; as far as the elements are looked for when they never come close.
+    /// Smallest distance between the centres of two classes, row by row; as far as the elements are looked for when
+    /// they never come close.
     closest: Vec<f64>,
     by_class: Numbered<ClassIndex<D>>,
     all: GridIndex<D>,
 }
 
 impl<const D: usize> Library<D> {
-    /// `strokes`: the first pseudo class, that of curve samples, and the distance of these along their stroke, which is their outlier
-    /// distance [Tu 2020 §4.2.3].
+    /// `strokes`: the first pseudo class, that of curve samples, and the distance of these along their stroke, which is
+    /// their outlier distance [Tu 2020 §4.2.3].
     pub(crate) fn new(exemplar: &Exemplar<D>, strokes: Option<(usize, f64)>) -> Self {
         let centre: Numbered<_> = exemplar.elements.iter().map(|e| e.centre).collect();
         let (class, classes) = kinds(exemplar);
@@ -123,8 +125,8 @@ impl<const D: usize> Library<D> {
         self.all.within(p, radius, |i, offset| visit(i as u32, offset));
     }
 
-    /// The elements of `class` nearer to `p` than its outlier distance, position and attributes together: best first of at most two,
-    /// with the squared distance.
+    /// The elements of `class` nearer to `p` than its outlier distance, position and attributes together: best first of
+    /// at most two, with the squared distance.
     pub(crate) fn alike(&self, class: u32, p: Vector<D>, feature: &Feature) -> [Option<(u32, f32)>; 2] {
         let index = &self.by_class[class];
         let k = self.outlier[class];
@@ -163,7 +165,8 @@ impl<const D: usize> Library<D> {
     }
 }
 
-/// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that centre.
+/// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that
+/// centre.
 fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -> f64 {
     let (window, size) = (view.window, view.window.size());
     let step = if D == 2 { 0.2 * spacing } else { 0.34 * spacing };

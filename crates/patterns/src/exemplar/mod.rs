@@ -1,4 +1,5 @@
-//! What is known about the exemplar before any run: its elements, their samples at every level, and how curves are sampled.
+//! What is known about the exemplar before any run: its elements, their samples at every level, and how curves are
+//! sampled.
 //!
 //! Nothing here depends on a domain: it is worked out once and serves any number of runs.
 

@@ -1,8 +1,8 @@
 //! Samples of elements: which points stand for an element at each level [Ma 2011 §3.1, Tu 2020 §4.1.1].
 //!
-//! A round element is its centre. A long one gets two to five samples along its principal axis, so that their places carry its
-//! orientation and bend. Samples are laid out on the first element of a class and carried to the others by their pose, so that sample `j`
-//! means the same spot on every element of the class.
+//! A round element is its centre. A long one gets two to five samples along its principal axis, so that their places
+//! carry its orientation and bend. Samples are laid out on the first element of a class and carried to the others by
+//! their pose, so that sample `j` means the same spot on every element of the class.
 
 use arabesque_core::{Element, Exemplar, Outline, Similarity, Vector};
 
@@ -37,8 +37,8 @@ impl<const D: usize> ElementSamples<D> {
         Self { offsets }
     }
 
-    /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints of every
-    /// second sample and the centre.
+    /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints
+    /// of every second sample and the centre.
     pub(crate) fn at_detail(&self, e: usize, detail: f64) -> Vec<Vector<D>> {
         let full = &self.offsets[e];
         if full.len() == 1 || detail <= 0.0 {

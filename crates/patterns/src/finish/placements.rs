@@ -35,7 +35,8 @@ pub(crate) fn placements<const D: usize>(
 /// Control points of one item, see [`Placement::control`].
 pub(crate) type Bend<const D: usize> = Vec<(Vector<D>, Vector<D>)>;
 
-/// Control points of the living items of a state whose samples go their own ways, one a sample; `None` where elements stay rigid.
+/// Control points of the living items of a state whose samples go their own ways, one per sample; `None` where elements
+/// stay rigid.
 pub(crate) fn bends<const D: usize>(state: &State<'_, D>) -> Option<Vec<Bend<D>>> {
     (state.deform == Deform::AsRigidAsPossible).then(|| {
         state

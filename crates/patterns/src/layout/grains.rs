@@ -1,9 +1,11 @@
-//! Regrowth: an output in disorder keeps its largest grain, and everything else is laid out anew around it.
+//! Regrowth: an output in disorder keeps its largest coherent region, a grain as in a crystal, and everything else is
+//! laid out anew around it.
 //!
-//! Search and assignment only look as far as a neighbourhood. From a start in disorder, many parts of the pattern come into order at the
-//! same time, each a grain out of step with the next, and no local step undoes the borders between them: the limit that [Ma 2011 §6] and
-//! [Tu 2020 §6] both name. What undoes them in a crystal is growth from one nucleus. So where a level ends in small grains, the best of
-//! them stays and the layout grows on from it. Frozen samples are such a nucleus already; then no grain is kept.
+//! Search and assignment only look as far as a neighbourhood. From a start in disorder, many parts of the pattern come
+//! into order at the same time, each a grain out of step with the next, and no local step undoes the borders between
+//! them: the limit that [Ma 2011 §6] and [Tu 2020 §6] both name. What undoes them in a crystal is growth from one
+//! nucleus. So where a level ends in small grains, the best of them stays and the layout grows on from it. Frozen
+//! samples are such a nucleus already; then no grain is kept.
 
 use crate::{
     output::{
@@ -37,7 +39,8 @@ pub(crate) fn nucleus<const D: usize>(state: &State<'_, D>) -> Option<Draft<D>> 
     Some(Draft { items: largest.map_or_else(Vec::new, |grain| whole_items(state, grain)), links: Vec::new() })
 }
 
-/// Samples in groups that are each one coherent copy of the exemplar: neighbours whose matches correspond to one another.
+/// Samples in groups that are each one coherent copy of the exemplar: neighbours whose matches correspond to one
+/// another.
 fn grains<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
     let in_order = |s: u32| state.sample(s).matched.as_ref().filter(|m| m.energy() < IN_ORDER);
     let mut seen = Numbered::filled(false, state.samples().len());

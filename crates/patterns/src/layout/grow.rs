@@ -1,11 +1,13 @@
 //! Patch copy: the first layout of the output [Tu 2020 §4.3.2].
 //!
-//! Sites cover the domain like tiles, nearest to the seed site first. At each site every exemplar patch is tried that puts one of its
-//! elements onto an element that is already there, so that the patch is in register with its surroundings. Its disagreement with them is
-//! the share of unmatched elements on both sides: output elements that the patch would not have there, and patch elements missing in the
-//! part that is already covered. The best patch fills what is still open.
+//! Sites cover the domain like tiles, nearest to the seed site first. At each site every exemplar patch is tried that
+//! puts one of its elements onto an element that is already there, so that the patch is in register with its
+//! surroundings. Its disagreement with them is the share of unmatched elements on both sides: output elements that the
+//! patch would not have there, and patch elements missing in the part that is already covered. The best patch fills
+//! what is still open.
 //!
-//! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do it.
+//! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do
+//! it.
 
 use std::ops::ControlFlow;
 
@@ -99,7 +101,7 @@ impl<'a, const D: usize> Grower<'a, D> {
         let patch = self.source.params.patch * self.smallest_scale();
         let mut sites = Numbered::from(site_order(coverage, start, patch));
         if !kept.is_empty() {
-            // Ring by ring around what is kept, so that a gap in it closes from all sides.
+            // Ring by ring around what is frozen, so that a gap in it closes from all sides.
             let far = |site: &Vector<D>| {
                 let squares = kept.iter().map(|p| self.request.domain.offset(*site, *p).norm2());
                 (squares.fold(f64::INFINITY, f64::min).sqrt() / patch) as u32

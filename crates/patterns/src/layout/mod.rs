@@ -35,7 +35,8 @@ const CELL: f64 = 0.3;
 /// A hole is laid out anew when its radius exceeds this share of the largest one in the exemplar.
 const HOLE: f64 = 0.9;
 
-/// The same where there are strokes: the meshes of a net are all about as large as the largest one, and are to stay empty.
+/// The same where there are strokes: the meshes of a net are all about as large as the largest one, and are to stay
+/// empty.
 const HOLE_STROKES: f64 = 1.0;
 
 /// Items that a patch is registered on, where it is to join what is there.

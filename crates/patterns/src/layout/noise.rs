@@ -22,7 +22,8 @@ pub(crate) fn scatter<const D: usize>(
     };
     let mut random = Stream::new(request.seed, Stage::Initialise, u64::MAX);
     let copyable: Vec<u32> = (0..library.len() as u32).filter(|&e| library.copyable[e]).collect();
-    // Rejection keeps the density right under fields: a place is kept with the probability that its local density gives it.
+    // Rejection keeps the density right under fields: a place is kept with the probability that its local density gives
+    // it.
     let tightest = extent.smallest_spacing_scale;
     let tries = bounds.measure() / (library.spacing * tightest).powi(D as i32);
     for _ in 0..tries as usize {

@@ -1,8 +1,10 @@
-//! A site of the layout with what is around it: which exemplar patch agrees best with that, and what the patch adds [Tu 2020 §4.3.2].
+//! A site of the layout with what is around it: which exemplar patch agrees best with that, and what the patch adds [Tu
+//! 2020 §4.3.2].
 //!
-//! The paper copies a patch from a random place and lets the optimisation mend the seams. Here every patch that puts one of its elements
-//! onto one that is there already is tried: the seams are where disorder starts, and iterations that see no farther than a neighbourhood
-//! cannot undo a part that is out of step with the next.
+//! [Ma 2011 §4.1] copies patches at random, [Tu 2020 §4.3.2] those that are most similar to what is there where they
+//! overlap. Beyond that, a patch is only tried where it puts one of its elements onto one that is there, so that both are in step:
+//! disorder starts at the seams, and iterations that see no farther than a neighbourhood do not bring two parts into
+//! step again.
 
 use arabesque_core::{Frame, Stream, Vector};
 
@@ -120,7 +122,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         centres
     }
 
-    /// What the patches are registered on: the nearest elements; for strokes also the nearest of the rarest kind, which tell most.
+    /// What the patches are registered on: the nearest elements; for strokes also the nearest of the rarest kind, which
+    /// tell most.
     fn anchors(&self, count: usize) -> Vec<Around<D>> {
         let library = self.source.library;
         let mut anchors: Vec<_> = self.around.iter().take(count).copied().collect();
@@ -234,8 +237,9 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         found
     }
 
-    /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on something, and into a
-    /// covered cell at the seam, where registration may have moved it across, only if there is a gap of its own size.
+    /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on
+    /// something, and into a covered cell at the seam, where registration may have moved it across, only if there is a
+    /// gap of its own size.
     fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
         let library = self.source.library;
         let class = library.class[i];

@@ -1,19 +1,20 @@
 //! Pairing of the samples of two neighbourhoods at the least total cost.
 //!
-//! Shortest augmenting paths with the start of [Jonker 1987 §4]: rows take their cheapest column, rows that lost bid for another
-//! one (augmenting row reduction), and only what is left is settled by shortest paths. Column prices start at zero and only fall
-//! on columns that are taken, so that the start also holds for more columns than rows.
+//! Shortest augmenting paths with the start of [Jonker 1987 §4]: rows take their cheapest column, rows that lost bid
+//! for another one (augmenting row reduction), and only what is left is settled by shortest paths. Column prices start
+//! at zero and only fall on columns that are taken, so that the start also holds for more columns than rows.
 //!
-//! Each row may stay alone at a cost of its own, the outlier cost [Tu 2020 §4.2.3]. That is a column which no other row can use:
-//! a row that once prefers it never leaves it, so these columns need neither price nor storage. A pair that costs as much as
-//! staying alone cannot be part of a better pairing and is dropped on entry; what remains is a short list a row.
+//! Each row may stay alone at a cost of its own, the outlier cost [Tu 2020 §4.2.3]. That is a column which no other row
+//! can use: a row that once prefers it never leaves it, so these columns need neither price nor storage. A pair that
+//! costs as much as staying alone cannot be part of a better pairing and is dropped on entry; what remains is a short
+//! list per row.
 //!
 //! All buffers are kept between calls.
 
 use crate::toolbox::numbered::Numbered;
 
-/// A number or none, in four bytes: `Option<u32>` takes eight, and these lists are filled and read for every pairing of two
-/// neighbourhoods, the innermost loop of the search.
+/// A number or none, in four bytes: `Option<u32>` takes eight, and these lists are filled and read for every pairing of
+/// two neighbourhoods, the innermost loop of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct MaybeNumber(u32);
 
@@ -140,7 +141,8 @@ impl Assignment {
     }
 
     /// Starts a problem whose pairs come one by one: for each row a [`Assignment::begin_row`], any number of
-    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`] or [`Assignment::settle_greedily`].
+    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`] or
+    /// [`Assignment::settle_greedily`].
     pub(crate) fn begin(&mut self, columns: usize) {
         self.columns = columns;
         self.pairs.clear();
@@ -157,7 +159,7 @@ impl Assignment {
         self.gate = outlier;
     }
 
-    /// Offers a partner to the open row; each column at most once a row.
+    /// Offers a partner to the open row; each column at most once per row.
     #[inline]
     pub(crate) fn pair(&mut self, column: u32, cost: f32) {
         if cost < self.gate {
@@ -165,7 +167,8 @@ impl Assignment {
         }
     }
 
-    /// Closes the open row. Returns a lower bound of what [`Assignment::settle`] will return, from the rows entered so far.
+    /// Closes the open row. Returns a lower bound of what [`Assignment::settle`] will return, from the rows entered so
+    /// far.
     pub(crate) fn end_row(&mut self) -> f32 {
         let start = self.starts.last().map_or(0, |&s| s as usize);
         let (mut best, mut slot) = (self.gate, MaybeNumber::NONE);
@@ -180,7 +183,8 @@ impl Assignment {
         self.bound
     }
 
-    /// Solves the problem that was entered. Returns the least total cost: infinite when a row that must have a partner gets none.
+    /// Solves the problem that was entered. Returns the least total cost: infinite when a row that must have a partner
+    /// gets none.
     pub(crate) fn settle(&mut self) -> f32 {
         self.reset();
         for row in 0..self.outlier.len() as u32 {
@@ -329,8 +333,8 @@ impl Assignment {
         Bid::Displaced(other)
     }
 
-    /// Places `start` by a shortest augmenting path: along it rows change to other columns, and at its end a column is taken that
-    /// was free or a row becomes an outlier.
+    /// Places `start` by a shortest augmenting path: along it rows change to other columns, and at its end a column is
+    /// taken that was free or a row becomes an outlier.
     fn augment(&mut self, start: u32) {
         let (mut row, mut shift) = (start, 0.0);
         let (end, length) = loop {

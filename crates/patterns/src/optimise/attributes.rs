@@ -7,7 +7,8 @@ use crate::{output::state::State, toolbox::numbered::Numbered};
 /// A source is only exchanged for one that suits the votes better by this factor: variation that fits stays.
 const RELUCTANCE: f32 = 0.7;
 
-/// Gives every living item the source with the smallest sum of attribute distances to all votes. Returns how many changed.
+/// Gives every living item the source with the smallest sum of attribute distances to all votes. Returns how many
+/// changed.
 pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> usize {
     let votes = votes(state);
     let better = |(i, votes): (usize, &Vec<u32>)| better_source(state, i, votes).map(|source| (i as u32, source));

@@ -1,7 +1,8 @@
 //! Existence assignment: which elements should be there [Tu 2020 §4.3.4, appendix A].
 //!
-//! An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods miss an exemplar element, it is
-//! added. The samples of an element come and go together; frozen elements stay.
+//! Search and the other assignments move what is there; only votes on existence repair that there is too much or too
+//! little. An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods
+//! miss an exemplar element, it is added. The samples of an element come and go together; frozen elements stay.
 
 use arabesque_core::{Domain, Matrix, Vector};
 use rayon::prelude::*;
@@ -36,8 +37,9 @@ pub(crate) struct Changes {
     pub(crate) removed: usize,
 }
 
-/// Adds and removes elements by the votes of the last search. `targets[c]` is the number of elements of class `c` that the output should have:
-/// votes alone drift, since a poor neighbourhood loses elements before it can gain any. Removal stops at the share `floor` of the target.
+/// Adds and removes elements by the votes of the last search. `targets[c]` is the number of elements of class `c` that
+/// the output should have: votes alone drift, since a poor neighbourhood loses elements before it can gain any. Removal
+/// stops at the share `floor` of the target.
 pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>, floor: f64) -> Changes {
     let removed = remove(state, targets, floor);
     let added = add(state, targets);
@@ -217,7 +219,8 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>) -> usi
     added
 }
 
-/// Whether a new curve sample at `p` would keep the distance that its source keeps to whatever is nearest; elements have their classes for that.
+/// Whether a new curve sample at `p` would keep the distance that its source keeps to whatever is nearest; elements
+/// have their classes for that.
 fn has_own_room<const D: usize>(state: &State<'_, D>, source: u32, p: Vector<D>, placed: &[(Vector<D>, u32)]) -> bool {
     if source < state.level.base {
         return true;
@@ -243,7 +246,8 @@ fn is_clear<const D: usize>(state: &State<'_, D>, class: u32, p: Vector<D>, plac
     clear
 }
 
-/// Elements that are missed, grouped by class and place.
+/// Elements that are missed, grouped by class and place [Tu 2020 appendix A]: each joins the nearest group, or begins
+/// one. How many of the neighbourhoods around a group want an element there is its confidence.
 fn clusters<const D: usize>(state: &State<'_, D>) -> Numbered<Cluster<D>> {
     let reach = state.library.spacing * state.extent.largest_spacing_scale;
     let buckets = Buckets::new(state.domain(), state.extent.margin, reach);
@@ -276,7 +280,8 @@ fn missed_by<'a, const D: usize>(
     })
 }
 
-/// Number of neighbourhoods that reach `p`, their rim not counted in full: a sample misses what is near more surely than what is far.
+/// Number of neighbourhoods that reach `p`, their rim not counted in full: a sample misses what is near more surely
+/// than what is far.
 fn covering<const D: usize>(state: &State<'_, D>, p: Vector<D>) -> f64 {
     let radius = state.level.radius * state.request.fields.frame(p).spacing_scale;
     let mut n = 0.0;

@@ -1,9 +1,10 @@
 //! How alike two neighbourhoods are, and which samples correspond [Tu 2020 §4.2].
 //!
-//! The neighbourhood of an output sample is laid over the one of an exemplar sample, centres together, in the local frame. Pairs cost their
-//! squared distance in place and attributes. Robust matching assigns at the least total cost and lets a sample stay alone at the squared
-//! outlier distance; beyond the paper, exemplar samples inside the radius that find no partner cost the same, so that holes count as much
-//! as surplus elements. Hard matching pairs nearest first and charges nothing for what is missing [Ma 2011 §3.2].
+//! The neighbourhood of an output sample is laid over the one of an exemplar sample, centres together, in the local
+//! frame. Pairs cost their squared distance in place and attributes. Robust matching assigns at the least total cost
+//! and lets a sample stay alone at the squared outlier distance; beyond the paper, exemplar samples inside the radius
+//! that find no partner cost the same, so that holes count as much as surplus elements. Hard matching pairs nearest
+//! first and charges nothing for what is missing [Ma 2011 §3.2].
 
 use arabesque_core::Vector;
 
@@ -34,8 +35,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) offset: Vector<D>,
     /// Weight by distance.
     pub(crate) weight: f32,
-    /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put them, and their neighbours
-    /// along the stroke serve as well.
+    /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put
+    /// them, and their neighbours along the stroke serve as well.
     pub(crate) frozen: bool,
     /// Its edges, in exemplar directions and units.
     pub(crate) star: Star<D>,
@@ -85,8 +86,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
         Self { level, library, matching, prices, assignment: Assignment::default(), used: Numbered::new() }
     }
 
-    /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
-    /// `wanted(p)` tells whether something that lies at offset `p` could be in the output at all.
+    /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed
+    /// `limit`. `wanted(p)` tells whether something that lies at offset `p` could be in the output at all.
     pub(crate) fn cost(
         &mut self,
         around: &Surroundings<D>,
@@ -106,7 +107,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
         cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted)
     }
 
-    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
+    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an
+    /// element.
     fn difference(&self, source: u32, star: &Star<D>, i: u32) -> f32 {
         let element = self.level.element[i];
         if element >= self.level.base {
@@ -148,7 +150,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
         self.assignment.begin(near.len());
         let mut bound = 0.0;
         for row in &around.rows {
-            // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
+            // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last
+            // resort.
             let mut least = LEFT_OVER * level.outlier2[row.key];
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);

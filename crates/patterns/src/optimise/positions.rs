@@ -1,4 +1,5 @@
-//! Position assignment: where the matched neighbourhoods say that samples should be [Ma 2011 eqs 3, 4; Tu 2020 eqs 14, 15].
+//! Position assignment: where the matched neighbourhoods say that samples should be [Ma 2011 eqs 3, 4; Tu 2020 eqs 14,
+//! 15].
 
 use arabesque_core::Vector;
 use rayon::prelude::*;

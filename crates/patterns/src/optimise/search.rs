@@ -1,9 +1,9 @@
 //! Search: the exemplar neighbourhood most like that of each output sample.
 //!
-//! Candidates come from the matches of the neighbours: where neighbour `o` was matched, the exemplar sample that then corresponded to this
-//! sample is a candidate, and so are the ones most similar to it (k-coherence [Ma 2011 §4.2]) or random ones around it (PatchMatch
-//! [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the result does not depend on the number of threads).
-//! Samples around which nothing changed keep their match.
+//! Candidates come from the matches of the neighbours: where neighbour `o` was matched, the exemplar sample that then
+//! corresponded to this sample is a candidate, and so are the ones most similar to it (k-coherence [Ma 2011 §4.2]) or
+//! random ones around it (PatchMatch [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the
+//! result does not depend on the number of threads). Samples around which nothing changed keep their match.
 
 use arabesque_core::{Stage, Stream, Vector};
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ pub(crate) struct SearchParams {
     pub(crate) prices: Prices,
     /// Members of a similarity set.
     pub(crate) coherence: usize,
-    /// Random candidates a sample.
+    /// Random candidates per sample.
     pub(crate) random: usize,
     /// Rounds of propagation.
     pub(crate) rounds: usize,
@@ -88,8 +88,9 @@ fn most_similar<const D: usize>(
     best.into_iter().map(|(_, j)| j).collect()
 }
 
-/// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that do not overlap it much.
-/// 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where too little of it is seen to tell.
+/// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that
+/// do not overlap it much. 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where
+/// too little of it is seen to tell.
 pub(crate) fn dissimilarity<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
     const ASKED: usize = 96;
     let inner: Vec<u32> = (0..level.position.len() as u32)

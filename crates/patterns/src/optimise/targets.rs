@@ -7,8 +7,8 @@ use crate::{border::Extent, exemplar::library::Library, toolbox::numbered::Numbe
 /// Cells along the longest side of the grid that measures the output.
 const CELLS: f64 = 96.0;
 
-/// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output, each place counted by
-/// its local scale and density.
+/// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output,
+/// each place counted by its local scale and density.
 pub(crate) fn class_targets<const D: usize>(
     library: &Library<D>,
     request: &Request<D>,

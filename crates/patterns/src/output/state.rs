@@ -386,7 +386,8 @@ impl<'a, const D: usize> State<'a, D> {
         self.links[b].retain(|&o| o != a);
     }
 
-    /// Replaces the edges of a sample, sorted; its neighbours are replaced by whoever calls. Returns whether they changed.
+    /// Replaces the edges of a sample, sorted; its neighbours are replaced by whoever calls. Returns whether they
+    /// changed.
     pub(crate) fn replace_links(&mut self, s: u32, links: Vec<u32>) -> bool {
         let is_new = links != self.links[s];
         if is_new {

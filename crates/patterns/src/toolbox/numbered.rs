@@ -1,7 +1,8 @@
 //! A list whose entries go by number.
 //!
-//! Elements, samples, nodes, lines and classes are numbers of 32 bits wherever they are stored, since there are many of them in the inner
-//! loops. This list is looked up by such numbers, so that the conversion to a place in memory stands here alone.
+//! Elements, samples, nodes, lines and classes are numbers of 32 bits wherever they are stored, since there are many of
+//! them in the inner loops. This list is looked up by such numbers, so that the conversion to a place in memory stands
+//! here alone.
 
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 

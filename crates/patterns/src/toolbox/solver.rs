@@ -19,7 +19,8 @@ pub(crate) struct Pull<const D: usize> {
     pub(crate) weight: f64,
 }
 
-/// The normal equations of a sum of predictions and pulls: symmetric positive definite when every unknown has a pull of its own.
+/// The normal equations of a sum of predictions and pulls: symmetric positive definite when every unknown has a pull of
+/// its own.
 ///
 /// Unknowns are displacements from a start, so that positions on a torus need no common origin.
 pub(crate) struct NormalEquations<const D: usize> {
@@ -31,7 +32,8 @@ pub(crate) struct NormalEquations<const D: usize> {
     fixed: Vec<bool>,
 }
 
-/// Unknowns handled as one piece of parallel work; sums are taken piece by piece, so that they do not depend on the number of threads.
+/// Unknowns handled as one piece of parallel work; sums are taken piece by piece, so that they do not depend on the
+/// number of threads.
 const PIECE: usize = 4096;
 
 /// Fewest rows worth a piece of parallel work of their own.
@@ -78,8 +80,8 @@ impl<const D: usize> NormalEquations<D> {
         (0..x.len()).into_par_iter().with_min_len(ROWS).map(one).collect()
     }
 
-    /// Solves by conjugate gradients with the diagonal as preconditioner, from zero, until the residual is `tolerance` of the start or after
-    /// `most` steps. Never raises the sum of squares above its value at zero.
+    /// Solves by conjugate gradients with the diagonal as preconditioner, from zero, until the residual is `tolerance`
+    /// of the start or after `most` steps. Never raises the sum of squares above its value at zero.
     pub(crate) fn solve(&self, tolerance: f64, most: usize) -> Vec<Vector<D>> {
         let n = self.right.len();
         let mut x = vec![Vector::ZERO; n];

@@ -8,8 +8,8 @@ const HALVINGS: usize = 40;
 /// Most places at which one path is looked at.
 const MAX_STEPS: f64 = 100_000.0;
 
-/// Arc lengths between which a path is inside; on a closed path the last stretch may end beyond its length. What is narrower than `step` may be
-/// overlooked.
+/// Arc lengths between which a path is inside; on a closed path the last stretch may end beyond its length. What is
+/// narrower than `step` may be overlooked.
 pub(crate) fn inside<const D: usize>(
     measured: &Measured<D>,
     step: f64,

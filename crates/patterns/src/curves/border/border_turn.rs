@@ -1,9 +1,9 @@
 //! Strokes that turn at the border.
 //!
-//! All strokes are cut where their ink would touch the border: along rings half a stroke width inside, their corners rounded. Where
-//! strokes of the exemplar branch or cross, each ring becomes a stroke of its own on which the others end. Elsewhere neighbours along the
-//! ring become one stroke, see [`super::join`]. A drawing of the exemplar's kind then has no end that it would not have by itself, and can be
-//! cut out or stitched along its border.
+//! All strokes are cut where their ink would touch the border: along rings half a stroke width inside, their corners
+//! rounded. Where strokes of the exemplar branch or cross, each ring becomes a stroke of its own on which the others
+//! end. Elsewhere neighbours along the ring become one stroke, see [`super::join`]. A drawing of the exemplar's kind
+//! then has no end that it would not have by itself, and can be cut out or stitched along its border.
 
 use arabesque_core::{Drawn, Measured, Outline, Path, Vector};
 

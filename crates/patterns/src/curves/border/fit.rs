@@ -8,7 +8,8 @@ const MIN_POINTS: usize = 2;
 /// Places at which a cubic is compared with the points.
 const LOOKS: usize = 32;
 
-/// Cubics along a run of points, within `tolerance` of it and without corners. `ends`: unit directions of travel at its first and last point.
+/// Cubics along a run of points, within `tolerance` of it and without corners. `ends`: unit directions of travel at its
+/// first and last point.
 pub(crate) fn fit(points: &[Vector<2>], ends: [Vector<2>; 2], tolerance: f64) -> Vec<Cubic<2>> {
     let (Some(&a), Some(&b)) = (points.first(), points.last()) else { return Vec::new() };
     if a == b && points.len() <= MIN_POINTS {

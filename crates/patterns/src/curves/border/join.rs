@@ -1,7 +1,9 @@
 //! Strokes that come back from the border as their neighbours.
 //!
-//! What the border leaves of a closed stroke is closed along it. Of the others, going round a ring, each end is joined to the next of its style, unless that closes a loop; of several places to begin at the one is
-//! taken that leaves the fewest ends and makes the shortest runs. Only neighbours are joined, so that no run crosses a stroke.
+//! What the border leaves of a closed stroke is closed along it. Of the others, going round a ring, each end is joined
+//! to the next of its style, unless that closes a loop; of several places to begin at the one is taken that leaves the
+//! fewest ends and makes the shortest runs. Only neighbours are joined, so that no run crosses a stroke. A loop would
+//! be a stroke that the exemplar has none of, cut off from all others.
 
 use arabesque_core::{Cubic, Drawn, Path};
 

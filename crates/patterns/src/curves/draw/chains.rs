@@ -177,7 +177,8 @@ fn unit<const D: usize>(v: Vector<D>) -> Vector<D> {
     v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
 }
 
-/// The exemplar line for an edge: of those voted for, the one whose ends lie best; else the one between the sources of its ends.
+/// The exemplar line for an edge: of those voted for, the one whose ends lie best; else the one between the sources of
+/// its ends.
 fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, [a, b]: [u32; 2]) -> Option<Piece> {
     let key = (a.min(b), a.max(b));
     let directed = |p: Piece| if a < b { p } else { p.reversed() };

@@ -12,7 +12,8 @@ use crate::{
     toolbox::numbered::Numbered,
 };
 
-/// The elements of `state` and samples along `chains` at the spacing of the `finer` net, whose first pseudo element is `base`.
+/// The elements of `state` and samples along `chains` at the spacing of the `finer` net, whose first pseudo element is
+/// `base`.
 pub(crate) fn resample<const D: usize>(
     state: &State<'_, D>,
     chains: &[Chain],

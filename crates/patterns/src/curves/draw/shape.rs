@@ -1,7 +1,7 @@
 //! The shape of a stroke: the exemplar's own lines, bent to the samples.
 //!
-//! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their mean direction. Where
-//! it has a corner, the corner stays.
+//! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their
+//! mean direction. Where it has a corner, the corner stays.
 
 use arabesque_core::{Cubic, Drawn, Path, Vector, straight};
 
@@ -100,8 +100,8 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
     (path, style(net, chain))
 }
 
-/// An exemplar piece moved, turned into the local frame and bent so that its nodes come to lie at `a` and `b`. Its start and its end are put
-/// exactly there where they are to be `snapped`.
+/// An exemplar piece moved, turned into the local frame and bent so that its nodes come to lie at `a` and `b`. Its
+/// start and its end are put exactly there where they are to be `snapped`.
 pub(crate) fn bent<const D: usize>(
     state: &State<'_, D>,
     net: &Net<D>,

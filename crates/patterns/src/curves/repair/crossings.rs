@@ -1,8 +1,8 @@
 //! Edges that cross, or leave a sample side by side, as those of the exemplar never do.
 //!
-//! Such edges come from neighbourhoods that were matched with parts of the exemplar a little out of step: each of them is right for
-//! itself. Of two that cross, one goes; of two side by side, the longer one becomes a continuation of the shorter one, which keeps the
-//! line it belongs to in one piece.
+//! Such edges come from neighbourhoods that were matched with parts of the exemplar a little out of step: each of them
+//! is right for itself. Of two that cross, one goes; of two side by side, the longer one becomes a continuation of the
+//! shorter one, which keeps the line it belongs to in one piece.
 
 use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 

@@ -1,8 +1,9 @@
 //! Clean-up: ends that the exemplar would not show are joined to what they just miss, or trimmed.
 //!
-//! Edge assignment [Tu 2020 §4.3.4] decides edge by edge, so that a few strokes always stop short of their neighbours; the paper
-//! leaves them as they are. What an end should look like is measured on the exemplar: [`Dangles`] says how long a stroke may hang
-//! free there, [`EdgeRules`] how its edges lie to each other, and the votes how many edges each sample should have. The order matters:
+//! Edge assignment [Tu 2020 §4.3.4] decides edge by edge, so that a few strokes always stop short of their neighbours:
+//! the dangling components that the paper names among its limits [Tu 2020 §5]. What an end should look like is measured
+//! on the exemplar: [`Dangles`] says how long a stroke may hang free there, [`EdgeRules`] how its edges lie to each
+//! other, and the votes how many edges each sample should have. The order matters:
 //!
 //! 1. crossings are undone and missing junctions put back, since both make ends that look false;
 //! 2. false ends are joined to what is near, a few times over, for a joint makes other ends false or right;

@@ -25,8 +25,8 @@ struct Gathering<const D: usize> {
 }
 
 impl<const D: usize> Repair<'_, D> {
-    /// Takes strokes over the border where their sources go on beyond it, so that they are cut there rather than end before it.
-    /// Returns how many.
+    /// Takes strokes over the border where their sources go on beyond it, so that they are cut there rather than end
+    /// before it. Returns how many.
     pub(crate) fn reach_border(&self, state: &mut State<'_, D>) -> usize {
         let is_inside = |s: u32| !state.is_frozen(s) && state.domain().contains(state.sample(s).position);
         let inside = state.living().iter().filter(|&&s| is_inside(s));
@@ -42,11 +42,11 @@ impl<const D: usize> Repair<'_, D> {
         new.len()
     }
 
-    /// Puts back samples that several strokes reach for: where the missing edges of three or more samples end at one place, or
-    /// two run into each other, and nothing is there. Returns how many.
+    /// Puts back samples that several strokes reach for: where the missing edges of three or more samples end at one
+    /// place, or two run into each other, and nothing is there. Returns how many.
     ///
-    /// Existence assignment [Tu 2020 §4.3.4] adds a sample when most neighbourhoods miss it; a junction is only missed by those few
-    /// that lie around it, and each of its strokes ends as if nothing were wanting.
+    /// Existence assignment [Tu 2020 §4.3.4] adds a sample when most neighbourhoods miss it; a junction is only missed
+    /// by those few that lie around it, and each of its strokes ends as if nothing were wanting.
     pub(crate) fn put_back_junctions(&self, state: &mut State<'_, D>) -> usize {
         let wanted = |arm: &OpenArm<D>| state.domain().contains(arm.place) && !state.extent.is_blocked(arm.place, 0.0);
         let living = state.living().iter();

@@ -32,7 +32,8 @@ pub(crate) struct Votes {
 }
 
 impl Votes {
-    /// Expected number of edges of a sample; `None` for those nobody voted on, and for those that are younger than the votes.
+    /// Expected number of edges of a sample; `None` for those nobody voted on, and for those that are younger than the
+    /// votes.
     pub(crate) fn degree(&self, s: u32) -> Option<f64> {
         self.degree.get(s as usize).copied().flatten()
     }

@@ -44,7 +44,8 @@ fn count_frozen<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &mut 
     }
 }
 
-/// Switches candidates on, in falling confidence, wherever that lowers the objective; those that are fixed stay as they are.
+/// Switches candidates on, in falling confidence, wherever that lowers the objective; those that are fixed stay as they
+/// are.
 fn switch_on(votes: &Votes, links: &mut Numbered<Vec<u32>>, is_fixed: &dyn Fn(u32, u32) -> bool) {
     for c in falling(votes) {
         let candidate = &votes.candidates[c];
@@ -68,8 +69,8 @@ fn falling(votes: &Votes) -> Vec<usize> {
     order
 }
 
-/// Change of the objective when an edge is switched on: its confidence, and at both ends the degree as it is less the degree expected
-/// [Tu 2020 eq. 22].
+/// Change of the objective when an edge is switched on: its confidence, and at both ends the degree as it is less the
+/// degree expected [Tu 2020 eq. 22].
 fn gain(confidence: f64, surplus: [Option<f64>; 2]) -> f64 {
     let degree: f64 = surplus.iter().map(|s| s.map_or(0.0, |s| 2.0 * s + 1.0)).sum();
     1.0 - 2.0 * confidence + degree
@@ -91,8 +92,8 @@ pub(crate) struct OpenArm<const D: usize> {
     pub(crate) node: u32,
 }
 
-/// Joins samples as their sources in the exemplar are: wherever one misses an edge and another one lies where that edge should end, and misses
-/// one as well.
+/// Joins samples as their sources in the exemplar are: wherever one misses an edge and another one lies where that edge
+/// should end, and misses one as well.
 pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
     let Some(net) = &state.level.net else { return };
     let open: Vec<OpenArm<D>> = state.living().par_iter().flat_map_iter(|&s| open_arms(state, net, s)).collect();
@@ -186,7 +187,8 @@ mod tests {
     }
 
     proptest! {
-        /// Where the degrees are those of the edges that most want, all choices of edges have none better than the greedy one.
+        /// Where the degrees are those of the edges that most want, all choices of edges have none better than the
+        /// greedy one.
         #[test]
         fn without_conflict_the_choice_is_the_best_of_all(
             wanted in prop::collection::vec((any::<bool>(), 0.0..0.45_f64), 10),
@@ -201,8 +203,8 @@ mod tests {
             prop_assert!((objective(&votes, greedy(&votes)) - best(&votes)).abs() < 1e-9);
         }
 
-        /// Where votes and degrees conflict, the greedy choice may miss the best of all. It lies between that and no edge at all, and no single
-        /// further edge would lower it.
+        /// Where votes and degrees conflict, the greedy choice may miss the best of all. It lies between that and no
+        /// edge at all, and no single further edge would lower it.
         #[test]
         fn with_conflicts_no_further_edge_would_help(
             confidence in prop::collection::vec(0.0..1.0_f64, 10),

@@ -77,7 +77,8 @@ fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>]) -> Vec<Vec
     result
 }
 
-/// For each entry the vote it is matched with: the largest sum of cosines, which is the smallest sum of angles for small ones.
+/// For each entry the vote it is matched with: the largest sum of cosines, which is the smallest sum of angles for
+/// small ones.
 fn partners<const D: usize>(entries: &[Vector<D>], votes: &[Vector<D>]) -> Vec<Option<usize>> {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::with_capacity(entries.len() * votes.len());
     for (e, entry) in entries.iter().enumerate() {

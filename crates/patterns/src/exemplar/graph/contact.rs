@@ -84,7 +84,8 @@ impl<const D: usize> Chords<D> {
     }
 }
 
-/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after [`MAX_CONTACTS`].
+/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after
+/// [`MAX_CONTACTS`].
 pub(crate) fn crossings<const D: usize>(lines: &Numbered<Line<D>>, side: f64, near: f64) -> Vec<Contact<D>> {
     let chords = Chords::new(lines, side / 100.0);
     let mut found = Vec::new();

@@ -13,8 +13,8 @@ const STEP: f64 = 0.25;
 /// Most points on all lines.
 const MAX_POINTS: f64 = 200_000.0;
 
-/// Share of the window that lies under strokes, as round bars of their width: 0 to 1. Strokes without that much ink are not looked at and
-/// count as nothing.
+/// Share of the window that lies under strokes, as round bars of their width: 0 to 1. Strokes without that much ink are
+/// not looked at and count as nothing.
 pub(crate) fn coverage<const D: usize>(skeleton: &Skeleton<D>, window: &Bounds<D>, least: f64) -> f64 {
     let ink = |width: f64| if D == 2 { width } else { 0.25 * std::f64::consts::PI * width * width };
     let total: f64 = skeleton.lines.iter().map(|l| ink(l.width) * l.measured.length()).sum();

@@ -73,8 +73,8 @@ impl<const D: usize> Star<D> {
         usize::from(self.len)
     }
 
-    /// Difference of two edge sets: matched edges by the vectors to their other ends, the others at `single2` each; nothing where the
-    /// first has no edges yet [Tu 2020 eq. 5].
+    /// Difference of two edge sets: matched edges by the vectors to their other ends, the others at `single2` each;
+    /// nothing where the first has no edges yet [Tu 2020 eq. 5].
     pub(crate) fn distance2(&self, other: &Self, single2: f32) -> f32 {
         if self.len == 0 {
             return 0.0;

@@ -1,4 +1,4 @@
-//! Curve samples in the clothes of elements, so that the engine can handle them.
+//! Pseudo elements: curve samples as elements of one sample each, so that the engine can handle them like any others.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::exemplar::graph::{
     skeleton::{Knot, Skeleton},
 };
 
-/// The exemplar of one level: its elements, then one pseudo element a curve sample.
+/// The exemplar of one level: its elements, then one pseudo element per curve sample.
 #[derive(Clone, Debug)]
 pub(crate) struct PseudoElements<const D: usize> {
     pub(crate) exemplar: Exemplar<D>,

@@ -1,7 +1,8 @@
-//! The lines of an exemplar and the places where they meet, end or turn sharply: what every level samples alike [Tu 2020 §4.1.1].
+//! The lines of an exemplar and the places where they meet, end or turn sharply: what every level samples alike [Tu
+//! 2020 §4.1.1].
 //!
-//! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the stroke is wide. Lines
-//! that run side by side do not meet, however close they are.
+//! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the
+//! stroke is wide. Lines that run side by side do not meet, however close they are.
 
 use arabesque_core::{Curve, Error, Measured, Path, Result, Vector, View};
 
@@ -77,14 +78,15 @@ impl<const D: usize> Skeleton<D> {
         }
     }
 
-    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first [`MAX_CONTACTS`] contacts
-    /// count.
+    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first
+    /// [`MAX_CONTACTS`] contacts count.
     pub(crate) fn of_lines(lines: Numbered<Line<D>>, side: f64) -> Self {
         let contacts = contacts(&lines, side);
         Self::joined(lines, &contacts, side)
     }
 
-    /// Whether lines meet so close to a place that what lies there is part of the junction; `side` is the size of the picture.
+    /// Whether lines meet so close to a place that what lies there is part of the junction; `side` is the size of the
+    /// picture.
     pub(crate) fn is_in_junction(&self, place: Vector<D>, side: f64) -> bool {
         let is_near = |p: Vector<D>| (p - place).norm() <= TOUCH_SHARE * side;
         self.knots.iter().any(|&(p, knot)| knot == Knot::Junction && is_near(p))

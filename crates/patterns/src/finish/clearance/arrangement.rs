@@ -93,7 +93,8 @@ impl<'a> Arrangement<'a> {
         arrangement
     }
 
-    /// Sorts the bodies by size, a power of two a layer: a query for small bodies then never widens for the sake of large ones.
+    /// Sorts the bodies by size, a power of two per layer: a query for small bodies then never widens for the sake of
+    /// large ones.
     fn build_layers(&mut self) {
         let mut by_size = BTreeMap::<i32, Vec<usize>>::new();
         for (i, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.radius > 0.0) {
@@ -121,7 +122,8 @@ impl<'a> Arrangement<'a> {
         self.origin[i]
     }
 
-    /// Calls `visit(j)` for every body of some layers that started within `reach` and its own layer's largest radius of the start of body `i`.
+    /// Calls `visit(j)` for every body of some layers that started within `reach` and its own layer's largest radius of
+    /// the start of body `i`.
     fn near(&self, i: usize, reach: f64, layers: std::ops::Range<usize>, mut visit: impl FnMut(usize)) {
         for layer in &self.layers[layers] {
             layer.grid.within(self.origin[i], reach + layer.largest, |slot, _| visit(layer.members[slot]));
@@ -171,7 +173,7 @@ impl<'a> Arrangement<'a> {
         if itself { 0.5 * sum } else { sum }
     }
 
-    /// Smallest distance between the inks of two bodies of an arrangement that is no torus.
+    /// Smallest distance between the inks of two bodies of an arrangement that is not a torus.
     pub(crate) fn gap(&self, i: usize, j: usize) -> f64 {
         let (a, b) = (&self.bodies[i], &self.bodies[j]);
         let place = a.place.inverse().after(&b.place);
@@ -186,7 +188,8 @@ impl<'a> Arrangement<'a> {
         })
     }
 
-    /// Common part of two bodies in arrangement coordinates around `a`, with the offset from `a` to `b`: the largest over all images.
+    /// Common part of two bodies in arrangement coordinates around `a`, with the offset from `a` to `b`: the largest
+    /// over all images.
     pub(crate) fn overlap_region(&self, a: &PlacedFigure, b: &PlacedFigure) -> Option<(Outline<2>, Vector<2>)> {
         let regions = self.images(a, b).filter_map(|offset| Some((self.overlap_at(a, b, offset)?, offset)));
         regions.max_by(|x, y| x.0.area().total_cmp(&y.0.area()))
@@ -199,7 +202,8 @@ impl<'a> Arrangement<'a> {
         Some(common.transformed(&back))
     }
 
-    /// The figure with more edges, the other one, and how that lies in the coordinates of the first; `b` has its centre `offset` from `a`'s.
+    /// The figure with more edges, the other one, and how that lies in the coordinates of the first; `b` has its centre
+    /// `offset` from `a`'s.
     fn arranged(&self, a: &PlacedFigure, b: &PlacedFigure, offset: Vector<2>) -> (&Figure, &Figure, Similarity<2>) {
         let (fa, fb) = (self.figure(a.figure), self.figure(b.figure));
         let b_place = shifted(b, a.centre + offset);

@@ -47,7 +47,8 @@ impl BorderCheck<'_> {
         }
     }
 
-    /// Whether the edge lies inside: its half length fits into the distance of its middle from the border, or both halves lie inside.
+    /// Whether the edge lies inside: its half length fits into the distance of its middle from the border, or both
+    /// halves lie inside.
     fn holds_edge(&self, a: Vector<2>, b: Vector<2>, finest: f64, slack: f64) -> bool {
         let (middle, half) = ((a + b) * 0.5, 0.5 * (b - a).norm());
         let depth = self.domain.signed_distance(middle) + slack;

@@ -39,7 +39,7 @@ struct Allowance {
 /// Outlines of the exemplar's elements, and how they lie to each other.
 #[derive(Clone, Debug)]
 pub(crate) struct ExemplarClearance {
-    /// One figure an element.
+    /// One figure per element.
     pub(crate) figures: Vec<Figure>,
     class: Vec<usize>,
     /// Elements that may be copied, by class, largest first.
@@ -134,8 +134,8 @@ impl ExemplarClearance {
         self.allowance(a, b).is_some_and(|allowance| allowance.share > LAYERED)
     }
 
-    /// Distance to leave between two bodies that are pushed apart, for elements of exemplar size: as close as the exemplar has
-    /// any, none for bodies that may overlap.
+    /// Distance to leave between two bodies that are pushed apart, for elements of exemplar size: as close as the
+    /// exemplar has any, none for bodies that may overlap.
     pub(crate) fn gap(&self, a: &PlacedFigure, b: &PlacedFigure) -> f64 {
         let widest = WIDEST_GAP * self.spacing;
         match self.allowance(a, b) {
@@ -154,8 +154,8 @@ impl ExemplarClearance {
         overlaps.iter().filter(counts).fold(0.0, |sum, o| sum + o.area)
     }
 
-    /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than in the
-    /// exemplar: pairs that are allowed one by one can still be too many.
+    /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than
+    /// in the exemplar: pairs that are allowed one by one can still be too many.
     pub(crate) fn surplus(&self, arrangement: &Arrangement, allowed: &[Overlap]) -> Vec<(usize, usize)> {
         let budget = self.ratio * ink(arrangement);
         let mut sum = self.unlayered_area(arrangement, allowed);

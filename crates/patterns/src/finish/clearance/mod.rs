@@ -1,8 +1,8 @@
-//! The last word on the output: no element overlaps another, or anything in the way, more than the exemplar shows, and none
-//! breaks the rule of the border.
+//! The last check of the output: no element overlaps another, or anything in the way, more than the exemplar shows, and
+//! none breaks the rule of the border.
 //!
-//! Checked on the real outlines. What is wrong is mended with the smallest change that works: a shift, then a smaller element of
-//! the same class, then removal. In space, and for points, there is nothing to check.
+//! Checked on the real outlines. What is wrong is mended with the smallest change that works: a shift, then a smaller
+//! element of the same class, then removal. In space, and for points, there is nothing to check.
 
 mod arrangement;
 mod border_check;
@@ -20,7 +20,7 @@ use crate::dimension::Dimension;
 use arrangement::Arrangement;
 pub(crate) use limits::ExemplarClearance;
 
-/// Share of the elements whose exchange or removal is nothing to speak of.
+/// Share of the elements whose exchange or removal goes without a warning.
 const NORMAL: f64 = 0.02;
 
 /// What a repair did.
@@ -81,7 +81,8 @@ where
 
 /// Common area of all pairs of elements as a share of the area of all elements; 0 for points.
 ///
-/// `placements` refer to the elements of `exemplar`; on a torus every element counts once, with the images of the others.
+/// `placements` refer to the elements of `exemplar`; on a torus every element counts once, with the images of the
+/// others.
 pub fn overlap_ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], domain: &Domain<2>) -> f64 {
     let Some(clearance) = ExemplarClearance::new(exemplar) else {
         return 0.0;

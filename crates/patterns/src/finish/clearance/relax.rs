@@ -24,7 +24,8 @@ const PROGRESS: f64 = 0.95;
 const DIRECTIONS: u32 = 8;
 
 impl Repair<'_> {
-    /// Pushes pairs apart, round by round, and keeps the state with the least excess. Returns the violations left in it.
+    /// Pushes pairs apart, round by round, and keeps the state with the least excess. Returns the violations left in
+    /// it.
     pub(crate) fn relax(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
         let (mut best, mut best_bodies) = (violations.clone(), Vec::<(usize, PlacedFigure)>::new());
         let mut original = BTreeMap::<usize, PlacedFigure>::new();
@@ -104,8 +105,8 @@ fn excess(violations: &[Violation]) -> f64 {
     violations.iter().map(|v| v.2).sum()
 }
 
-/// Shortest way that parts two bodies, from the second one's side: the width of the largest piece of their overlap across its
-/// narrowest direction. `offset` leads from the first to the second.
+/// Shortest way that parts two bodies, from the second one's side: the width of the largest piece of their overlap
+/// across its narrowest direction. `offset` leads from the first to the second.
 fn narrowest(common: &Outline<2>, offset: Vector<2>) -> Vector<2> {
     let piece = common.rings.iter().max_by(|a, b| ring_area(a).abs().total_cmp(&ring_area(b).abs()));
     let piece: &[Vector<2>] = piece.map_or(&[], |ring| ring);

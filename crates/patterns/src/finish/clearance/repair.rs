@@ -181,7 +181,8 @@ impl<'a> Repair<'a> {
         self.limits.must_be_apart(a, b) || self.surplus.contains(&(i.min(j), i.max(j)))
     }
 
-    /// Pushes apart what overlaps. Where far too much lies in one place that cannot succeed: there the most crowded leave first.
+    /// Pushes apart what overlaps. Where far too much lies in one place that cannot succeed: there the most crowded
+    /// leave first.
     fn make_room(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
         let violations = self.thin_out(violations, HOPELESS);
         let violations = self.relax(violations);
@@ -265,8 +266,8 @@ impl<'a> Repair<'a> {
         false
     }
 
-    /// Takes bodies out until none has a crowd of more than `most` around it: the most crowded first, of these the smallest.
-    /// Returns the violations that are left.
+    /// Takes bodies out until none has a crowd of more than `most` around it: the most crowded first, of these the
+    /// smallest. Returns the violations that are left.
     fn thin_out(&mut self, violations: Vec<Violation>, most: u64) -> Vec<Violation> {
         let mut violations: Vec<_> = violations.into_par_iter().filter(|v| self.is_violation(v.0, v.1)).collect();
         let mut partners = BTreeMap::<usize, Vec<usize>>::new();
@@ -295,7 +296,8 @@ impl<'a> Repair<'a> {
         violations
     }
 
-    /// Number of partners that are still there, in multiples of [`ONE`]; one that is smaller than body `i` counts by its size.
+    /// Number of partners that are still there, in multiples of [`ONE`]; one that is smaller than body `i` counts by
+    /// its size.
     fn crowd(&self, i: usize, partners: &[usize]) -> u64 {
         let own = self.arrangement.bodies[i].area.max(f64::MIN_POSITIVE);
         let weight = |&j: &usize| ((self.arrangement.bodies[j].area / own).min(1.0) * ONE as f64) as u64;

@@ -35,7 +35,7 @@ pub use error::{Error, Result};
 pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
-pub use index::{Buckets, GridIndex, Lattice};
+pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
 pub use limits::Limits;
 pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
 pub use random::{Stage, Stream};

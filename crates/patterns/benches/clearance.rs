@@ -1,4 +1,5 @@
-//! Time of the final clearance check, with and without something to mend. One thread, unless `RAYON_NUM_THREADS` says otherwise.
+//! Time of the final clearance check, with and without something to mend. One thread, unless `RAYON_NUM_THREADS` says
+//! otherwise.
 
 use arabesque_core::{
     Bounds, Class, Domain, Element, Exemplar, Matrix, Outline, Placement, Request, Role, Similarity, Stage, Stream,

@@ -1,17 +1,19 @@
 //! Where an element may be put, given the domain and what happens at its border.
 
-use std::{any::Any, sync::Arc};
+use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Outline, Placement, Region, Request,
-    ScalarField, Shape, Similarity, Vector,
+    Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Numbered, Outline, Placement, Region,
+    Request, ScalarField, Shape, Similarity, Vector,
 };
+
+use crate::dimension::Dimension;
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
     request: &'a Request<D>,
     exemplar: &'a Exemplar<D>,
-    radius: &'a [f64],
+    radius: &'a Numbered<f64>,
     base: u32,
     /// The ink that is in the way.
     obstacles: Option<Arc<dyn Region<D>>>,
@@ -27,13 +29,16 @@ pub(crate) struct Extent<'a, const D: usize> {
 
 impl<'a, const D: usize> Extent<'a, D> {
     /// `base`: first pseudo element, see [`crate::exemplar::level::Level::base`].
-    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a [f64], base: u32) -> Self {
+    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a Numbered<f64>, base: u32) -> Self
+    where
+        Vector<D>: Dimension<D>,
+    {
         let largest = |field: &ScalarField<D>| field.range().1;
         let scale = largest(&request.fields.scale);
         let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
         let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
         let smallest_spacing_scale = request.fields.scale.range().0 * dense;
-        let strokes = radius[base as usize..].iter().copied().fold(0.0, f64::max) * scale;
+        let strokes = radius.iter().skip(base as usize).copied().fold(0.0, f64::max) * scale;
         let margin = if request.border == Border::Clip { reach } else { strokes };
         Self {
             request,
@@ -48,12 +53,18 @@ impl<'a, const D: usize> Extent<'a, D> {
         }
     }
 
+    /// What is asked for.
+    pub(crate) fn request(&self) -> &'a Request<D> {
+        self.request
+    }
+
     /// Largest factor by which gaps are wider than in the exemplar.
     pub(crate) fn largest_spacing_scale(request: &Request<D>) -> f64 {
         request.fields.scale.range().1 * request.fields.density.range().0.powf(-1.0 / D as f64)
     }
 
-    /// The rule of the border for element `i`. Strokes reach over the border in any case, so that they can be cut there.
+    /// The rule of the border for element `i`. Strokes reach over the border in any case, so that they can be cut
+    /// there.
     fn border(&self, i: u32) -> Border {
         if i >= self.base { Border::Clip } else { self.request.border }
     }
@@ -79,9 +90,13 @@ impl<'a, const D: usize> Extent<'a, D> {
         (curve.style, curve.path.closed)
     }
 
-    /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in space.
-    pub(crate) fn outline(&self) -> Option<Outline<2>> {
-        let request = (self.request as &dyn Any).downcast_ref::<Request<2>>()?;
+    /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in
+    /// space.
+    pub(crate) fn outline(&self) -> Option<Outline<2>>
+    where
+        Vector<D>: Dimension<D>,
+    {
+        let request = Vector::plane_request(self.request)?;
         let whole = request.domain.outline()?;
         let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
         Some(whole.difference(&Outline::union(&rings, FillRule::NonZero)))
@@ -94,7 +109,7 @@ impl<'a, const D: usize> Extent<'a, D> {
 
     /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
     pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
-        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let reach = self.radius[i] * self.request.fields.scale.at(p);
         let distance = self.request.domain.signed_distance(p);
         if self.is_blocked(p, 0.7 * reach) {
             return false;
@@ -129,7 +144,7 @@ impl<'a, const D: usize> Extent<'a, D> {
         near
     }
 
-    /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check has the last word.
+    /// Whether an obstacle lies within `reach` of `p`: a rough test, the clearance check is exact.
     pub(crate) fn is_blocked(&self, p: Vector<D>, reach: f64) -> bool {
         self.obstacles.as_ref().is_some_and(|o| o.signed_distance(p) > -reach)
     }
@@ -142,7 +157,7 @@ impl<'a, const D: usize> Extent<'a, D> {
     /// The shortest way for element `i` at `p` to where its centre may lie; zero where it already does.
     pub(crate) fn way_back(&self, i: u32, p: Vector<D>) -> Vector<D> {
         let domain = &self.request.domain;
-        let reach = self.radius[i as usize] * self.request.fields.scale.at(p);
+        let reach = self.radius[i] * self.request.fields.scale.at(p);
         let allowed = match self.border(i) {
             Border::Cross | Border::Inside | Border::Turn => 0.0,
             Border::Clip if i >= self.base && self.is_known(p) => 0.0,
@@ -156,8 +171,8 @@ impl<'a, const D: usize> Extent<'a, D> {
         back * ((allowed - distance) / back.norm().max(f64::MIN_POSITIVE))
     }
 
-    /// Whether a finished element shows in the domain at all, or for [`Border::Cross`] has its centre in it. Elements that should lie
-    /// wholly inside are the business of the clearance check; without an outline their centre decides.
+    /// Whether a finished element shows in the domain at all, or for [`Border::Cross`] has its centre in it. Elements
+    /// that should lie wholly inside are the business of the clearance check; without an outline their centre decides.
     pub(crate) fn may_show(&self, placement: &Placement<D>) -> bool {
         let element = &self.exemplar.elements[placement.source];
         let p = placement.transform.apply(element.centre);
@@ -207,9 +222,11 @@ fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Option<GridIndex<D>
 }
 
 /// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
-fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>> {
-    let plane = (request as &dyn Any).downcast_ref::<Request<2>>()?;
+fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>>
+where
+    Vector<D>: Dimension<D>,
+{
+    let plane = Vector::plane_request(request)?;
     let rings: Vec<_> = plane.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-    let region: Arc<dyn Region<2>> = Arc::new(Shape::new(&rings, FillRule::NonZero)?);
-    (&region as &dyn Any).downcast_ref::<Arc<dyn Region<D>>>().cloned()
+    Vector::from_plane(Arc::new(Shape::new(&rings, FillRule::NonZero)?))
 }

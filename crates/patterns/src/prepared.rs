@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Warning, Watch};
+use arabesque_core::{
+    Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Warning, Watch,
+};
 
 use crate::{
     border::Extent,
+    dimension::Dimension,
     exemplar::{
         graph::{crowding, skeleton::Skeleton},
-        setting::{Setting, expected_nodes, settings, shortest},
+        level_exemplar::{LevelExemplar, expected_nodes, level_exemplars, shortest},
     },
     finish::{
         clearance::{self, ExemplarClearance},
@@ -16,56 +19,59 @@ use crate::{
     },
     optimise::{search, targets::class_targets},
     params::Params,
-    run::{Run, Stand},
+    run::{LevelContext, Run},
 };
 
-/// Curves with more [`search::strangeness`] than this have nothing to repeat.
-const STRANGE: f64 = 0.7;
+/// Curves with more [`search::dissimilarity`] than this have nothing to repeat.
+const MAX_DISSIMILARITY: f64 = 0.7;
 
 /// With more samples than this, curves that never repeat are taken for a random pattern.
-const FEW_NODES: usize = 100;
+const MIN_RANDOM_NODES: usize = 100;
 
 /// Most samples on the curves of an exemplar at one level.
-const MOST_NODES: f64 = 10_000.0;
+const MAX_NODES: f64 = 10_000.0;
 
 /// Strokes that cover more of the exemplar than this run into one another.
 const CROWDED: f64 = 0.95;
 
 /// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
-const FEW: usize = 12;
+const MIN_ELEMENTS: usize = 12;
 
 /// An exemplar, analysed once, ready for any number of runs.
 #[derive(Clone, Debug)]
 pub struct Prepared<const D: usize> {
     exemplar: Exemplar<D>,
     clearance: Option<ExemplarClearance>,
-    pub(crate) settings: Vec<Setting<D>>,
+    pub(crate) levels: Vec<LevelExemplar<D>>,
     pub(crate) params: Params,
-    /// See [`search::strangeness`]; `None` without curves.
-    strangeness: Option<f64>,
+    /// See [`search::dissimilarity`]; `None` without curves.
+    dissimilarity: Option<f64>,
 }
 
 /// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.
 fn check_density(nodes: f64) -> Result<()> {
-    if nodes <= MOST_NODES {
+    if nodes <= MAX_NODES {
         return Ok(());
     }
     Err(Error::Limit {
         what: "samples on the curves of the exemplar".into(),
         found: format!("about {nodes:.0}"),
-        limit: MOST_NODES.to_string(),
+        limit: MAX_NODES.to_string(),
         advice: "show a smaller part of the pattern, draw it with fewer lines, or set a larger spacing".into(),
     })
 }
 
-impl<const D: usize> Prepared<D> {
+impl<const D: usize> Prepared<D>
+where
+    Vector<D>: Dimension<D>,
+{
     /// Analyses the exemplar.
     ///
     /// # Errors
-    /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`] when the exemplar
-    /// shows no curve and fewer than two elements that may be copied, for then nothing tells how far apart they belong, or when its
-    /// curves lie outside its frame; [`Error::Limit`] when its curves meet in too many places or
-    /// lie too densely.
+    /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`]
+    /// when the exemplar shows no curve and fewer than two elements that may be copied, for then nothing tells how far
+    /// apart they belong, or when its curves lie outside its frame; [`Error::Limit`] when its curves meet in too many
+    /// places or lie too densely.
     pub fn new(exemplar: &Exemplar<D>, params: &Params) -> Result<Self> {
         params.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
@@ -91,38 +97,38 @@ impl<const D: usize> Prepared<D> {
         }
         let skeleton = skeleton.filter(|s| !s.lines.is_empty());
         check_density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
-        let settings = settings(exemplar, skeleton.as_ref(), params);
-        let coarsest = settings.first().filter(|_| skeleton.is_some());
+        let levels = level_exemplars(exemplar, skeleton.as_ref(), params);
+        let coarsest = levels.first().filter(|_| skeleton.is_some());
         Ok(Self {
             exemplar: exemplar.clone(),
             clearance: clearance::measure(exemplar),
-            strangeness: coarsest.and_then(|s| search::strangeness(&s.level, &s.library, params.matching)),
-            settings,
+            dissimilarity: coarsest.and_then(|s| search::dissimilarity(&s.level, &s.library, params.matching)),
+            levels,
             params: params.clone(),
         })
     }
 
     /// Neighbourhood radius of each level, coarsest first, in the exemplar's units.
     pub fn radii(&self) -> Vec<f64> {
-        self.settings.iter().map(|s| s.level.radius).collect()
+        self.levels.iter().map(|s| s.level.radius).collect()
     }
 
     /// Number of samples of each exemplar element at the finest level.
     pub fn samples_per_element(&self) -> Vec<usize> {
-        let parts = |s: &Setting<D>| s.level.parts[..s.level.base as usize].iter().map(Vec::len).collect();
-        self.settings.last().map_or_else(Vec::new, parts)
+        let parts = |s: &LevelExemplar<D>| s.level.parts.iter().take(s.level.base as usize).map(Vec::len).collect();
+        self.levels.last().map_or_else(Vec::new, parts)
     }
 
     /// Fills a domain.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too large;
-    /// [`Error::NoResult`] when nothing fits into the domain.
+    /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too
+    /// large; [`Error::NoResult`] when nothing fits into the domain.
     pub fn run(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
         let (levels, mut warnings) = self.usable_levels(request);
         let iterations = if levels.is_empty() { 0 } else { self.params.iterations };
         // Where no neighbourhood fits, the first layout is all there can be.
-        let levels = if levels.is_empty() { vec![self.settings.len() - 1] } else { levels };
+        let levels = if levels.is_empty() { vec![self.levels.len() - 1] } else { levels };
         // Levels without curves share one exemplar; what it means for the request is then worked out once.
         let used = if self.has_curves() { &levels[..] } else { &levels[..1] };
         let extents: Vec<_> = used
@@ -130,33 +136,28 @@ impl<const D: usize> Prepared<D> {
             .map(|&k| {
                 Extent::new(
                     request,
-                    &self.settings[k].exemplar,
-                    &self.settings[k].library.radius,
-                    self.settings[k].level.base,
+                    &self.levels[k].exemplar,
+                    &self.levels[k].library.radius,
+                    self.levels[k].level.base,
                 )
             })
             .collect();
         let targets: Vec<_> = used
             .iter()
             .zip(&extents)
-            .map(|(&k, extent)| class_targets(&self.settings[k].library, request, extent, self.settings[k].level.base))
+            .map(|(&k, extent)| class_targets(&self.levels[k].library, request, extent, self.levels[k].level.base))
             .collect();
         self.check_request(request, targets.iter().map(|t| t.iter().sum()).fold(0.0, f64::max))?;
-        let stand = |(n, &k): (usize, &usize)| {
+        let context = |(n, &k): (usize, &usize)| {
             let shared = n.min(used.len() - 1);
-            Stand { setting: &self.settings[k], extent: &extents[shared], targets: &targets[shared] }
+            LevelContext { sampled: &self.levels[k], extent: &extents[shared], targets: &targets[shared] }
         };
-        let stands: Vec<_> = levels.iter().enumerate().map(stand).collect();
-        let run = Run { params: &self.params, request, stands, iterations };
+        let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
+        let run = Run { params: &self.params, request, contexts, iterations };
         let mut trace = Vec::new();
         let (mut found, flow) = run.synthesise(&mut trace, watch);
         let last = &extents[extents.len() - 1];
-        warnings.extend(placements::mend(
-            &mut found.placements,
-            self.clearance.as_ref(),
-            (request, last),
-            &self.params,
-        ));
+        warnings.extend(placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params));
         if found.placements.is_empty() && found.curves.is_empty() {
             let what = if self.has_curves() { "stroke" } else { "element" };
             return Err(Error::no_result(
@@ -169,49 +170,53 @@ impl<const D: usize> Prepared<D> {
     }
 
     /// What may be wrong with an exemplar of curves.
-    fn doubts(&self) -> Vec<Warning> {
-        let mut doubts = Vec::new();
-        let Some(setting) = self.settings.first().filter(|_| self.has_curves()) else { return doubts };
+    fn exemplar_warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let Some(sampled) = self.levels.first().filter(|_| self.has_curves()) else { return warnings };
         let side = self.exemplar.view().side();
-        if setting.level.radius >= 0.5 * side {
-            doubts.push(Warning::new(
-                format!("the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one", 2.0 * setting.level.radius),
+        if sampled.level.radius >= 0.5 * side {
+            warnings.push(Warning::new(
+                format!(
+                    "the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one",
+                    2.0 * sampled.level.radius
+                ),
                 "show more of the pattern, or set a smaller radius or spacing",
             ));
         }
         // A large irregular net has nothing alike either, but enough of it to be one of a kind.
-        let nodes = setting.level.net.as_ref().map_or(0, |net| net.nodes.len());
-        if nodes < FEW_NODES && self.strangeness.is_none_or(|s| s > STRANGE) {
-            doubts.push(Warning::new(
+        let nodes = sampled.level.net.as_ref().map_or(0, |net| net.nodes.len());
+        if nodes < MIN_RANDOM_NODES && self.dissimilarity.is_none_or(|s| s > MAX_DISSIMILARITY) {
+            warnings.push(Warning::new(
                 "no part of the exemplar's curves looks like another: there is nothing to repeat",
                 "draw the pattern several times over, so that the exemplar shows how it goes on",
             ));
         }
-        let Some(net) = &setting.level.net else { return doubts };
+        let Some(net) = &sampled.level.net else { return warnings };
         let covered = crowding::coverage(&net.skeleton, &self.exemplar.window, CROWDED);
         if covered > CROWDED {
-            doubts.push(Warning::new(
+            warnings.push(Warning::new(
                 format!(
-                    "strokes as wide as or wider than their spacing: they cover {:.0} % of the exemplar and run into one another",
+                    "strokes as wide as or wider than their spacing: they cover {:.0} % of the exemplar and run into one \
+                     another",
                     100.0 * covered
                 ),
                 "use thinner strokes; lines closer than their width are taken to touch",
             ));
         }
-        let short = self.unseen(&net.skeleton);
+        let short = self.lost_curves(&net.skeleton);
         if short > 0 {
-            doubts.push(Warning::new(
+            warnings.push(Warning::new(
                 format!("strokes too short to be seen left out: {short}, each below a thousandth of the exemplar"),
                 "draw them longer, or as dots: filled circles",
             ));
         }
-        doubts
+        warnings
     }
 
     /// Curves in the window that are in no line of the skeleton and not part of a junction either.
-    fn unseen(&self, skeleton: &Skeleton<D>) -> usize {
-        let mut is_seen = vec![false; self.exemplar.curves.len()];
-        skeleton.lines.iter().for_each(|line| is_seen[line.curve as usize] = true);
+    fn lost_curves(&self, skeleton: &Skeleton<D>) -> usize {
+        let mut is_seen = Numbered::filled(false, self.exemplar.curves.len());
+        skeleton.lines.iter().for_each(|line| is_seen[line.curve] = true);
         let side = self.exemplar.view().side();
         let is_lost = |n: &usize| {
             let centre = self.exemplar.curves[*n].path.bounds().centre();
@@ -221,7 +226,7 @@ impl<const D: usize> Prepared<D> {
     }
 
     fn has_curves(&self) -> bool {
-        self.settings.iter().any(|s| s.level.net.is_some())
+        self.levels.iter().any(|s| s.level.net.is_some())
     }
 
     fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {
@@ -247,19 +252,21 @@ impl<const D: usize> Prepared<D> {
     fn usable_levels(&self, request: &Request<D>) -> (Vec<usize>, Vec<Warning>) {
         let mut warnings = Vec::new();
         let inside = self.exemplar.elements.iter().filter(|e| self.exemplar.view().contains(e.centre)).count();
-        if inside < FEW && !self.has_curves() {
+        if inside < MIN_ELEMENTS && !self.has_curves() {
             warnings.push(Warning::new(
                 format!("the exemplar shows only {inside} elements"),
-                format!("draw {FEW} or more, so that the output need not repeat the few arrangements there are"),
+                format!(
+                    "draw {MIN_ELEMENTS} or more, so that the output need not repeat the few arrangements there are"
+                ),
             ));
         }
-        warnings.extend(self.doubts());
+        warnings.extend(self.exemplar_warnings());
         let room = request
             .domain
             .period()
             .map_or(f64::INFINITY, |p| 0.5 * shortest(p) / Extent::<D>::largest_spacing_scale(request));
-        let levels = self.settings.len();
-        let fits: Vec<_> = (0..levels).filter(|&l| self.settings[l].level.radius <= room).collect();
+        let levels = self.levels.len();
+        let fits: Vec<_> = (0..levels).filter(|&l| self.levels[l].level.radius <= room).collect();
         if fits.len() < levels {
             warnings.push(Warning::new(
                 format!("the tile is too small for {} of {levels} levels", levels - fits.len()),

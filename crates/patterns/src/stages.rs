@@ -1,9 +1,9 @@
-//! The stages of the engine one by one, each from the state in which a run meets it first: what the benchmarks time. No part of the
-//! interface, and subject to change without notice.
+//! The stages of the engine one by one, each from the state in which a run meets it first: what the benchmarks time. No
+//! part of the interface, and subject to change without notice.
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Bounds, Domain, Exemplar, Outcome, Placement, Request, Unobserved, Vector};
+use arabesque_core::{Bounds, Domain, Exemplar, Numbered, Outcome, Placement, Request, Unobserved, Vector};
 
 use crate::{
     border::Extent,
@@ -12,7 +12,7 @@ use crate::{
         repair::mend::mend,
         votes::{edge_votes::collect_votes, edges, tangents},
     },
-    exemplar::{level::Near, setting::Setting},
+    exemplar::{level::Near, level_exemplar::LevelExemplar},
     finish::{
         clearance::{self, ExemplarClearance},
         placements,
@@ -59,7 +59,7 @@ pub struct Setup {
 #[expect(missing_debug_implementations, reason = "for benchmarks alone")]
 pub struct Bench<'a> {
     layout: Layout<'a, 2>,
-    targets: &'a [f64],
+    targets: &'a Numbered<f64>,
     fresh: State<'a, 2>,
     searched: State<'a, 2>,
 }
@@ -68,7 +68,7 @@ pub struct Bench<'a> {
 #[expect(missing_debug_implementations, reason = "for benchmarks alone")]
 pub struct Output<'a> {
     state: State<'a, 2>,
-    targets: &'a [f64],
+    targets: &'a Numbered<f64>,
 }
 
 /// Neighbourhoods of the exemplar, each with one of its kind.
@@ -101,12 +101,12 @@ impl Setup {
 
     /// Lays out the page, searches once, and hands both states over.
     pub fn with<R>(&self, time: impl FnOnce(&Bench<'_>) -> R) -> R {
-        let (request, setting) = (&self.request, finest(&self.prepared));
-        let (library, level) = (&*setting.library, &setting.level);
-        let extent = Extent::new(request, &setting.exemplar, &library.radius, level.base);
+        let (request, sampled) = (&self.request, finest(&self.prepared));
+        let (library, level) = (&*sampled.library, &sampled.level);
+        let extent = Extent::new(request, &sampled.exemplar, &library.radius, level.base);
         let targets = class_targets(library, request, &extent, level.base);
         let layout = Layout { library, params: &self.prepared.params, request, extent: &extent, base: level.base };
-        let mut fresh = State::new(library, level, request, &extent, (&lay_out(&layout), Deform::Rigid));
+        let mut fresh = State::new(sampled, request, &extent, Deform::Rigid, &lay_out(&layout));
         edges::link_sources(&mut fresh);
         let mut searched = fresh.clone();
         search::search(&mut searched, &first_search(&self.prepared.params));
@@ -131,13 +131,13 @@ impl<'a> Bench<'a> {
         let (state, level) = (&self.searched, self.searched.level);
         let prices = Prices { missing: 1.0, outside: 0.0 };
         let next = |i: usize| {
-            let alike = &level.of_key[level.key[i] as usize];
+            let alike = &level.of_key[level.key[i]];
             alike[(i + 1) % alike.len()]
         };
         Pairings {
             matcher: Matcher::new(level, state.library, Matching::Robust, prices),
             pairs: (0..level.position.len()).map(|i| (surroundings(state, i as u32), next(i))).collect(),
-            count: state.living.len(),
+            count: state.living().len(),
         }
     }
 }
@@ -206,14 +206,14 @@ impl Clearing {
     }
 }
 
-fn finest(prepared: &Prepared<2>) -> &Setting<2> {
-    prepared.settings.last().expect("there is a level")
+fn finest(prepared: &Prepared<2>) -> &LevelExemplar<2> {
+    prepared.levels.last().expect("there is a level")
 }
 
 /// Samples of the finest level that the exemplar shows, per area.
-fn density(setting: &Setting<2>) -> f64 {
-    let inside = setting.level.position.iter().filter(|p| setting.library.view.contains(**p)).count();
-    inside as f64 / setting.library.view.measure()
+fn density(sampled: &LevelExemplar<2>) -> f64 {
+    let inside = sampled.level.position.iter().filter(|p| sampled.library.view.contains(**p)).count();
+    inside as f64 / sampled.library.view.measure()
 }
 
 fn lay_out(layout: &Layout<'_, 2>) -> Draft<2> {
@@ -221,7 +221,7 @@ fn lay_out(layout: &Layout<'_, 2>) -> Draft<2> {
 }
 
 fn reconstruct(state: &mut State<'_, 2>) {
-    let items = state.items.iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect();
+    let items = state.items().iter().filter(|live| live.alive).map(|live| (live.item, live.turn)).collect();
     std::hint::black_box(placements::placements(&items, state.request, state.extent, state.level.base));
     if state.level.net.is_none() {
         return;
@@ -231,7 +231,7 @@ fn reconstruct(state: &mut State<'_, 2>) {
     state.reindex();
     let chains = chains(state, &votes, Params::default().orientations == Switch::On);
     let position = shape::polish(state, &chains);
-    state.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
+    state.set_positions(position);
     std::hint::black_box(shape::strokes(state, &chains));
 }
 
@@ -240,15 +240,15 @@ fn surroundings(state: &State<'_, 2>, i: u32) -> Surroundings<2> {
     let level = state.level;
     let row = |near: &Near<2>| Row {
         sample: near.sample,
-        key: level.key[near.sample as usize],
-        source: level.element[near.sample as usize],
+        key: level.key[near.sample],
+        source: level.element[near.sample],
         offset: Vector(near.offset.map(f64::from)),
         weight: near.weight,
         frozen: false,
-        star: level.stars[near.sample as usize],
+        star: level.stars[near.sample],
     };
     let rows = level.neighbours(i).iter().filter(|n| n.weight > 0.0).map(row).collect();
-    Surroundings { source: level.element[i as usize], star: level.stars[i as usize], rows }
+    Surroundings { source: level.element[i], star: level.stars[i], rows }
 }
 
 /// The first step of a run at its coarsest level.

@@ -6,7 +6,7 @@ use crate::{curve::Measured, space::Vector};
 const HALVINGS: usize = 40;
 
 /// Most places at which one path is looked at.
-const MOST_STEPS: f64 = 100_000.0;
+const MAX_STEPS: f64 = 100_000.0;
 
 /// Arc lengths between which a path is inside what `holds` says; on a closed path the last stretch may end beyond its length.
 /// The path is looked at in steps of about `step`: what is narrower may be overlooked. Works for any set of points in any dimension.
@@ -16,7 +16,7 @@ pub fn spans_inside<const D: usize>(
     holds: &dyn Fn(Vector<D>) -> bool,
 ) -> Vec<(f64, f64)> {
     let length = measured.length();
-    let count = (length / step).ceil().clamp(1.0, MOST_STEPS) as usize;
+    let count = (length / step).ceil().clamp(1.0, MAX_STEPS) as usize;
     let arc = |k: usize| length * k as f64 / count as f64;
     let border = |k: usize, enters: bool| {
         let (mut a, mut b) = (arc(k - 1), arc(k));

@@ -3,18 +3,32 @@
 //! Greedy, so a pair that was made is never parted for a better whole; the order of ties is that of the members, so that
 //! the result depends on nothing but the wishes.
 
-/// A pair that is wanted: its cost, and its members.
-pub type Wish = (f64, u32, u32);
+use crate::index::{Number, Numbered};
+
+/// A wish to pair `a` with `b`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wish<N> {
+    /// How much it costs; wishes are granted from the cheapest on.
+    pub cost: f64,
+    /// One member.
+    pub a: N,
+    /// The other member.
+    pub b: N,
+}
 
 /// Grants wishes among `count` members, the cheapest first: each whose members are both free and which `accept` takes.
 /// Returns the number of pairs.
-pub fn pair_up(mut wishes: Vec<Wish>, count: usize, mut accept: impl FnMut(u32, u32) -> bool) -> usize {
-    wishes.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut taken = vec![false; count];
+pub fn pair_up<N: Number + Copy + Ord>(
+    mut wishes: Vec<Wish<N>>,
+    count: usize,
+    mut accept: impl FnMut(N, N) -> bool,
+) -> usize {
+    wishes.sort_by(|x, y| x.cost.total_cmp(&y.cost).then((x.a, x.b).cmp(&(y.a, y.b))));
+    let mut is_taken = Numbered::filled(false, count);
     let mut pairs = 0;
-    for (_, a, b) in wishes {
-        if !taken[a as usize] && !taken[b as usize] && accept(a, b) {
-            (taken[a as usize], taken[b as usize]) = (true, true);
+    for Wish { a, b, .. } in wishes {
+        if !is_taken[a] && !is_taken[b] && accept(a, b) {
+            (is_taken[a], is_taken[b]) = (true, true);
             pairs += 1;
         }
     }
@@ -23,13 +37,13 @@ pub fn pair_up(mut wishes: Vec<Wish>, count: usize, mut accept: impl FnMut(u32, 
 
 /// Pairs two sides, those whose `likeness` is largest first: for each of the `left` members the one of the `right` ones that it got.
 pub fn pair_sides(left: usize, right: usize, likeness: impl Fn(usize, usize) -> f64) -> Vec<Option<usize>> {
-    let mut wishes: Vec<Wish> = Vec::with_capacity(left * right);
+    let mut wishes = Vec::with_capacity(left * right);
     for i in 0..left {
-        wishes.extend((0..right).map(|j| (-likeness(i, j), i as u32, (left + j) as u32)));
+        wishes.extend((0..right).map(|j| Wish { cost: -likeness(i, j), a: i, b: left + j }));
     }
     let mut partner = vec![None; left];
     pair_up(wishes, left + right, |i, j| {
-        partner[i as usize] = Some(j as usize - left);
+        partner[i] = Some(j - left);
         true
     });
     partner
@@ -41,9 +55,9 @@ mod tests {
 
     use super::*;
 
-    fn pairs(wishes: &[Wish], count: usize, accept: impl Fn(u32, u32) -> bool) -> Vec<(u32, u32)> {
+    fn pairs(wishes: &[(f64, u32, u32)], count: usize, accept: impl Fn(u32, u32) -> bool) -> Vec<(u32, u32)> {
         let mut found = Vec::new();
-        let made = pair_up(wishes.to_vec(), count, |a, b| {
+        let made = pair_up(wishes.iter().map(|&(cost, a, b)| Wish { cost, a, b }).collect(), count, |a, b| {
             found.extend(accept(a, b).then_some((a, b)));
             accept(a, b)
         });

@@ -27,7 +27,8 @@ pub struct Pull<const D: usize> {
     pub weight: f64,
 }
 
-/// The normal equations of a sum of predictions and pulls: symmetric positive definite when every unknown has a pull of its own.
+/// The normal equations of a sum of predictions and pulls: symmetric positive definite when every unknown has a pull of
+/// its own.
 ///
 /// Unknowns are displacements from a start, so that positions on a torus need no common origin.
 #[derive(Clone, Debug)]

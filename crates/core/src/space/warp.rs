@@ -1,12 +1,14 @@
 //! Bending by control points, as rigid as possible.
 //!
-//! Moving least squares: every point has its own rotation, the one that best carries the control points to their targets when each
-//! counts by the inverse square of its distance to the point [Schaefer 2006 §2.3 in the plane, Zhu 2007 §3 in space].
+//! Moving least squares: every point has its own rotation, the one that best carries the control points to their
+//! targets when each counts by the inverse square of its distance to the point [Schaefer 2006 §2.3 in the plane, Zhu
+//! 2007 §3 in space].
 
 use crate::space::{Matrix, Vector};
 
-/// Share of the rotation that fits all control points alike, mixed into each local fit: it decides where the nearby control
-/// points leave the rotation open (one point, or points on a line in space), and changes nothing where they agree with it.
+/// Share of the rotation that fits all control points alike, mixed into each local fit: it decides where the nearby
+/// control points leave the rotation open (one point, or points on a line in space), and changes nothing where they
+/// agree with it.
 const COMMON_SHARE: f64 = 1e-9;
 
 /// A map of space that carries each control point to its target.
@@ -45,8 +47,8 @@ impl<'a, const D: usize> Warp<'a, D> {
 
 /// Bends space as rigidly as possible so that `control[i].0` goes to `control[i].1`, and returns the image of `p`.
 ///
-/// Exact at the control points; the mean of the targets where several control points coincide. A motion without bending is
-/// reproduced when the targets are one. A single control point shifts; none leave `p` where it is.
+/// Exact at the control points; the mean of the targets where several control points coincide. A motion without bending
+/// is reproduced when the targets are one. A single control point shifts; none leave `p` where it is.
 pub fn warp<const D: usize>(control: &[(Vector<D>, Vector<D>)], p: Vector<D>) -> Vector<D> {
     Warp::new(control).apply(p)
 }
@@ -71,7 +73,8 @@ fn fit<const D: usize>(control: &[(Vector<D>, Vector<D>)], weights: &[f64]) -> (
     (from, to, covariance)
 }
 
-/// `covariance` plus `share` of its size in the direction of `rotation`; the rotation itself where the covariance vanishes.
+/// `covariance` plus `share` of its size in the direction of `rotation`; the rotation itself where the covariance
+/// vanishes.
 fn mixed<const D: usize>(covariance: &Matrix<D>, rotation: &Matrix<D>, share: f64) -> Matrix<D> {
     let size = covariance.0.iter().flatten().map(|v| v * v).sum::<f64>().sqrt();
     let amount = if size > 0.0 { share * size } else { 1.0 };

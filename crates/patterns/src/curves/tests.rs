@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Path, Request, Vector};
+use arabesque_core::{Bounds, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Numbered, Path, Request, Vector};
 use proptest::prelude::*;
 
 use crate::{
     border::Extent,
     curves::{
         draw::{chains::chains, shape::strokes as draw},
-        repair::crossings::Tangle,
+        repair::crossings::EdgeRules,
         votes::{edge_votes::collect_votes, edges},
     },
     exemplar::{
@@ -17,7 +17,7 @@ use crate::{
             net::{Net, Node},
             skeleton::{Knot, Skeleton},
         },
-        setting::settings,
+        level_exemplar::level_exemplars,
     },
     output::{
         draft::{Draft, Item},
@@ -58,28 +58,28 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     let exemplar = exemplar(paths);
     let params = Params { levels: 1, ..Params::default() };
     let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.view()).unwrap());
-    let setting = settings(&exemplar, Some(&skeleton), &params).remove(0);
+    let sampled = level_exemplars(&exemplar, Some(&skeleton), &params).remove(0);
     let request = Request::new(Domain::Box(window().grown(SIDE)));
-    let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);
-    let net = setting.level.net.clone().unwrap();
+    let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
+    let net = sampled.level.net.clone().unwrap();
     let items = (0..net.nodes.len()).map(|n| {
-        let item = Item { source: setting.level.base + n as u32, position: net.nodes[n].position, frozen: None };
+        let item = Item { source: sampled.level.base + n as u32, position: net.nodes[n].position, frozen: None };
         (item, Matrix::identity())
     });
     let draft = Draft { items: items.collect(), links: Vec::new() };
-    let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
+    let mut state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
     edges::link_sources(&mut state);
     work(state)
 }
 
 /// The edges of all samples, sorted.
-fn links(state: &State<'_, 2>) -> Vec<Vec<u32>> {
-    let sorted = |l: &Vec<u32>| {
-        let mut l = l.clone();
+fn links(state: &State<'_, 2>) -> Numbered<Vec<u32>> {
+    let sorted = |s: u32| {
+        let mut l = state.links_of(s).to_vec();
         l.sort_unstable();
         l
     };
-    state.links.iter().map(sorted).collect()
+    state.samples().numbers().map(sorted).collect()
 }
 
 /// The edges of all nodes of the exemplar, sorted.
@@ -96,7 +96,7 @@ fn arms(net: &Net<2>) -> Vec<Vec<u32>> {
 fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
     with_state(paths, |state| {
         let net = state.level.net.clone().unwrap();
-        assert_eq!(links(&state), arms(&net));
+        assert_eq!(links(&state), arms(&net).into());
         let votes = collect_votes(&state);
         let chains = chains(&state, &votes, true);
         let strokes = draw(&state, &chains);
@@ -142,7 +142,8 @@ fn drawn(rebuilt: &Rebuilt) -> Vec<Path<2>> {
     rebuilt.strokes.iter().map(|s| s.path.clone()).collect()
 }
 
-/// Rebuilds and compares the shape: what is drawn is the exemplar's own line, so that only rounding and sampling of this test may differ.
+/// Rebuilds and compares the shape: what is drawn is the exemplar's own line, so that only rounding and sampling of
+/// this test may differ.
 fn same_shape(paths: &[Path<2>]) -> Rebuilt {
     let rebuilt = rebuilt(paths);
     let distance = hausdorff(&drawn(&rebuilt), paths);
@@ -235,9 +236,10 @@ fn a_circle_is_one_closed_stroke_without_corners() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Rows that wave at random, columns from some of them down (T junctions) or through all (crossings), and loops between: paths, junctions
-    /// and ends come back, within 0.02 sampling distances. Each edge is the very piece of line that was sampled; only the handles at a sample
-    /// are turned to their mean direction, which on a smooth line changes little.
+    /// Rows that wave at random, columns from some of them down (T junctions) or through all (crossings), and loops
+    /// between: paths, junctions and ends come back, within 0.02 sampling distances. Each edge is the very piece of
+    /// line that was sampled; only the handles at a sample are turned to their mean direction, which on a smooth line
+    /// changes little.
     #[test]
     fn random_graphs_come_back(
         waves in prop::collection::vec((-4.0..4.0_f64, -4.0..4.0_f64), 3),
@@ -246,7 +248,8 @@ proptest! {
     ) {
         let row = |k: usize, (a, b): (f64, f64)| {
             let y = 22.0 + 25.0 * k as f64;
-            Path { closed: false, cubics: vec![[(10.0, 0.0), (35.0, a), (65.0, b), (90.0, 0.0)].map(|(x, d)| Vector::xy(x, y + d))] }
+            let control = [(10.0, 0.0), (35.0, a), (65.0, b), (90.0, 0.0)];
+            Path { closed: false, cubics: vec![control.map(|(x, d)| Vector::xy(x, y + d))] }
         };
         let mut paths: Vec<_> = waves.iter().enumerate().map(|(k, w)| row(k, *w)).collect();
         let first = Measured::new(paths[0].clone(), 1e-4);
@@ -275,16 +278,15 @@ fn edges_side_by_side_become_one_line() {
     with_state(&[polyline(&[(5.0, 50.0), (95.0, 50.0)], false)], |mut state| {
         let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
         let known = links(&state);
-        for s in 0..known.len() as u32 {
-            for &next in &known[s as usize] {
-                for &o in known[next as usize].iter().filter(|&&o| o > s) {
-                    state.links[s as usize].push(o);
-                    state.links[o as usize].push(s);
+        for s in known.numbers() {
+            for &next in &known[s] {
+                for &o in known[next].iter().filter(|&&o| o > s) {
+                    state.link(s, o);
                 }
             }
         }
         assert_ne!(links(&state), known);
-        assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
+        assert!(EdgeRules::of(&net).restore(&mut state, &votes) > 0);
         assert_eq!(links(&state), known);
     });
 }
@@ -297,39 +299,32 @@ fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
         let known = links(&state);
         // From a sample of one line to a sample of the other that is not the opposite one, and the other way round.
         let row = |y: f64| {
-            let mut row: Vec<u32> = state
-                .living
-                .iter()
-                .copied()
-                .filter(|&s| (state.samples[s as usize].position[1] - y).abs() < 0.1)
-                .collect();
-            row.sort_by(|a, b| {
-                state.samples[*a as usize].position[0].total_cmp(&state.samples[*b as usize].position[0])
-            });
+            let mut row: Vec<u32> =
+                state.living().iter().copied().filter(|&s| (state.sample(s).position[1] - y).abs() < 0.1).collect();
+            row.sort_by(|a, b| state.sample(*a).position[0].total_cmp(&state.sample(*b).position[0]));
             row
         };
         let (low, high) = (row(45.0), row(50.0));
         for (a, b) in [(low[3], high[4]), (low[5], high[3])] {
-            assert_eq!(Tangle::of(&net).allows(&state, a, b), (a, b) == (low[3], high[4]));
-            state.links[a as usize].push(b);
-            state.links[b as usize].push(a);
+            assert_eq!(EdgeRules::of(&net).allow(&state, a, b), (a, b) == (low[3], high[4]));
+            state.link(a, b);
         }
-        assert!(Tangle::of(&net).undo(&mut state, &votes) > 0);
+        assert!(EdgeRules::of(&net).restore(&mut state, &votes) > 0);
         let left = links(&state);
-        assert!(left[low[3] as usize].contains(&high[4]) && !left[low[5] as usize].contains(&high[3]));
+        assert!(left[low[3]].contains(&high[4]) && !left[low[5]].contains(&high[3]));
         assert_eq!(left.iter().map(Vec::len).sum::<usize>(), known.iter().map(Vec::len).sum::<usize>() + 2);
     });
 }
 
 #[test]
-fn what_the_exemplar_does_is_no_tangle() {
+fn what_the_exemplar_does_is_left_as_it_is() {
     let narrow = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 50.0), (95.0, 58.0)], false)];
     let cross = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 5.0), (50.0, 95.0)], false)];
     for paths in [narrow, cross] {
         with_state(&paths, |mut state| {
             let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
             let known = links(&state);
-            assert_eq!(Tangle::of(&net).undo(&mut state, &votes), 0);
+            assert_eq!(EdgeRules::of(&net).restore(&mut state, &votes), 0);
             assert_eq!(links(&state), known);
         });
     }

@@ -1,8 +1,8 @@
 //! What tells two elements of one class apart: outline and colour, as a vector of lengths.
 //!
-//! The attribute `q` of a sample [Ma 2011 §3.2] is this vector. Its distance is in the exemplar's units, so that it adds to
-//! position differences without a weight of its own for every exemplar: the outline part is the root mean square difference of the
-//! two support functions, the colour part is the colour difference times the spacing.
+//! The attribute `q` of a sample [Ma 2011 §3.2] is this vector. Its distance is in the exemplar's units, so that it
+//! adds to position differences without a weight of its own for every exemplar: the outline part is the root mean
+//! square difference of the two support functions, the colour part is the colour difference times the spacing.
 
 use arabesque_core::{Element, Vector};
 

@@ -1,14 +1,18 @@
 //! Kinds: classes divided by colour, where a class clearly comes in several colours.
 //!
-//! Chips of one name in four colours are four kinds of chip: each keeps its number, and only chips of a colour correspond.
+//! Chips of one name in four colours are four kinds of chip: each keeps its number, and only chips of a colour
+//! correspond.
 
 use arabesque_core::Exemplar;
 
 /// Colours of one kind differ by less than this from its first, Euclidean in sRGB.
 const DIFFERENCE: f64 = 0.15;
 
-/// A class is only divided when every kind gets this many elements and this share of them.
-const FEWEST: (usize, f64) = (4, 0.08);
+/// A class is only divided when every kind gets this many elements.
+const MIN_MEMBERS: usize = 4;
+
+/// And this share of its elements.
+const MIN_SHARE: f64 = 0.08;
 
 /// Kind of each element, numbered from 0 without gaps, and how many kinds there are.
 pub(crate) fn kinds<const D: usize>(exemplar: &Exemplar<D>) -> (Vec<u32>, usize) {
@@ -42,7 +46,7 @@ fn group(colours: &[[f64; 3]]) -> (Vec<usize>, usize) {
             return (vec![0; colours.len()], 1);
         }
     }
-    let least = FEWEST.0.max((FEWEST.1 * colours.len() as f64) as usize);
+    let least = MIN_MEMBERS.max((MIN_SHARE * colours.len() as f64) as usize);
     if sizes.iter().all(|&n| n >= least) { (label, first.len()) } else { (vec![0; colours.len()], 1) }
 }
 

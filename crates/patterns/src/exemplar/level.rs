@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use arabesque_core::{Domain, GridIndex, Vector};
+use arabesque_core::{Domain, GridIndex, Numbered, Vector};
 
 use crate::exemplar::{
     graph::net::{Net, Star},
@@ -21,8 +21,8 @@ pub(crate) struct Near<const D: usize> {
     pub(crate) weight: f32,
 }
 
-/// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample with an edge too few or too
-/// many an outlier; half of that lets it be matched and told to gain or lose the edge.
+/// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample
+/// with an edge too few or too many an outlier; half of that lets it be matched and told to gain or lose the edge.
 const SINGLE: f64 = 0.5;
 
 /// A run of neighbours with the same key.
@@ -33,78 +33,81 @@ struct Run {
     end: u32,
 }
 
+/// How far neighbourhoods reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    /// Radius of those of the output.
+    pub(crate) radius: f64,
+    /// By how much those of the exemplar are larger, so that samples near the rim find a partner.
+    pub(crate) slack: f64,
+}
+
 /// Exemplar samples at one level.
 #[derive(Clone, Debug)]
 pub(crate) struct Level<const D: usize> {
     /// Radius of an output neighbourhood, exemplar units.
     pub(crate) radius: f64,
     /// Offsets of the samples of each element from its centre.
-    pub(crate) parts: Vec<Vec<Vector<D>>>,
+    pub(crate) parts: Numbered<Vec<Vector<D>>>,
     /// Position of each sample.
-    pub(crate) position: Vec<Vector<D>>,
+    pub(crate) position: Numbered<Vector<D>>,
     /// Element of each sample.
-    pub(crate) element: Vec<u32>,
+    pub(crate) element: Numbered<u32>,
     /// Which sample of its element each one is.
-    pub(crate) part: Vec<u32>,
+    pub(crate) part: Numbered<u32>,
     /// First sample of each element.
-    pub(crate) first: Vec<u32>,
+    pub(crate) first: Numbered<u32>,
     /// (class, part) of each sample as one number: only equal keys match [Tu 2020 eq. 4].
-    pub(crate) key: Vec<u32>,
+    pub(crate) key: Numbered<u32>,
     /// Samples of each key.
-    pub(crate) of_key: Vec<Vec<u32>>,
+    pub(crate) of_key: Numbered<Vec<u32>>,
     /// Squared outlier distance of each key.
-    pub(crate) outlier2: Vec<f32>,
-    starts: Vec<u32>,
+    pub(crate) outlier2: Numbered<f32>,
+    starts: Numbered<u32>,
     near: Vec<Near<D>>,
-    run_starts: Vec<u32>,
+    run_starts: Numbered<u32>,
     runs: Vec<Run>,
     /// Most similar samples of each sample, best first [Ma 2011 §4.2]; found when they are first asked for.
-    alike: Vec<OnceLock<Vec<u32>>>,
+    alike: Numbered<OnceLock<Vec<u32>>>,
     /// The sample graph of the curves, where there are any.
     pub(crate) net: Option<Arc<Net<D>>>,
     /// First pseudo element: those before it are true elements, each of the others is a node of the net.
     pub(crate) base: u32,
     /// Edge set of each sample; empty for samples of elements, and for all where edges take no part in the comparison.
-    pub(crate) stars: Vec<Star<D>>,
+    pub(crate) stars: Numbered<Star<D>>,
     /// Cost of an edge without a counterpart [Tu 2020 eq. 5].
     pub(crate) single2: f32,
 }
 
 impl<const D: usize> Level<D> {
-    /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]), neighbourhoods of `radius`, input neighbourhoods
-    /// larger by `slack` so that border samples find a partner.
-    pub(crate) fn new(
-        library: &Library<D>,
-        samples: &ElementSamples<D>,
-        detail: f64,
-        (radius, slack): (f64, f64),
-    ) -> Self {
-        let mut level = Self::sampled(library, samples, detail, radius);
-        level.flatten(&Domain::Box(library.view.window), slack);
+    /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]).
+    pub(crate) fn new(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, ball: Ball) -> Self {
+        let mut level = Self::sampled(library, samples, detail, ball.radius);
+        level.flatten(&Domain::Box(library.view.window), ball.slack);
         level
     }
 
     fn sampled(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, radius: f64) -> Self {
-        let parts: Vec<_> = (0..library.len()).map(|e| samples.at_detail(e, detail)).collect();
+        let parts: Numbered<_> = (0..library.len()).map(|e| samples.at_detail(e, detail)).collect();
         let most = parts.iter().map(Vec::len).max().unwrap_or(1);
         let keys = library.classes() * most;
         let mut level = Self {
             radius,
-            position: Vec::new(),
-            element: Vec::new(),
-            part: Vec::new(),
-            first: Vec::new(),
-            key: Vec::new(),
-            of_key: vec![Vec::new(); keys],
+            position: Numbered::new(),
+            element: Numbered::new(),
+            part: Numbered::new(),
+            first: Numbered::new(),
+            key: Numbered::new(),
+            of_key: Numbered::filled(Vec::new(), keys),
             outlier2: (0..keys).map(|k| (library.outlier[k / most] as f32).powi(2)).collect(),
-            starts: vec![0],
+            starts: Numbered::filled(0, 1),
             near: Vec::new(),
-            run_starts: vec![0],
+            run_starts: Numbered::filled(0, 1),
             runs: Vec::new(),
-            alike: Vec::new(),
+            alike: Numbered::new(),
             net: None,
             base: library.len() as u32,
-            stars: Vec::new(),
+            stars: Numbered::new(),
             single2: 0.0,
             parts,
         };
@@ -112,15 +115,15 @@ impl<const D: usize> Level<D> {
             level.first.push(level.position.len() as u32);
             for (j, &offset) in level.parts[e].iter().enumerate() {
                 let key = library.class[e] * most as u32 + j as u32;
-                level.of_key[key as usize].push(level.position.len() as u32);
+                level.of_key[key].push(level.position.len() as u32);
                 level.key.push(key);
                 level.element.push(e as u32);
                 level.part.push(j as u32);
                 level.position.push(library.centre[e] + offset);
             }
         }
-        level.stars = vec![Star::EMPTY; level.position.len()];
-        level.alike = vec![OnceLock::new(); level.position.len()];
+        level.stars = Numbered::filled(Star::EMPTY, level.position.len());
+        level.alike = Numbered::filled(OnceLock::new(), level.position.len());
         level
     }
 
@@ -158,7 +161,7 @@ impl<const D: usize> Level<D> {
         if with_edges {
             for i in 0..self.position.len() as u32 {
                 if let Some(node) = self.node_of(i) {
-                    self.stars[i as usize] = net.star(node);
+                    self.stars[i] = net.star(node);
                 }
             }
         }
@@ -168,29 +171,34 @@ impl<const D: usize> Level<D> {
 
     /// The node of the net that sample `i` is, `None` for a sample of an element.
     pub(crate) fn node_of(&self, i: u32) -> Option<u32> {
-        self.element[i as usize].checked_sub(self.base)
+        self.element[i].checked_sub(self.base)
     }
 
-    /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the same, and must not
-    /// wait for other threads.
+    /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the
+    /// same, and must not wait for other threads.
     pub(crate) fn alike(&self, i: u32, find: impl FnOnce() -> Vec<u32>) -> &[u32] {
-        self.alike[i as usize].get_or_init(find)
+        self.alike[i].get_or_init(find)
     }
 
     /// Neighbours of sample `i`, sorted by key.
     pub(crate) fn neighbours(&self, i: u32) -> &[Near<D>] {
-        &self.near[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
+        &self.near[range(&self.starts, i)]
     }
 
     /// Those of a key, as a range into [`Level::neighbours`].
     pub(crate) fn neighbours_of_key(&self, i: u32, key: u32) -> std::ops::Range<usize> {
-        let base = self.starts[i as usize];
-        let runs = &self.runs[self.run_starts[i as usize] as usize..self.run_starts[i as usize + 1] as usize];
+        let base = self.starts[i];
+        let runs = &self.runs[range(&self.run_starts, i)];
         match runs.binary_search_by_key(&key, |run| run.key) {
             Ok(k) => (runs[k].start - base) as usize..(runs[k].end - base) as usize,
             Err(_) => 0..0,
         }
     }
+}
+
+/// Where the entries of sample `i` lie in a flattened list, given where those of each sample start.
+fn range(starts: &Numbered<u32>, i: u32) -> std::ops::Range<usize> {
+    starts[i] as usize..starts[i + 1] as usize
 }
 
 /// Weight of a neighbour at `offset` in a neighbourhood of `radius`: 1 in the middle, 0.1 at the rim.

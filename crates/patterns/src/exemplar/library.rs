@@ -1,6 +1,6 @@
 //! The exemplar, analysed: what every later stage looks up.
 
-use arabesque_core::{Domain, Exemplar, GridIndex, Role, Stream, Vector, View};
+use arabesque_core::{Domain, Exemplar, GridIndex, Numbered, Role, Stream, Vector, View};
 
 use crate::exemplar::{features::Feature, kinds::kinds};
 
@@ -19,51 +19,54 @@ struct ClassIndex<const D: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct Library<const D: usize> {
     /// Centre of each element.
-    pub(crate) centre: Vec<Vector<D>>,
-    /// Kind of each element: its class, divided by colour where the class comes in several. What this crate calls a class of the library.
-    pub(crate) class: Vec<u32>,
+    pub(crate) centre: Numbered<Vector<D>>,
+    /// Kind of each element: its class, divided by colour where the class comes in several. What this crate calls a
+    /// class of the library.
+    pub(crate) class: Numbered<u32>,
     /// Attributes of each element.
-    pub(crate) feature: Vec<Feature>,
+    pub(crate) feature: Numbered<Feature>,
     /// Distance from the centre to the farthest ink of each element.
-    pub(crate) radius: Vec<f64>,
+    pub(crate) radius: Numbered<f64>,
     /// Whether each element may be copied.
-    pub(crate) copyable: Vec<bool>,
+    pub(crate) copyable: Numbered<bool>,
     /// Where the exemplar is known.
     pub(crate) view: View<D>,
     /// Mean element spacing: (window measure / elements)^(1/D).
     pub(crate) spacing: f64,
     /// Outlier distance `k` of each class [Tu 2020 §4.2.3]: its mean nearest-neighbour distance, any class counted.
-    pub(crate) outlier: Vec<f64>,
+    pub(crate) outlier: Numbered<f64>,
     /// Distance of each element to its nearest neighbour, any class counted.
-    pub(crate) nearest: Vec<f64>,
+    pub(crate) nearest: Numbered<f64>,
     /// Radius of the largest ball without a centre that the exemplar surely shows.
     pub(crate) emptiness: f64,
-    /// Smallest distance between the centres of two classes, row by row; as far as the elements are looked for when they never come close.
+    /// Smallest distance between the centres of two classes, row by row; as far as the elements are looked for when
+    /// they never come close.
     closest: Vec<f64>,
-    by_class: Vec<ClassIndex<D>>,
+    by_class: Numbered<ClassIndex<D>>,
     all: GridIndex<D>,
 }
 
 impl<const D: usize> Library<D> {
-    /// `strokes`: the first pseudo class, that of curve samples, and the distance of these along their stroke, which is their outlier
-    /// distance [Tu 2020 §4.2.3].
+    /// `strokes`: the first pseudo class, that of curve samples, and the distance of these along their stroke, which is
+    /// their outlier distance [Tu 2020 §4.2.3].
     pub(crate) fn new(exemplar: &Exemplar<D>, strokes: Option<(usize, f64)>) -> Self {
-        let centre: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
+        let centre: Numbered<_> = exemplar.elements.iter().map(|e| e.centre).collect();
         let (class, classes) = kinds(exemplar);
+        let class = Numbered::from(class);
         let spacing = exemplar.spacing();
         let plane = Domain::Box(exemplar.window);
         let all = GridIndex::new(&centre, spacing, &plane);
-        let nearest = nearest_distances(&centre, &all, spacing);
+        let nearest: Numbered<_> = nearest_distances(&centre, &all, spacing);
         let closest = closest_distances(&centre, &class, classes, &all, spacing);
         let mut outlier = outlier_distances(&nearest, &class, classes, spacing);
         if let Some((first, distance)) = strokes {
             let of_strokes = exemplar.elements.iter().zip(&class).filter(|(e, _)| e.class >= first);
-            of_strokes.for_each(|(_, &c)| outlier[c as usize] = distance);
+            of_strokes.for_each(|(_, &c)| outlier[c] = distance);
         }
         let by_class = (0..classes)
             .map(|c| {
-                let members: Vec<u32> = (0..class.len() as u32).filter(|&i| class[i as usize] == c as u32).collect();
-                let points: Vec<_> = members.iter().map(|&i| centre[i as usize]).collect();
+                let members: Vec<u32> = (0..class.len() as u32).filter(|&i| class[i] == c as u32).collect();
+                let points: Vec<_> = members.iter().map(|&i| centre[i]).collect();
                 ClassIndex { grid: GridIndex::new(&points, outlier[c], &plane), members }
             })
             .collect();
@@ -106,7 +109,7 @@ impl<const D: usize> Library<D> {
 
     /// The members of a class.
     pub(crate) fn members(&self, class: u32) -> &[u32] {
-        &self.by_class[class as usize].members
+        &self.by_class[class].members
     }
 
     /// Number of classes.
@@ -119,16 +122,16 @@ impl<const D: usize> Library<D> {
         self.all.within(p, radius, |i, offset| visit(i as u32, offset));
     }
 
-    /// The elements of `class` nearer to `p` than its outlier distance, position and attributes together: best first of at most two,
-    /// with the squared distance.
+    /// The elements of `class` nearer to `p` than its outlier distance, position and attributes together: best first of
+    /// at most two, with the squared distance.
     pub(crate) fn alike(&self, class: u32, p: Vector<D>, feature: &Feature) -> [Option<(u32, f32)>; 2] {
-        let index = &self.by_class[class as usize];
-        let k = self.outlier[class as usize];
+        let index = &self.by_class[class];
+        let k = self.outlier[class];
         let k2 = (k * k) as f32;
         let mut best = [None::<(u32, f32)>; 2];
         index.grid.within(p, k, |slot, offset| {
             let i = index.members[slot];
-            let cost = offset.norm2() as f32 + self.feature[i as usize].distance2(feature);
+            let cost = offset.norm2() as f32 + self.feature[i].distance2(feature);
             if cost >= k2 {
                 return;
             }
@@ -159,7 +162,8 @@ impl<const D: usize> Library<D> {
     }
 }
 
-/// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that centre.
+/// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that
+/// centre.
 fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -> f64 {
     let (window, size) = (view.window, view.window.size());
     let step = if D == 2 { 0.2 * spacing } else { 0.34 * spacing };
@@ -198,16 +202,16 @@ fn closest_distances<const D: usize>(
     closest
 }
 
-fn nearest_distances<const D: usize>(centre: &[Vector<D>], all: &GridIndex<D>, spacing: f64) -> Vec<f64> {
+fn nearest_distances<const D: usize>(centre: &[Vector<D>], all: &GridIndex<D>, spacing: f64) -> Numbered<f64> {
     // Doubling the radius finds the neighbour of a lonely element without scanning everything for the others.
     let search = |i: usize| (0..8).find_map(|n| all.nearest(centre[i], spacing * f64::from(1 << n), Some(i)));
     (0..centre.len()).map(|i| search(i).map_or(spacing, |(_, d)| d)).collect()
 }
 
-fn outlier_distances(nearest: &[f64], class: &[u32], classes: usize, spacing: f64) -> Vec<f64> {
-    let mut sum = vec![(0.0, 0.0); classes];
+fn outlier_distances(nearest: &[f64], class: &[u32], classes: usize, spacing: f64) -> Numbered<f64> {
+    let mut sum = Numbered::filled((0.0, 0.0), classes);
     for (&distance, &c) in nearest.iter().zip(class) {
-        let entry = &mut sum[c as usize];
+        let entry = &mut sum[c];
         entry.0 += distance.max(0.25 * spacing);
         entry.1 += 1.0;
     }

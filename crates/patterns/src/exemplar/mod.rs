@@ -1,4 +1,5 @@
-//! What is known about the exemplar before any run: its elements, their samples at every level, and how curves are sampled.
+//! What is known about the exemplar before any run: its elements, their samples at every level, and how curves are
+//! sampled.
 //!
 //! Nothing here depends on a domain: it is worked out once and serves any number of runs.
 
@@ -6,6 +7,6 @@ pub(crate) mod features;
 pub(crate) mod graph;
 pub(crate) mod kinds;
 pub(crate) mod level;
+pub(crate) mod level_exemplar;
 pub(crate) mod library;
 pub(crate) mod samples;
-pub(crate) mod setting;

@@ -1,8 +1,8 @@
 //! Samples of elements: which points stand for an element at each level [Ma 2011 §3.1, Tu 2020 §4.1.1].
 //!
-//! A round element is its centre. A long one gets two to five samples along its principal axis, so that their places carry its
-//! orientation and bend. Samples are laid out on the first element of a class and carried to the others by their pose, so that sample `j`
-//! means the same spot on every element of the class.
+//! A round element is its centre. A long one gets two to five samples along its principal axis, so that their places
+//! carry its orientation and bend. Samples are laid out on the first element of a class and carried to the others by
+//! their pose, so that sample `j` means the same spot on every element of the class.
 
 use arabesque_core::{Element, Exemplar, Outline, Similarity, Vector};
 
@@ -10,7 +10,7 @@ use arabesque_core::{Element, Exemplar, Outline, Similarity, Vector};
 const ROUND: f64 = 1.6;
 
 /// Most samples that the shape alone asks for.
-const MOST: usize = 5;
+const MAX_SAMPLES: usize = 5;
 
 /// Samples of every element of the exemplar, offsets from the centre of the element in exemplar directions.
 #[derive(Clone, Debug)]
@@ -37,8 +37,8 @@ impl<const D: usize> ElementSamples<D> {
         Self { offsets }
     }
 
-    /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints of every
-    /// second sample and the centre.
+    /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints
+    /// of every second sample and the centre.
     pub(crate) fn at_detail(&self, e: usize, detail: f64) -> Vec<Vector<D>> {
         let full = &self.offsets[e];
         if full.len() == 1 || detail <= 0.0 {
@@ -59,7 +59,8 @@ fn template<const D: usize>(element: &Element<D>, count: Option<usize>) -> Vec<V
     let Some((axis, elongation)) = principal_axis(&ink) else {
         return centre;
     };
-    let wanted = count.unwrap_or(if elongation < ROUND { 1 } else { (elongation.ceil() as usize).clamp(2, MOST) });
+    let wanted =
+        count.unwrap_or(if elongation < ROUND { 1 } else { (elongation.ceil() as usize).clamp(2, MAX_SAMPLES) });
     if wanted <= 1 {
         return centre;
     }

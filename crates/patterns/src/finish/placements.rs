@@ -4,6 +4,7 @@ use arabesque_core::{Matrix, Placement, Request, Vector, Warning};
 
 use crate::{
     border::Extent,
+    dimension::Dimension,
     finish::clearance::{self, ExemplarClearance},
     output::{
         draft::{Frozen, Item, Items},
@@ -34,11 +35,12 @@ pub(crate) fn placements<const D: usize>(
 /// Control points of one item, see [`Placement::control`].
 pub(crate) type Bend<const D: usize> = Vec<(Vector<D>, Vector<D>)>;
 
-/// Control points of the living items of a state whose samples go their own ways, one a sample; `None` where elements stay rigid.
+/// Control points of the living items of a state whose samples go their own ways, one per sample; `None` where elements
+/// stay rigid.
 pub(crate) fn bends<const D: usize>(state: &State<'_, D>) -> Option<Vec<Bend<D>>> {
     (state.deform == Deform::AsRigidAsPossible).then(|| {
         state
-            .items
+            .items()
             .iter()
             .filter(|live| live.alive && live.item.source < state.level.base)
             .map(|live| bend(state, live))
@@ -50,10 +52,10 @@ fn bend<const D: usize>(state: &State<'_, D>, live: &LiveItem<D>) -> Bend<D> {
     if live.count < 2 || live.item.frozen.is_some() {
         return Vec::new();
     }
-    let (centre, origin) = (state.library.centre[live.item.source as usize], live.item.position);
-    let parts = &state.level.parts[live.item.source as usize];
+    let (centre, origin) = (state.library.centre[live.item.source], live.item.position);
+    let parts = &state.level.parts[live.item.source];
     // On a torus, samples across the edge are brought next to their element.
-    let near = |s: u32| origin + state.domain().offset(origin, state.samples[s as usize].position);
+    let near = |s: u32| origin + state.domain().offset(origin, state.sample(s).position);
     (live.first..live.first + live.count).zip(parts).map(|(s, &offset)| (centre + offset, near(s))).collect()
 }
 
@@ -61,14 +63,17 @@ fn bend<const D: usize>(state: &State<'_, D>, live: &LiveItem<D>) -> Bend<D> {
 pub(crate) fn mend<const D: usize>(
     placements: &mut Vec<Placement<D>>,
     limits: Option<&ExemplarClearance>,
-    (request, extent): (&Request<D>, &Extent<'_, D>),
+    extent: &Extent<'_, D>,
     params: &Params,
-) -> Vec<Warning> {
+) -> Vec<Warning>
+where
+    Vector<D>: Dimension<D>,
+{
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
     if params.clearance == Clearance::Ignored {
         return Vec::new();
     }
-    let summary = clearance::repair(limits, request, placements);
+    let summary = clearance::repair(limits, extent.request(), placements);
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
     summary.warning(placements.len()).into_iter().collect()
 }

@@ -85,8 +85,8 @@ impl<const D: usize> Coverage<D> {
         places.for_each(|p| self.cover(p, reach(p), |_| true));
     }
 
-    /// Marks as covered what the drawing at `places` closes in: the cells that no ball of `reach` covers without touching the drawing.
-    /// Where the ball is too large for all that is open, smaller ones are tried.
+    /// Marks as covered what the drawing at `places` closes in: the cells that no ball of `reach` covers without
+    /// touching the drawing. Where the ball is too large for all that is open, smaller ones are tried.
     pub(crate) fn cover_closed(&mut self, places: &[Vector<D>], reach: f64) {
         for halving in 0..4 {
             let reach = reach * 0.5_f64.powi(halving);

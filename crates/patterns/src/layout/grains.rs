@@ -1,9 +1,13 @@
-//! Regrowth: an output in disorder keeps its largest grain, and everything else is laid out anew around it.
+//! Regrowth: an output in disorder keeps its largest coherent region, a grain as in a crystal, and everything else is
+//! laid out anew around it.
 //!
-//! Search and assignment only look as far as a neighbourhood. From a start in disorder, many parts of the pattern come into order at the
-//! same time, each a grain out of step with the next, and no local step undoes the borders between them: the limit that [Ma 2011 §6] and
-//! [Tu 2020 §6] both name. What undoes them in a crystal is growth from one nucleus. So where a level ends in small grains, the best of
-//! them stays and the layout grows on from it. Frozen samples are such a nucleus already; then no grain is kept.
+//! Search and assignment only look as far as a neighbourhood. From a start in disorder, many parts of the pattern come
+//! into order at the same time, each a grain out of step with the next, and no local step undoes the borders between
+//! them: the limit that [Ma 2011 §6] and [Tu 2020 §6] both name. What undoes them in a crystal is growth from one
+//! nucleus. So where a level ends in small grains, the best of them stays and the layout grows on from it. Frozen
+//! samples are such a nucleus already; then no grain is kept.
+
+use arabesque_core::Numbered;
 
 use crate::output::{
     draft::{Draft, Items},
@@ -21,36 +25,37 @@ const ORDERED: f64 = 0.5;
 
 /// What an output in disorder keeps, `None` for one in order.
 pub(crate) fn nucleus<const D: usize>(state: &State<'_, D>) -> Option<Draft<D>> {
-    let matched = state.living.iter().filter_map(|&s| state.samples[s as usize].matched.as_ref());
+    let matched = state.living().iter().filter_map(|&s| state.sample(s).matched.as_ref());
     let members: usize = matched.map(|m| m.members.len() + 1).sum();
-    let large = LARGE * members as f64 / state.living.len().max(1) as f64;
+    let large = LARGE * members as f64 / state.living().len().max(1) as f64;
     let grains = grains(state);
     let ordered: usize = grains.iter().map(Vec::len).filter(|&n| n as f64 >= large).sum();
-    if ordered as f64 >= ORDERED * state.living.len() as f64 {
+    if ordered as f64 >= ORDERED * state.living().len() as f64 {
         return None;
     }
-    let is_drawn = state.items.iter().any(|live| live.item.frozen.is_some());
+    let is_drawn = state.items().iter().any(|live| live.item.frozen.is_some());
     let largest = grains.iter().filter(|_| !is_drawn).max_by_key(|grain| (grain.len(), std::cmp::Reverse(grain[0])));
     Some(Draft { items: largest.map_or_else(Vec::new, |grain| whole_items(state, grain)), links: Vec::new() })
 }
 
-/// Samples in groups that are each one coherent copy of the exemplar: neighbours whose matches correspond to one another.
+/// Samples in groups that are each one coherent copy of the exemplar: neighbours whose matches correspond to one
+/// another.
 fn grains<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
-    let in_order = |s: u32| state.samples[s as usize].matched.as_ref().filter(|m| m.energy() < IN_ORDER);
-    let mut seen = vec![false; state.samples.len()];
+    let in_order = |s: u32| state.sample(s).matched.as_ref().filter(|m| m.energy() < IN_ORDER);
+    let mut seen = Numbered::filled(false, state.samples().len());
     let mut grains = Vec::new();
-    for &start in &state.living {
-        if seen[start as usize] || in_order(start).is_none() {
+    for &start in state.living() {
+        if seen[start] || in_order(start).is_none() {
             continue;
         }
-        seen[start as usize] = true;
+        seen[start] = true;
         let mut grain = vec![start];
         let mut next = 0;
         while let Some(&s) = grain.get(next) {
             next += 1;
             for &(o, i) in in_order(s).map_or(&[][..], |m| &m.pairs) {
-                if !seen[o as usize] && in_order(o).is_some_and(|m| m.input == i) {
-                    seen[o as usize] = true;
+                if !seen[o] && in_order(o).is_some_and(|m| m.input == i) {
+                    seen[o] = true;
                     grain.push(o);
                 }
             }
@@ -62,9 +67,9 @@ fn grains<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
 
 /// The items all of whose samples are in a grain.
 fn whole_items<const D: usize>(state: &State<'_, D>, grain: &[u32]) -> Items<D> {
-    let mut held = vec![0; state.items.len()];
-    grain.iter().for_each(|&s| held[state.samples[s as usize].item as usize] += 1);
-    let whole = state.items.iter().zip(held).filter(|(live, held)| live.alive && live.count == *held);
+    let mut held = Numbered::filled(0, state.items().len());
+    grain.iter().for_each(|&s| held[state.sample(s).item] += 1);
+    let whole = state.items().iter().zip(held).filter(|(live, held)| live.alive && live.count == *held);
     whole.map(|(live, _)| (live.item, live.turn)).collect()
 }
 
@@ -77,7 +82,7 @@ mod tests {
     use super::*;
     use crate::{
         border::Extent,
-        exemplar::setting::settings,
+        exemplar::level_exemplar::level_exemplars,
         optimise::{
             matching::Prices,
             search::{SearchParams, search},
@@ -100,9 +105,9 @@ mod tests {
     fn nucleus_with_disorder_beyond(x: f64) -> Option<Vec<Item<2>>> {
         let exemplar = exemplar();
         let params = Params { levels: 1, ..Params::default() };
-        let setting = settings(&exemplar, None, &params).remove(0);
+        let sampled = level_exemplars(&exemplar, None, &params).remove(0);
         let request = Request::new(Domain::Box(exemplar.window));
-        let extent = Extent::new(&request, &setting.exemplar, &setting.library.radius, setting.level.base);
+        let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
         let mut random = Stream::new(6, Stage::TEST, 0);
         let items = exemplar.elements.iter().zip(0..).map(|(element, source)| {
             let place = Vector::xy(random.range(x, SIDE), random.range(0.0, SIDE));
@@ -110,7 +115,7 @@ mod tests {
             (Item { source, position, frozen: None }, Matrix::identity())
         });
         let draft = Draft { items: items.collect(), links: Vec::new() };
-        let mut state = State::new(&setting.library, &setting.level, &request, &extent, (&draft, Deform::Rigid));
+        let mut state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
         let exhaustive = SearchParams {
             search: Search::Exhaustive,
             matching: Matching::Robust,

@@ -1,21 +1,26 @@
 //! Patch copy: the first layout of the output [Tu 2020 §4.3.2].
 //!
-//! Sites cover the domain like tiles, nearest to the seed site first. At each site every exemplar patch is tried that puts one of its
-//! elements onto an element that is already there, so that the patch is in register with its surroundings. Its disagreement with them is
-//! the share of unmatched elements on both sides: output elements that the patch would not have there, and patch elements missing in the
-//! part that is already covered. The best patch fills what is still open.
+//! Sites cover the domain like tiles, nearest to the seed site first. At each site every exemplar patch is tried that
+//! puts one of its elements onto an element that is already there, so that the patch is in register with its
+//! surroundings. Its disagreement with them is the share of unmatched elements on both sides: output elements that the
+//! patch would not have there, and patch elements missing in the part that is already covered. The best patch fills
+//! what is still open.
 //!
-//! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do it.
+//! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do
+//! it.
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Frame, Request, Stream, Vector};
+use arabesque_core::{Buckets, Numbered, Request, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
     border::Extent,
-    exemplar::{level::fall_off, library::Library},
-    layout::coverage::{Cell, Coverage},
+    exemplar::library::Library,
+    layout::{
+        coverage::{Cell, Coverage},
+        patch_site::{GrowParams, PatchSite, PatchSource},
+    },
     output::{canvas::Canvas, draft::Item},
     streams,
 };
@@ -25,41 +30,6 @@ pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -
 
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
 const NOISE: f64 = 0.02;
-
-/// Share of the closest distance of their classes that a new element keeps to what is there already.
-const ROOM: f64 = 0.6;
-
-/// Share of its own nearest-neighbour distance that it keeps as well where a neighbouring patch has already been.
-const ROOM_COVERED: f64 = 0.75;
-
-/// Cost of an element of which the exemplar does not tell whether it could be there: beyond its frame.
-const UNSEEN: f64 = 0.35;
-
-/// Cost of a patch whose centre lies at the frame of the exemplar, against one from its middle.
-const RIM: f64 = 0.3;
-
-/// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
-const MEMBERS: usize = 80;
-
-/// Candidates where there is nothing to register on.
-const FREE_CANDIDATES: usize = 24;
-
-/// Knobs of the layout.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GrowParams {
-    /// Radius of a patch, exemplar units.
-    pub(crate) patch: f64,
-    /// Radius of the surroundings that a patch must agree with, exemplar units.
-    pub(crate) context: f64,
-    /// Cost of a patch that goes on copying where its neighbour stopped, per share of such elements.
-    pub(crate) repeat: f64,
-    /// Cost of a patch whose elements are used more often than others.
-    pub(crate) balance: f64,
-    /// Output elements that patches are registered on, for each site.
-    pub(crate) anchors: usize,
-    /// First curve sample, see [`crate::exemplar::level::Level::base`].
-    pub(crate) base: u32,
-}
 
 /// A patch that was chosen for a site.
 #[derive(Clone, Debug)]
@@ -73,12 +43,8 @@ struct Patch<const D: usize> {
 
 /// Lays out the open part of `canvas`.
 pub(crate) struct Grower<'a, const D: usize> {
-    library: &'a Library<D>,
     request: &'a Request<D>,
-    extent: &'a Extent<'a, D>,
-    params: GrowParams,
-    /// Times each exemplar element was used.
-    usage: Vec<u32>,
+    source: PatchSource<'a, D>,
 }
 
 impl<'a, const D: usize> Grower<'a, D> {
@@ -88,7 +54,7 @@ impl<'a, const D: usize> Grower<'a, D> {
         extent: &'a Extent<'a, D>,
         params: GrowParams,
     ) -> Self {
-        Self { library, request, extent, params, usage: vec![0; library.len()] }
+        Self { request, source: PatchSource { library, extent, params, usage: Numbered::filled(0, library.len()) } }
     }
 
     /// Fills every open cell of `coverage` with elements on `canvas`.
@@ -132,25 +98,25 @@ impl<'a, const D: usize> Grower<'a, D> {
 
     /// Sites in rounds: those of one round are too far apart to see one another.
     fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>, kept: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
-        let patch = self.params.patch * self.smallest_scale();
-        let mut sites = site_order(coverage, start, patch);
+        let patch = self.source.params.patch * self.smallest_scale();
+        let mut sites = Numbered::from(site_order(coverage, start, patch));
         if !kept.is_empty() {
-            // Ring by ring around what is kept, so that a gap in it closes from all sides.
+            // Ring by ring around what is frozen, so that a gap in it closes from all sides.
             let far = |site: &Vector<D>| {
                 let squares = kept.iter().map(|p| self.request.domain.offset(*site, *p).norm2());
                 (squares.fold(f64::INFINITY, f64::min).sqrt() / patch) as u32
             };
             sites.sort_by_cached_key(far);
         }
-        let reach = (self.params.patch + self.params.context) * self.largest_scale();
-        let mut earlier = arabesque_core::Buckets::new(&self.request.domain, self.extent.margin, reach);
-        let mut round_of: Vec<usize> = Vec::with_capacity(sites.len());
+        let reach = (self.source.params.patch + self.source.params.context) * self.largest_scale();
+        let mut earlier = Buckets::new(&self.request.domain, self.source.extent.margin, reach);
+        let mut round_of: Numbered<usize> = Numbered::new();
         let mut rounds: Vec<Vec<Vector<D>>> = Vec::new();
         for (i, &site) in sites.iter().enumerate() {
             let mut round = 0;
             earlier.near(site, reach, |j| {
-                if self.request.domain.offset(site, sites[j as usize]).norm() <= reach {
-                    round = round.max(round_of[j as usize] + 1);
+                if self.request.domain.offset(site, sites[j]).norm() <= reach {
+                    round = round.max(round_of[j] + 1);
                 }
             });
             earlier.insert(i as u32, site);
@@ -164,11 +130,11 @@ impl<'a, const D: usize> Grower<'a, D> {
     }
 
     fn smallest_scale(&self) -> f64 {
-        self.extent.smallest_spacing_scale
+        self.source.extent.smallest_spacing_scale
     }
 
     fn largest_scale(&self) -> f64 {
-        self.extent.largest_spacing_scale
+        self.source.extent.largest_spacing_scale
     }
 
     fn best_patch(
@@ -179,29 +145,32 @@ impl<'a, const D: usize> Grower<'a, D> {
         random: &mut Stream,
     ) -> Option<Patch<D>> {
         let frame = self.request.fields.frame(site);
-        let (open, _) = coverage.open_within(site, self.params.patch * frame.spacing_scale);
+        let (open, _) = coverage.open_within(site, self.source.params.patch * frame.spacing_scale);
         if open == 0 {
             return None;
         }
-        let view = View::new(self, site, frame, canvas, coverage);
-        let candidates: Vec<_> =
-            view.candidates(self.params.anchors, random).into_iter().map(|c| (c, NOISE * random.unit())).collect();
+        let here = PatchSite::new(&self.source, site, frame, canvas, coverage);
+        let candidates: Vec<_> = here
+            .candidates(self.source.params.anchors, random)
+            .into_iter()
+            .map(|c| (c, NOISE * random.unit()))
+            .collect();
         // Also in parallel within a site: at seams and in holes there are few sites at a time.
-        let costs: Vec<f64> = candidates.par_iter().with_min_len(16).map(|(c, noise)| view.cost(*c) + noise).collect();
+        let costs: Vec<f64> = candidates.par_iter().with_min_len(16).map(|(c, noise)| here.cost(*c) + noise).collect();
         let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
         let centre = candidates[best].0;
-        let centre = view.registered(centre);
-        Some(Patch { site, centre, elements: view.additions(centre) })
+        let centre = here.registered(centre);
+        Some(Patch { site, centre, elements: here.additions(centre) })
     }
 
     fn paste(&mut self, patch: &Patch<D>, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) {
         let frame = self.request.fields.frame(patch.site);
         for &(element, position) in &patch.elements {
             canvas.push(Item { source: element, position, frozen: None });
-            self.usage[element as usize] += 1;
+            self.source.usage[element] += 1;
         }
-        let radius = self.params.patch * frame.spacing_scale;
-        let view = self.library.view;
+        let radius = self.source.params.patch * frame.spacing_scale;
+        let view = self.source.library.view;
         coverage.cover(patch.site, radius, |offset| view.contains(patch.centre + frame.to_exemplar(offset)));
         // The cell of the site itself is always done, so that a patch from the rim of the exemplar makes progress too.
         coverage.cover(patch.site, 0.3 * radius, |_| true);
@@ -230,197 +199,4 @@ fn site_order<const D: usize>(coverage: &Coverage<D>, start: Vector<D>, radius: 
         .collect();
     sites.sort_by(|a, b| (*a - start).norm2().total_cmp(&(*b - start).norm2()));
     sites
-}
-
-/// What is around one site.
-struct View<'a, const D: usize> {
-    grower: &'a Grower<'a, D>,
-    site: Vector<D>,
-    frame: Frame<D>,
-    coverage: &'a Coverage<D>,
-    /// Elements around: source, offset from the site in exemplar directions, weight; nearest first.
-    around: Vec<(u32, Vector<D>, f64)>,
-}
-
-impl<'a, const D: usize> View<'a, D> {
-    fn new(
-        grower: &'a Grower<'a, D>,
-        site: Vector<D>,
-        frame: Frame<D>,
-        canvas: &Canvas<D>,
-        coverage: &'a Coverage<D>,
-    ) -> Self {
-        let context = grower.params.context;
-        let mut around = Vec::new();
-        canvas.within(site, context * frame.spacing_scale, |i, offset| {
-            let offset = frame.to_exemplar(offset);
-            around.push((canvas.items[i].source, offset, fall_off(offset, context)));
-        });
-        around.sort_by(|a, b| a.1.norm2().total_cmp(&b.1.norm2()));
-        Self { grower, site, frame, coverage, around }
-    }
-
-    /// Exemplar points that could land on the site.
-    fn candidates(&self, anchors: usize, random: &mut Stream) -> Vec<Vector<D>> {
-        let library = self.grower.library;
-        let base = self.grower.params.base;
-        let mut centres = Vec::new();
-        for (source, offset) in self.anchors(anchors) {
-            let members = library.members(library.class[source as usize]);
-            let usable = |i: &u32| library.view.contains(library.centre[*i as usize] - offset);
-            if source < base || members.len() <= MEMBERS {
-                centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i as usize] - offset));
-            } else {
-                let usable = members.iter().copied().filter(usable).collect();
-                let alike = self.most_alike(usable, source, random);
-                centres.extend(alike.into_iter().map(|i| library.centre[i as usize] - offset));
-            }
-        }
-        let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
-        while centres.len() < wanted {
-            centres.push(library.any_place(random));
-        }
-        centres
-    }
-
-    /// What the patches are registered on: the nearest elements; for strokes also the nearest of the rarest kind, which tell most.
-    fn anchors(&self, count: usize) -> Vec<(u32, Vector<D>)> {
-        let library = self.grower.library;
-        let nearest = self.around.iter().take(count);
-        let mut anchors: Vec<_> = nearest.map(|&(source, offset, _)| (source, offset)).collect();
-        let strokes = self.around.iter().filter(|(source, ..)| *source >= self.grower.params.base);
-        let size = |source: u32| library.members(library.class[source as usize]).len();
-        if let (Some(rarest), true) = (strokes.min_by_key(|(source, ..)| size(*source)), count > 0) {
-            anchors.push((rarest.0, rarest.1));
-        }
-        anchors
-    }
-
-    /// Of very many elements, some of those that are most like `source`.
-    fn most_alike(&self, mut members: Vec<u32>, source: u32, random: &mut Stream) -> Vec<u32> {
-        let feature = &self.grower.library.feature;
-        members.sort_by_cached_key(|&i| feature[i as usize].distance2(&feature[source as usize]).to_bits());
-        members.truncate((members.len() / 4).max(MEMBERS));
-        while members.len() > MEMBERS {
-            members.swap_remove(random.below(members.len()));
-        }
-        members
-    }
-
-    /// Disagreement of the patch around exemplar point `centre` with what is there.
-    fn cost(&self, centre: Vector<D>) -> f64 {
-        let (library, params) = (self.grower.library, self.grower.params);
-        let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
-        let (mut cost, mut weights, mut repeated) = (0.0, 1e-9, 0.0);
-        for &(source, offset, weight) in &self.around {
-            weights += weight;
-            let p = centre + offset;
-            if !library.view.contains(p) {
-                cost += UNSEEN * weight;
-                continue;
-            }
-            let class = library.class[source as usize];
-            let alike = library.alike(class, p, &library.feature[source as usize]);
-            match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
-                Some((i, c)) => {
-                    taken.push(i);
-                    cost += weight * f64::from(c) / library.outlier[class as usize].powi(2);
-                    repeated += weight * f64::from(u8::from(i == source));
-                }
-                None => cost += weight,
-            }
-        }
-        let (missing, missing_weights, usage) = self.missing(centre, &taken);
-        let total = weights + missing_weights;
-        let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
-        (cost + missing) / total + params.repeat * repeated / weights + params.balance * usage + RIM * (1.0 - known)
-    }
-
-    /// Weight of the patch elements that should be there already and are not, weight of all that should, and mean relative use of the new ones.
-    fn missing(&self, centre: Vector<D>, taken: &[u32]) -> (f64, f64, f64) {
-        let (library, params) = (self.grower.library, self.grower.params);
-        let (mut missing, mut weights) = (0.0, 0.0);
-        let (mut used, mut fresh) = (0.0, 0.0);
-        library.within(centre, params.context, |i, offset| {
-            if taken.contains(&i) {
-                return;
-            }
-            let weight = fall_off(offset, params.context);
-            match self.coverage.at(self.site + self.frame.to_output(offset)) {
-                Cell::Covered => {
-                    missing += weight;
-                    weights += weight;
-                }
-                Cell::Open => {
-                    used += f64::from(self.grower.usage[i as usize]);
-                    fresh += 1.0;
-                }
-                Cell::Outside => {}
-            }
-        });
-        let mean = self.grower.usage.iter().map(|&u| f64::from(u)).sum::<f64>() / library.len() as f64;
-        let usage = if fresh > 0.0 { (used / fresh) / (mean + 1.0) } else { 0.0 };
-        (missing, weights, usage)
-    }
-
-    /// `centre` moved so that matched elements coincide as well as they can.
-    fn registered(&self, centre: Vector<D>) -> Vector<D> {
-        let library = self.grower.library;
-        let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
-        for &(source, offset, weight) in &self.around {
-            let class = library.class[source as usize];
-            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[source as usize])[0] {
-                shift += (library.centre[i as usize] - centre - offset) * weight;
-                weights += weight;
-            }
-        }
-        centre + shift * (1.0 / weights)
-    }
-
-    /// Patch elements for the open part, with their places.
-    fn additions(&self, centre: Vector<D>) -> Vec<(u32, Vector<D>)> {
-        let (library, params) = (self.grower.library, self.grower.params);
-        let mut taken = Vec::new();
-        for &(source, offset, _) in &self.around {
-            let class = library.class[source as usize];
-            let alike = library.alike(class, centre + offset, &library.feature[source as usize]);
-            taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
-        }
-        let mut found = Vec::new();
-        library.within(centre, params.patch, |i, offset| {
-            let p = self.site + self.frame.to_output(offset);
-            let wanted = library.copyable[i as usize] && !taken.contains(&i);
-            if wanted && self.has_room(i, p, offset) && self.grower.extent.admits(i, p) {
-                found.push((i, p));
-            }
-        });
-        found.sort_by_key(|&(i, _)| i);
-        found
-    }
-}
-
-impl<const D: usize> View<'_, D> {
-    /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on something, and into a
-    /// covered cell at the seam, where registration may have moved it across, only if there is a gap of its own size.
-    fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
-        let library = self.grower.library;
-        let class = library.class[i as usize];
-        let clear = |&(source, o, _): &(u32, Vector<D>, f64)| {
-            (o - offset).norm() >= ROOM * library.closest(class, library.class[source as usize])
-        };
-        if !self.around.iter().all(clear) {
-            return false;
-        }
-        match self.coverage.at(p) {
-            Cell::Open => true,
-            Cell::Covered => {
-                let own = library.nearest[i as usize];
-                let gap =
-                    self.around.iter().map(|(_, o, _)| (*o - offset).norm2()).fold(f64::INFINITY, f64::min).sqrt();
-                let reach = 0.5 * own * self.frame.spacing_scale;
-                gap >= ROOM_COVERED * own && self.coverage.open_within(p, reach).0 > 0
-            }
-            Cell::Outside => false,
-        }
-    }
 }

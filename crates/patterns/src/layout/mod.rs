@@ -4,6 +4,7 @@ pub(crate) mod coverage;
 pub(crate) mod grains;
 pub(crate) mod grow;
 pub(crate) mod noise;
+pub(crate) mod patch_site;
 
 use std::ops::ControlFlow;
 
@@ -14,7 +15,8 @@ use crate::{
     exemplar::library::Library,
     layout::{
         coverage::Coverage,
-        grow::{GrowParams, Grower, Watch},
+        grow::{Grower, Watch},
+        patch_site::GrowParams,
     },
     output::{
         canvas::Canvas,
@@ -33,7 +35,8 @@ const CELL: f64 = 0.3;
 /// A hole is laid out anew when its radius exceeds this share of the largest one in the exemplar.
 const HOLE: f64 = 0.9;
 
-/// The same where there are strokes: the meshes of a net are all about as large as the largest one, and are to stay empty.
+/// The same where there are strokes: the meshes of a net are all about as large as the largest one, and are to stay
+/// empty.
 const HOLE_STROKES: f64 = 1.0;
 
 /// Items that a patch is registered on, where it is to join what is there.
@@ -102,7 +105,7 @@ impl<const D: usize> Layout<'_, D> {
     pub(crate) fn fill_holes(&self, state: &mut State<'_, D>) {
         let mut canvas = self.canvas();
         let mut coverage = self.coverage();
-        state.items.iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
+        state.items().iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
         let known = canvas.items.len();
         self.cover(&mut coverage, canvas.items.iter().map(|i| i.position));
         if self.has_strokes() {
@@ -112,7 +115,7 @@ impl<const D: usize> Layout<'_, D> {
         }
         // Holes are few and small: they are filled without asking whether to go on.
         let _ = self.grower(ANCHORS).fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
-        canvas.items[known..].iter().for_each(|&item| state.push(item, Matrix::identity()));
+        canvas.items.iter().skip(known).for_each(|&item| _ = state.push(item, Matrix::identity()));
         state.reindex();
     }
 

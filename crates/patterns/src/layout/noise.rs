@@ -22,8 +22,9 @@ pub(crate) fn scatter<const D: usize>(
         request.domain.bounds().grown(extent.margin)
     };
     let mut random = Stream::new(request.seed, streams::INITIALISE, u64::MAX);
-    let copyable: Vec<u32> = (0..library.len() as u32).filter(|&e| library.copyable[e as usize]).collect();
-    // Rejection keeps the density right under fields: a place is kept with the probability that its local density gives it.
+    let copyable: Vec<u32> = (0..library.len() as u32).filter(|&e| library.copyable[e]).collect();
+    // Rejection keeps the density right under fields: a place is kept with the probability that its local density gives
+    // it.
     let tightest = extent.smallest_spacing_scale;
     let tries = bounds.measure() / (library.spacing * tightest).powi(D as i32);
     for _ in 0..tries as usize {

@@ -1,20 +1,38 @@
 //! Pairing of the samples of two neighbourhoods at the least total cost.
 //!
-//! Shortest augmenting paths with the start of [Jonker 1987 §4]: rows take their cheapest column, rows that lost bid for another
-//! one (augmenting row reduction), and only what is left is settled by shortest paths. Column prices start at zero and only fall
-//! on columns that are taken, so that the start also holds for more columns than rows.
+//! Shortest augmenting paths with the start of [Jonker 1987 §4]: rows take their cheapest column, rows that lost bid
+//! for another one (augmenting row reduction), and only what is left is settled by shortest paths. Column prices start
+//! at zero and only fall on columns that are taken, so that the start also holds for more columns than rows.
 //!
-//! Each row may stay alone at a cost of its own, the outlier cost [Tu 2020 §4.2.3]. That is a column which no other row can use:
-//! a row that once prefers it never leaves it, so these columns need neither price nor storage. A pair that costs as much as
-//! staying alone cannot be part of a better pairing and is dropped on entry; what remains is a short list a row.
+//! Each row may stay alone at a cost of its own, the outlier cost [Tu 2020 §4.2.3]. That is a column which no other row
+//! can use: a row that once prefers it never leaves it, so these columns need neither price nor storage. A pair that
+//! costs as much as staying alone cannot be part of a better pairing and is dropped on entry; what remains is a short
+//! list per row.
 //!
 //! All buffers are kept between calls.
 
-/// In place of a column: the row has no partner.
-pub(crate) const OUTLIER: u32 = u32::MAX;
+use arabesque_core::Numbered;
 
-/// No slot, no row.
-const NONE: u32 = u32::MAX;
+/// A number or none, in four bytes: `Option<u32>` takes eight, and these lists are filled and read for every pairing of
+/// two neighbourhoods, the innermost loop of the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct MaybeNumber(u32);
+
+impl MaybeNumber {
+    const NONE: Self = Self(u32::MAX);
+
+    #[inline]
+    fn get(self) -> Option<u32> {
+        (self != Self::NONE).then_some(self.0)
+    }
+}
+
+impl From<u32> for MaybeNumber {
+    #[inline]
+    fn from(number: u32) -> Self {
+        Self(number)
+    }
+}
 
 /// Entries of a row that are compared in one go when a full cost matrix is read.
 #[cfg(any(test, feature = "bench-stages"))]
@@ -25,24 +43,25 @@ const LANES: usize = 16;
 pub(crate) struct Assignment {
     columns: usize,
     /// Usable pairs of row `i`: slots `starts[i]..starts[i + 1]`; the last entry is the number of slots.
-    starts: Vec<u32>,
+    starts: Numbered<u32>,
     /// Column and cost of each slot.
-    pairs: Vec<(u32, f32)>,
+    pairs: Numbered<(u32, f32)>,
     /// Outlier cost of each row: what it costs to stay alone.
-    outlier: Vec<f32>,
+    outlier: Numbered<f32>,
     /// Slot of the cheapest pair of each row.
-    cheapest: Vec<u32>,
+    cheapest: Numbered<MaybeNumber>,
     /// Sum over rows of the cheaper of cheapest pair and outlier cost.
     bound: f32,
     /// Outlier cost of the open row.
     gate: f32,
-    /// Slot by which each row is paired, or `NONE`.
-    slot_of: Vec<u32>,
-    column_of: Vec<u32>,
+    /// Slot by which each row is paired.
+    slot_of: Numbered<MaybeNumber>,
+    /// Column of that slot.
+    column_of: Numbered<MaybeNumber>,
     /// Row that holds each column.
-    row_of: Vec<u32>,
+    row_of: Numbered<MaybeNumber>,
     /// Dual value of each column, never positive, zero while the column is free.
-    price: Vec<f32>,
+    price: Numbered<f32>,
     /// Rows that still wait for a decision.
     waiting: Vec<u32>,
     search: PathSearch,
@@ -52,9 +71,9 @@ pub(crate) struct Assignment {
 #[derive(Clone, Debug, Default)]
 struct PathSearch {
     /// Shortest known distance of each column: infinite before it is reached, minus infinite once it is settled.
-    distance: Vec<f32>,
+    distance: Numbered<f32>,
     /// Slot through which each column was reached, and the row of the slot.
-    reached_by: Vec<(u32, u32)>,
+    reached_by: Numbered<(u32, u32)>,
     /// Columns reached so far, the settled ones first.
     reached: Vec<u32>,
     /// Final distances of the settled columns.
@@ -76,7 +95,7 @@ enum Bid {
 /// Where an augmenting path ends.
 enum End {
     /// At a free column.
-    Column(usize),
+    Column(u32),
     /// At a row that becomes an outlier.
     Row(u32),
 }
@@ -116,13 +135,14 @@ impl Assignment {
         self.settle_greedily()
     }
 
-    /// Partner of each row: a column, or [`OUTLIER`].
-    pub(crate) fn column_of(&self) -> &[u32] {
-        &self.column_of
+    /// Partner of each row: a column, or `None` where the row stays alone, an outlier.
+    pub(crate) fn column_of(&self) -> impl Iterator<Item = Option<u32>> {
+        self.column_of.iter().map(|column| column.get())
     }
 
     /// Starts a problem whose pairs come one by one: for each row a [`Assignment::begin_row`], any number of
-    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`] or [`Assignment::settle_greedily`].
+    /// [`Assignment::pair`]s and an [`Assignment::end_row`]; then [`Assignment::settle`] or
+    /// [`Assignment::settle_greedily`].
     pub(crate) fn begin(&mut self, columns: usize) {
         self.columns = columns;
         self.pairs.clear();
@@ -139,7 +159,7 @@ impl Assignment {
         self.gate = outlier;
     }
 
-    /// Offers a partner to the open row; each column at most once a row.
+    /// Offers a partner to the open row; each column at most once per row.
     #[inline]
     pub(crate) fn pair(&mut self, column: u32, cost: f32) {
         if cost < self.gate {
@@ -147,13 +167,14 @@ impl Assignment {
         }
     }
 
-    /// Closes the open row. Returns a lower bound of what [`Assignment::settle`] will return, from the rows entered so far.
+    /// Closes the open row. Returns a lower bound of what [`Assignment::settle`] will return, from the rows entered so
+    /// far.
     pub(crate) fn end_row(&mut self) -> f32 {
         let start = self.starts.last().map_or(0, |&s| s as usize);
-        let (mut best, mut slot) = (self.gate, NONE);
-        for (k, &(_, cost)) in self.pairs[start..].iter().enumerate() {
+        let (mut best, mut slot) = (self.gate, MaybeNumber::NONE);
+        for (k, &(_, cost)) in (start..).zip(self.pairs.iter().skip(start)) {
             if cost < best {
-                (best, slot) = (cost, (start + k) as u32);
+                (best, slot) = (cost, MaybeNumber(k as u32));
             }
         }
         self.bound += best;
@@ -162,14 +183,15 @@ impl Assignment {
         self.bound
     }
 
-    /// Solves the problem that was entered. Returns the least total cost: infinite when a row that must have a partner gets none.
+    /// Solves the problem that was entered. Returns the least total cost: infinite when a row that must have a partner
+    /// gets none.
     pub(crate) fn settle(&mut self) -> f32 {
         self.reset();
         for row in 0..self.outlier.len() as u32 {
-            match self.cheapest[row as usize] {
-                NONE => {}
-                slot if self.row_of[self.column(slot)] == NONE => self.take(row, slot),
-                _ => self.waiting.push(row),
+            match self.cheapest[row].get() {
+                None => {}
+                Some(slot) if self.is_free(self.column(slot)) => self.take(row, slot),
+                Some(_) => self.waiting.push(row),
             }
         }
         if self.waiting.is_empty() {
@@ -186,13 +208,13 @@ impl Assignment {
     }
 
     /// Settles the problem that was entered by pairing the nearest pair first, then the nearest of the rest, and so on
-    /// [Ma 2011 §3.2]. Returns the sum over the pairs; rows left over are [`OUTLIER`]s and not counted.
+    /// [Ma 2011 §3.2]. Returns the sum over the pairs; rows left over are outliers and not counted.
     pub(crate) fn settle_greedily(&mut self) -> f32 {
         self.reset();
         let mut total = 0.0;
         while let Some((row, slot)) = self.nearest_open_pair() {
             self.take(row, slot);
-            total += self.pairs[slot as usize].1;
+            total += self.pairs[slot].1;
         }
         total
     }
@@ -220,38 +242,39 @@ impl Assignment {
 
     fn reset(&mut self) {
         let rows = self.outlier.len();
-        refill(&mut self.slot_of, rows, NONE);
-        refill(&mut self.column_of, rows, OUTLIER);
-        refill(&mut self.row_of, self.columns, NONE);
-        refill(&mut self.price, self.columns, 0.0);
+        self.slot_of.refill(MaybeNumber::NONE, rows);
+        self.column_of.refill(MaybeNumber::NONE, rows);
+        self.row_of.refill(MaybeNumber::NONE, self.columns);
+        self.price.refill(0.0, self.columns);
         self.waiting.clear();
     }
 
-    fn column(&self, slot: u32) -> usize {
-        self.pairs[slot as usize].0 as usize
+    fn column(&self, slot: u32) -> u32 {
+        self.pairs[slot].0
+    }
+
+    fn is_free(&self, column: u32) -> bool {
+        self.row_of[column] == MaybeNumber::NONE
     }
 
     fn slots(&self, row: u32) -> std::ops::Range<usize> {
-        self.starts[row as usize] as usize..self.starts[row as usize + 1] as usize
+        self.starts[row] as usize..self.starts[row + 1] as usize
     }
 
     fn take(&mut self, row: u32, slot: u32) {
         let column = self.column(slot);
-        self.slot_of[row as usize] = slot;
-        self.column_of[row as usize] = column as u32;
-        self.row_of[column] = row;
+        self.slot_of[row] = slot.into();
+        self.column_of[row] = column.into();
+        self.row_of[column] = row.into();
     }
 
     fn leave(&mut self, row: u32) {
-        self.slot_of[row as usize] = NONE;
-        self.column_of[row as usize] = OUTLIER;
+        self.slot_of[row] = MaybeNumber::NONE;
+        self.column_of[row] = MaybeNumber::NONE;
     }
 
     fn total(&self) -> f32 {
-        let cost = |(&slot, &outlier): (&u32, &f32)| match slot {
-            NONE => outlier,
-            slot => self.pairs[slot as usize].1,
-        };
+        let cost = |(slot, &outlier): (&MaybeNumber, &f32)| slot.get().map_or(outlier, |slot| self.pairs[slot].1);
         self.slot_of.iter().zip(&self.outlier).map(cost).sum()
     }
 
@@ -283,39 +306,35 @@ impl Assignment {
     }
 
     fn bid(&mut self, row: u32) -> Bid {
-        let (mut best, mut second, mut slot) = (self.outlier[row as usize], f32::INFINITY, NONE);
+        let (mut best, mut second, mut slot) = (self.outlier[row], f32::INFINITY, None);
         for k in self.slots(row) {
             let (column, cost) = self.pairs[k];
-            let reduced = cost - self.price[column as usize];
+            let reduced = cost - self.price[column];
             if reduced < best {
-                (best, second, slot) = (reduced, best, k as u32);
+                (best, second, slot) = (reduced, best, Some(k as u32));
             } else if reduced < second {
                 second = reduced;
             }
         }
-        if slot == NONE {
-            // Prices only fall, so no column will ever become better than staying alone.
-            return Bid::Placed;
-        }
+        // Prices only fall, so no column will ever become better than staying alone.
+        let Some(slot) = slot else { return Bid::Placed };
         let column = self.column(slot);
-        let other = self.row_of[column];
+        let other = self.row_of[column].get();
         let margin = second - best;
-        if other != NONE && (margin <= 0.0 || !margin.is_finite()) {
+        if other.is_some() && (margin <= 0.0 || !margin.is_finite()) {
             return Bid::Tied;
         }
         if margin.is_finite() {
             self.price[column] -= margin;
         }
         self.take(row, slot);
-        if other == NONE {
-            return Bid::Placed;
-        }
+        let Some(other) = other else { return Bid::Placed };
         self.leave(other);
         Bid::Displaced(other)
     }
 
-    /// Places `start` by a shortest augmenting path: along it rows change to other columns, and at its end a column is taken that
-    /// was free or a row becomes an outlier.
+    /// Places `start` by a shortest augmenting path: along it rows change to other columns, and at its end a column is
+    /// taken that was free or a row becomes an outlier.
     fn augment(&mut self, start: u32) {
         let (mut row, mut shift) = (start, 0.0);
         let (end, length) = loop {
@@ -330,53 +349,51 @@ impl Assignment {
                 // No column left for a row that must have one: it stays without.
                 return self.search.clear();
             };
-            let column = self.search.reached[k] as usize;
-            row = self.row_of[column];
-            if row == NONE {
+            let column = self.search.reached[k];
+            let (Some(holder), Some(slot)) = (self.row_of[column].get(), self.slot_holding(column)) else {
                 break (End::Column(column), length);
-            }
+            };
+            row = holder;
             self.search.settle(k);
-            shift = length - (self.pairs[self.slot_of[row as usize] as usize].1 - self.price[column]);
+            shift = length - (self.pairs[slot].1 - self.price[column]);
         };
         for (&column, &distance) in self.search.reached.iter().zip(&self.search.settled) {
-            self.price[column as usize] += distance - length;
+            self.price[column] += distance - length;
         }
         self.flip(start, end);
         self.search.clear();
     }
 
+    /// Slot by which the row that holds a column is paired with it.
+    fn slot_holding(&self, column: u32) -> Option<u32> {
+        self.row_of[column].get().and_then(|row| self.slot_of[row].get())
+    }
+
     /// Reaches the columns of `row`, which is itself reached at reduced distance `shift`.
     fn relax(&mut self, row: u32, shift: f32) {
-        let alone = self.outlier[row as usize] + shift;
+        let alone = self.outlier[row] + shift;
         if alone.is_finite() && self.search.leave.is_none_or(|(d, _)| alone < d) {
             self.search.leave = Some((alone, row));
         }
         for k in self.slots(row) {
             let (column, cost) = self.pairs[k];
-            self.search.reach(column, cost - self.price[column as usize] + shift, (k as u32, row));
+            self.search.reach(column, cost - self.price[column] + shift, (k as u32, row));
         }
     }
 
     fn flip(&mut self, start: u32, end: End) {
         let mut column = match end {
-            End::Column(column) => column,
+            End::Column(column) => Some(column),
             End::Row(row) => {
-                let column = self.column_of[row as usize];
+                let column = self.column_of[row].get().filter(|_| row != start);
                 self.leave(row);
-                if row == start {
-                    return;
-                }
-                column as usize
+                column
             }
         };
-        loop {
-            let (slot, row) = self.search.reached_by[column];
-            let before = self.column_of[row as usize];
+        while let Some(reached) = column {
+            let (slot, row) = self.search.reached_by[reached];
+            column = self.column_of[row].get().filter(|_| row != start);
             self.take(row, slot);
-            if row == start {
-                return;
-            }
-            column = before as usize;
         }
     }
 
@@ -384,12 +401,14 @@ impl Assignment {
     fn nearest_open_pair(&mut self) -> Option<(u32, u32)> {
         let mut best: Option<(u32, u32, f32)> = None;
         for row in 0..self.outlier.len() as u32 {
-            if self.slot_of[row as usize] == NONE {
-                self.refresh_cheapest(row);
-                let slot = self.cheapest[row as usize];
-                if slot != NONE && best.is_none_or(|(.., cost)| self.pairs[slot as usize].1 < cost) {
-                    best = Some((row, slot, self.pairs[slot as usize].1));
-                }
+            if self.slot_of[row] != MaybeNumber::NONE {
+                continue;
+            }
+            self.refresh_cheapest(row);
+            if let Some(slot) = self.cheapest[row].get()
+                && best.is_none_or(|(.., cost)| self.pairs[slot].1 < cost)
+            {
+                best = Some((row, slot, self.pairs[slot].1));
             }
         }
         best.map(|(row, slot, _)| (row, slot))
@@ -397,32 +416,32 @@ impl Assignment {
 
     /// Makes `cheapest` point to a free column again.
     fn refresh_cheapest(&mut self, row: u32) {
-        let slot = self.cheapest[row as usize];
-        if slot == NONE || self.row_of[self.column(slot)] == NONE {
+        if self.cheapest[row].get().is_none_or(|slot| self.is_free(self.column(slot))) {
             return;
         }
-        let (mut best, mut slot) = (f32::INFINITY, NONE);
+        let (mut best, mut slot) = (f32::INFINITY, MaybeNumber::NONE);
         for k in self.slots(row) {
             let (column, cost) = self.pairs[k];
-            if cost < best && self.row_of[column as usize] == NONE {
-                (best, slot) = (cost, k as u32);
+            if cost < best && self.is_free(column) {
+                (best, slot) = (cost, MaybeNumber(k as u32));
             }
         }
-        self.cheapest[row as usize] = slot;
+        self.cheapest[row] = slot;
     }
 }
 
 impl PathSearch {
     /// Makes room for a problem. The tree is empty before and after each search.
     fn reset(&mut self, columns: usize) {
-        refill(&mut self.distance, columns, f32::INFINITY);
-        self.reached_by.resize(columns, (NONE, NONE));
+        self.distance.refill(f32::INFINITY, columns);
+        // Entries are written as their columns are reached.
+        self.reached_by.refill((0, 0), columns);
     }
 
     /// Forgets the tree.
     fn clear(&mut self) {
         for &column in &self.reached {
-            self.distance[column as usize] = f32::INFINITY;
+            self.distance[column] = f32::INFINITY;
         }
         self.reached.clear();
         self.settled.clear();
@@ -430,34 +449,28 @@ impl PathSearch {
     }
 
     fn reach(&mut self, column: u32, distance: f32, by: (u32, u32)) {
-        let known = &mut self.distance[column as usize];
+        let known = &mut self.distance[column];
         if distance < *known {
             if *known == f32::INFINITY {
                 self.reached.push(column);
             }
             *known = distance;
-            self.reached_by[column as usize] = by;
+            self.reached_by[column] = by;
         }
     }
 
     /// The nearest column that is reached but not settled: index into `reached`, and distance.
     fn nearest_open(&self) -> Option<(usize, f32)> {
         let open = self.reached.iter().enumerate().skip(self.settled.len());
-        open.map(|(k, &c)| (k, self.distance[c as usize])).min_by(|a, b| a.1.total_cmp(&b.1))
+        open.map(|(k, &c)| (k, self.distance[c])).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Makes the distance of `reached[k]` final. Rounding must not improve it any more: the tree would get a cycle.
     fn settle(&mut self, k: usize) {
         self.reached.swap(k, self.settled.len());
-        let column = self.reached[self.settled.len()] as usize;
+        let column = self.reached[self.settled.len()];
         self.settled.push(std::mem::replace(&mut self.distance[column], f32::NEG_INFINITY));
     }
-}
-
-/// Sets the length and every entry of a buffer, keeping its memory.
-fn refill<T: Copy>(buffer: &mut Vec<T>, length: usize, value: T) {
-    buffer.clear();
-    buffer.resize(length, value);
 }
 
 #[cfg(test)]
@@ -465,6 +478,11 @@ mod tests {
     use super::*;
     use pathfinding::{kuhn_munkres::kuhn_munkres_min, matrix::Matrix};
     use proptest::prelude::*;
+
+    /// The column of each row.
+    fn pairing(solver: &Assignment) -> Vec<Option<u32>> {
+        solver.column_of().collect()
+    }
 
     /// Least cost by the library, outliers as extra columns.
     fn reference(rows: usize, columns: usize, cost: &[f32], outlier: &[f32]) -> i64 {
@@ -486,13 +504,13 @@ mod tests {
     fn cost_of(solver: &Assignment, columns: usize, cost: &[f32], outlier: &[f32]) -> f32 {
         let mut used = vec![false; columns];
         let mut total = 0.0;
-        for (i, &j) in solver.column_of().iter().enumerate() {
-            if j == OUTLIER {
+        for (i, j) in solver.column_of().enumerate() {
+            let Some(j) = j.map(|j| j as usize) else {
                 total += outlier[i];
-            } else {
-                assert!(!std::mem::replace(&mut used[j as usize], true), "column {j} is used twice");
-                total += cost[i * columns + j as usize];
-            }
+                continue;
+            };
+            assert!(!std::mem::replace(&mut used[j], true), "column {j} is used twice");
+            total += cost[i * columns + j];
         }
         total
     }
@@ -542,7 +560,7 @@ mod tests {
             let mut new = Assignment::default();
             let want = new.solve_with_outliers(b.0, b.1, &b.2, &b.3);
             prop_assert_eq!(used.solve_with_outliers(b.0, b.1, &b.2, &b.3), want);
-            prop_assert_eq!(used.column_of(), new.column_of());
+            prop_assert_eq!(pairing(&used), pairing(&new));
         }
 
         #[test]
@@ -551,15 +569,15 @@ mod tests {
             let total = solver.greedy(rows, columns, &cost);
             let mut order: Vec<_> = (0..rows * columns).filter(|&k| cost[k].is_finite()).collect();
             order.sort_by(|&a, &b| cost[a].total_cmp(&cost[b]).then(a.cmp(&b)));
-            let (mut column_of, mut used, mut want) = (vec![OUTLIER; rows], vec![false; columns], 0.0);
+            let (mut column_of, mut used, mut want) = (vec![None; rows], vec![false; columns], 0.0);
             for k in order {
                 let (i, j) = (k / columns, k % columns);
-                if column_of[i] == OUTLIER && !used[j] {
-                    (column_of[i], used[j]) = (j as u32, true);
+                if column_of[i].is_none() && !used[j] {
+                    (column_of[i], used[j]) = (Some(j as u32), true);
                     want += cost[k];
                 }
             }
-            prop_assert_eq!(solver.column_of(), &column_of[..]);
+            prop_assert_eq!(pairing(&solver), column_of);
             prop_assert_eq!(total, want);
         }
     }
@@ -569,21 +587,21 @@ mod tests {
         let mut solver = Assignment::default();
         assert_eq!(solver.solve(0, 5, &[]), 0.0);
         assert_eq!(solver.solve_with_outliers(0, 0, &[], &[]), 0.0);
-        assert!(solver.column_of().is_empty());
+        assert!(pairing(&solver).is_empty());
     }
 
     #[test]
     fn one_row_takes_the_only_column() {
         let mut solver = Assignment::default();
         assert_eq!(solver.solve(1, 1, &[3.0]), 3.0);
-        assert_eq!(solver.column_of(), [0]);
+        assert_eq!(pairing(&solver), [Some(0)]);
     }
 
     #[test]
     fn everybody_stays_alone_when_partners_cost_as_much() {
         let mut solver = Assignment::default();
         assert_eq!(solver.solve_with_outliers(2, 2, &[5.0, 5.0, 5.0, 9.0], &[5.0, 5.0]), 10.0);
-        assert_eq!(solver.column_of(), [OUTLIER, OUTLIER]);
+        assert_eq!(pairing(&solver), [None, None]);
         assert_eq!(solver.solve_with_outliers(2, 0, &[], &[1.0, 2.0]), 3.0);
     }
 
@@ -593,22 +611,22 @@ mod tests {
         // Both want column 0; the second has nowhere else to go, the first has column 1.
         let cost = [1.0, 2.0, 0.5, f32::INFINITY];
         assert_eq!(solver.solve_with_outliers(2, 2, &cost, &[4.0, 4.0]), 2.5);
-        assert_eq!(solver.column_of(), [1, 0]);
+        assert_eq!(pairing(&solver), [Some(1), Some(0)]);
     }
 
     #[test]
     fn a_row_that_must_be_paired_pushes_the_other_out() {
         let mut solver = Assignment::default();
         let total = solver.solve_with_outliers(2, 1, &[1.0, 3.0], &[2.0, f32::INFINITY]);
-        assert_eq!((total, solver.column_of()), (5.0, &[OUTLIER, 0][..]));
+        assert_eq!((total, pairing(&solver)), (5.0, vec![None, Some(0)]));
         let total = solver.solve_with_outliers(2, 1, &[1.0, 3.0], &[f32::INFINITY; 2]);
         assert_eq!(total, f32::INFINITY);
     }
 
     #[test]
-    fn a_cost_that_is_no_number_is_never_used() {
+    fn a_cost_that_is_not_a_number_is_never_used() {
         let mut solver = Assignment::default();
         assert_eq!(solver.solve_with_outliers(1, 2, &[f32::NAN, 1.0], &[2.0]), 1.0);
-        assert_eq!(solver.column_of(), [1]);
+        assert_eq!(pairing(&solver), [Some(1)]);
     }
 }

@@ -1,10 +1,10 @@
 //! Existence assignment: which elements should be there [Tu 2020 §4.3.4, appendix A].
 //!
-//! An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods miss an exemplar element, it is
-//! added. The samples of an element come and go together; frozen elements stay.
+//! Search and the other assignments move what is there; only votes on existence repair that there is too much or too
+//! little. An element that most overlapping neighbourhoods left without a partner is removed. Where most neighbourhoods
+//! miss an exemplar element, it is added. The samples of an element come and go together; frozen elements stay.
 
-use arabesque_core::{Buckets, Matrix, Vector};
-
+use arabesque_core::{Buckets, Domain, Matrix, Numbered, Vector};
 use rayon::prelude::*;
 
 use crate::output::{
@@ -25,7 +25,7 @@ const ROOM: f64 = 0.6;
 const OWN_ROOM: f64 = 0.6;
 
 /// Adding stops at this multiple of the target number of a class.
-const MOST: f64 = 1.03;
+const MAX_SURPLUS: f64 = 1.03;
 
 /// How many elements were added and removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,9 +34,10 @@ pub(crate) struct Changes {
     pub(crate) removed: usize,
 }
 
-/// Adds and removes elements by the votes of the last search. `targets[c]` is the number of elements of class `c` that the output should have:
-/// votes alone drift, since a poor neighbourhood loses elements before it can gain any. Removal stops at the share `floor` of the target.
-pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>, targets: &[f64], floor: f64) -> Changes {
+/// Adds and removes elements by the votes of the last search. `targets[c]` is the number of elements of class `c` that
+/// the output should have: votes alone drift, since a poor neighbourhood loses elements before it can gain any. Removal
+/// stops at the share `floor` of the target.
+pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>, floor: f64) -> Changes {
     let removed = remove(state, targets, floor);
     let added = add(state, targets);
     if removed + added > 0 {
@@ -46,34 +47,34 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>, targets: &[f64], 
 }
 
 /// Living items of each class. What the user drew beyond the border is not part of what should be there.
-fn class_counts<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
-    let mut counts = vec![0.0; state.library.classes()];
+fn class_counts<const D: usize>(state: &State<'_, D>) -> Numbered<f64> {
+    let mut counts = Numbered::filled(0.0, state.library.classes());
     let counts_in = |i: &&LiveItem<D>| i.item.frozen.is_none() || state.domain().contains(i.item.position);
-    for live in state.items.iter().filter(|i| i.alive).filter(counts_in) {
-        counts[state.library.class[live.item.source as usize] as usize] += 1.0;
+    for live in state.items().iter().filter(|i| i.alive).filter(counts_in) {
+        counts[state.library.class[live.item.source]] += 1.0;
     }
     counts
 }
 
-fn remove<const D: usize>(state: &mut State<'_, D>, targets: &[f64], floor: f64) -> usize {
+fn remove<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>, floor: f64) -> usize {
     let confidence = confidences(state);
     let mut counts = class_counts(state);
-    let mut doubted: Vec<u32> = (0..state.items.len() as u32)
+    let mut doubted: Vec<u32> = (0..state.items().len() as u32)
         .filter(|&i| {
-            let live = &state.items[i as usize];
-            live.alive && live.item.frozen.is_none() && confidence[i as usize] < HALF
+            let live = state.item(i);
+            live.alive && live.item.frozen.is_none() && confidence[i] < HALF
         })
         .collect();
-    doubted.sort_by(|&a, &b| confidence[a as usize].total_cmp(&confidence[b as usize]).then(a.cmp(&b)));
+    doubted.sort_by(|&a, &b| confidence[a].total_cmp(&confidence[b]).then(a.cmp(&b)));
     let mut removed = 0;
     for i in doubted {
-        let class = state.library.class[state.items[i as usize].item.source as usize] as usize;
+        let class = state.library.class[state.item(i).item.source];
         if counts[class] <= floor * targets[class] {
             continue;
         }
         counts[class] -= 1.0;
         removed += 1;
-        state.items[i as usize].alive = false;
+        state.remove_item(i);
     }
     if removed > 0 {
         announce_removed(state);
@@ -82,56 +83,61 @@ fn remove<const D: usize>(state: &mut State<'_, D>, targets: &[f64], floor: f64)
 }
 
 /// Share of the overlapping neighbourhoods in which each item had a partner; 1 where none overlaps [Tu 2020 eq. 16].
-fn confidences<const D: usize>(state: &State<'_, D>) -> Vec<f64> {
-    let mut votes = vec![(0_u32, 0_u32); state.items.len()];
-    for &s in &state.living {
-        let Some(matched) = &state.samples[s as usize].matched else { continue };
-        matched.members.iter().for_each(|&o| votes[state.samples[o as usize].item as usize].0 += 1);
-        matched.pairs.iter().for_each(|&(o, _)| votes[state.samples[o as usize].item as usize].1 += 1);
+fn confidences<const D: usize>(state: &State<'_, D>) -> Numbered<f64> {
+    let mut votes = Numbered::filled((0_u32, 0_u32), state.items().len());
+    for &s in state.living() {
+        let Some(matched) = &state.sample(s).matched else { continue };
+        matched.members.iter().for_each(|&o| votes[state.sample(o).item].0 += 1);
+        matched.pairs.iter().for_each(|&(o, _)| votes[state.sample(o).item].1 += 1);
     }
     let share = |(all, kept)| if all > 0 { f64::from(kept) / f64::from(all) } else { 1.0 };
-    let mut confidence: Vec<f64> = votes.into_iter().map(share).collect();
+    let mut confidence: Numbered<f64> = votes.into_iter().map(share).collect();
     for i in crowded(state, &confidence) {
-        confidence[i as usize] *= HALF;
+        confidence[i] *= HALF;
     }
     confidence
 }
 
 /// Of each pair of elements that are closer than any such pair of the exemplar, the one with the smaller confidence.
-fn crowded<const D: usize>(state: &State<'_, D>, confidence: &[f64]) -> Vec<u32> {
-    let firsts = state.living.par_iter().filter(|&&s| state.samples[s as usize].part == 0);
+fn crowded<const D: usize>(state: &State<'_, D>, confidence: &Numbered<f64>) -> Vec<u32> {
+    let firsts = state.living().par_iter().filter(|&&s| state.sample(s).part == 0);
     firsts.filter_map(|&s| loses(state, confidence, s)).collect()
 }
 
 /// The item of sample `s`, if it crowds one of larger confidence.
-fn loses<const D: usize>(state: &State<'_, D>, confidence: &[f64], s: u32) -> Option<u32> {
-    let i = state.samples[s as usize].item;
-    let live = &state.items[i as usize];
-    let class = state.library.class[live.item.source as usize];
+fn loses<const D: usize>(state: &State<'_, D>, confidence: &Numbered<f64>, s: u32) -> Option<u32> {
+    let i = state.sample(s).item;
+    let live = state.item(i);
+    let class = state.library.class[live.item.source];
     let scale = CROWDED * state.request.fields.frame(live.item.position).spacing_scale;
     let mut crowded = false;
-    state.index.within(state.samples[s as usize].position, scale * state.library.widest(class), |slot, _| {
-        let j = state.samples[state.living[slot] as usize].item;
-        let other = &state.items[j as usize];
-        let least = scale * state.library.closest(class, state.library.class[other.item.source as usize]);
+    state.within(state.sample(s).position, scale * state.library.widest(class), |o, _| {
+        let j = state.sample(o).item;
+        let other = state.item(j);
+        let least = scale * state.library.closest(class, state.library.class[other.item.source]);
         let close = state.domain().offset(live.item.position, other.item.position).norm() < least;
-        crowded |= j != i && close && (confidence[i as usize], i) < (confidence[j as usize], j);
+        crowded |= j != i && close && (confidence[i], i) < (confidence[j], j);
     });
     crowded.then_some(i)
 }
 
 /// Makes the neighbours of the dead search again.
 fn announce_removed<const D: usize>(state: &mut State<'_, D>) {
-    let dead: Vec<bool> = state.items.iter().map(|i| !i.alive).collect();
-    for k in 0..state.samples.len() {
-        let stale = state.samples[k]
-            .matched
-            .as_ref()
-            .is_some_and(|m| m.members.iter().any(|&o| dead[state.samples[o as usize].item as usize]));
-        if stale {
-            state.samples[k].dirty = true;
+    for s in state.samples().numbers() {
+        let matched = state.sample(s).matched.as_ref();
+        if matched.is_some_and(|m| m.members.iter().any(|&o| !state.is_alive(o))) {
+            state.mark_dirty(s);
         }
     }
+}
+
+/// An element that a neighbourhood misses.
+struct MissedElement<const D: usize> {
+    element: u32,
+    class: u32,
+    place: Vector<D>,
+    /// How near another neighbourhood must miss one of its class to mean the same.
+    near: f64,
 }
 
 /// A place where elements are missed.
@@ -143,14 +149,44 @@ struct Cluster<const D: usize> {
     votes: Vec<u32>,
 }
 
-fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
+/// Places where elements are missed, quick to look up.
+struct Clusters<'a, const D: usize> {
+    domain: &'a Domain<D>,
+    all: Numbered<Cluster<D>>,
+    buckets: Buckets<D>,
+}
+
+impl<const D: usize> Clusters<'_, D> {
+    /// Counts a vote for the nearest cluster of its class, or for a new one.
+    fn vote(&mut self, missed: &MissedElement<D>) {
+        let MissedElement { element, class, place, near } = *missed;
+        let mut best = (near, None);
+        self.buckets.near(place, near, |c| {
+            let cluster = &self.all[c];
+            let distance = self.domain.offset(cluster.centre, place).norm();
+            if cluster.class == class && distance < best.0 {
+                best = (distance, Some(c));
+            }
+        });
+        if let Some(c) = best.1 {
+            let cluster = &mut self.all[c];
+            cluster.shift += self.domain.offset(cluster.centre, place);
+            cluster.votes.push(element);
+        } else {
+            let number = self.all.push(Cluster { class, centre: place, shift: Vector::ZERO, votes: vec![element] });
+            self.buckets.insert(number, place);
+        }
+    }
+}
+
+fn add<const D: usize>(state: &mut State<'_, D>, targets: &Numbered<f64>) -> usize {
     let clusters = clusters(state);
     let mut counts = class_counts(state);
     let mut accepted = Vec::new();
     for cluster in &clusters {
         let n = cluster.votes.len() as f64;
         let position = cluster.centre + cluster.shift * (1.0 / n);
-        let class = cluster.class as usize;
+        let class = cluster.class;
         // Fewer than there should be: half the votes will do when a fifth is wanting.
         let share = ((counts[class] / targets[class].max(1.0) - 0.8) * 2.5 + 0.5).clamp(0.5, 1.0);
         if n >= HALF * share * covering(state, position) {
@@ -163,8 +199,8 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
     let mut added = 0;
     for (_, position, source) in accepted {
         let Some(source) = source else { continue };
-        let class = state.library.class[source as usize];
-        if counts[class as usize] >= MOST * targets[class as usize] {
+        let class = state.library.class[source];
+        if counts[class] >= MAX_SURPLUS * targets[class] {
             continue;
         }
         if state.extent.admits(source, position)
@@ -174,21 +210,22 @@ fn add<const D: usize>(state: &mut State<'_, D>, targets: &[f64]) -> usize {
             state.push(Item { source, position, frozen: None }, Matrix::identity());
             placed.push((position, class));
             added += 1;
-            counts[class as usize] += 1.0;
+            counts[class] += 1.0;
         }
     }
     added
 }
 
-/// Whether a new curve sample at `p` would keep the distance that its source keeps to whatever is nearest; elements have their classes for that.
+/// Whether a new curve sample at `p` would keep the distance that its source keeps to whatever is nearest; elements
+/// have their classes for that.
 fn has_own_room<const D: usize>(state: &State<'_, D>, source: u32, p: Vector<D>, placed: &[(Vector<D>, u32)]) -> bool {
     if source < state.level.base {
         return true;
     }
     let scale = state.request.fields.frame(p).spacing_scale;
-    let room = OWN_ROOM * state.library.nearest[source as usize] * scale;
+    let room = OWN_ROOM * state.library.nearest[source] * scale;
     let mut clear = placed.iter().all(|(q, _)| state.domain().offset(p, *q).norm() >= room);
-    state.index.within(p, room, |_, _| clear = false);
+    state.within(p, room, |_, _| clear = false);
     clear
 }
 
@@ -198,66 +235,55 @@ fn is_clear<const D: usize>(state: &State<'_, D>, class: u32, p: Vector<D>, plac
     let keeps = |other: u32, offset: Vector<D>| offset.norm() >= scale * state.library.closest(class, other);
     let mut clear = placed.iter().all(|&(q, other)| keeps(other, state.domain().offset(p, q)));
     // Samples stand for their elements here: the centres of long elements lie between them.
-    state.index.within(p, scale * state.library.widest(class), |slot, offset| {
-        let item = state.samples[state.living[slot] as usize].item;
-        let live = &state.items[item as usize];
-        if live.count == 1 {
-            clear &= keeps(state.library.class[live.item.source as usize], offset);
-        } else {
-            let offset = state.domain().offset(p, live.item.position);
-            clear &= keeps(state.library.class[live.item.source as usize], offset);
-        }
+    state.within(p, scale * state.library.widest(class), |s, offset| {
+        let live = state.item_of(s);
+        let offset = if live.count == 1 { offset } else { state.domain().offset(p, live.item.position) };
+        clear &= keeps(state.library.class[live.item.source], offset);
     });
     clear
 }
 
-/// Candidates for new elements, grouped by class and place.
-fn clusters<const D: usize>(state: &State<'_, D>) -> Vec<Cluster<D>> {
-    let mut clusters: Vec<Cluster<D>> = Vec::new();
+/// Elements that are missed, grouped by class and place [Tu 2020 appendix A]: each joins the nearest group, or begins
+/// one. How many of the neighbourhoods around a group want an element there is its confidence.
+fn clusters<const D: usize>(state: &State<'_, D>) -> Numbered<Cluster<D>> {
     let reach = state.library.spacing * state.extent.largest_spacing_scale;
-    let mut buckets = Buckets::new(state.domain(), state.extent.margin, reach);
-    for &s in &state.living {
-        let sample = &state.samples[s as usize];
-        let Some(matched) = &sample.matched else { continue };
-        let frame = state.request.fields.frame(sample.position);
-        let origin = state.level.position[matched.input as usize];
-        for &i in matched.missing.iter().filter(|&&i| state.level.part[i as usize] == 0) {
-            let element = state.level.element[i as usize];
-            let place = sample.position + frame.to_output(state.library.centre[element as usize] - origin);
-            let place = state.domain().wrap(place);
-            let class = state.library.class[element as usize];
-            let near = 0.5 * state.library.outlier[class as usize] * frame.spacing_scale;
-            let mut best = (near, None);
-            buckets.near(place, near, |c| {
-                let cluster = &clusters[c as usize];
-                let distance = state.domain().offset(cluster.centre, place).norm();
-                if cluster.class == class && distance < best.0 {
-                    best = (distance, Some(c));
-                }
-            });
-            match best.1 {
-                Some(c) => {
-                    let cluster = &mut clusters[c as usize];
-                    cluster.shift += state.request.domain.offset(cluster.centre, place);
-                    cluster.votes.push(element);
-                }
-                None => {
-                    buckets.insert(clusters.len() as u32, place);
-                    clusters.push(Cluster { class, centre: place, shift: Vector::ZERO, votes: vec![element] });
-                }
-            }
-        }
+    let buckets = Buckets::new(state.domain(), state.extent.margin, reach);
+    let mut clusters = Clusters { domain: state.domain(), all: Numbered::new(), buckets };
+    for &s in state.living() {
+        missed_by(state, s).for_each(|missed| clusters.vote(&missed));
     }
-    clusters
+    clusters.all
 }
 
-/// Number of neighbourhoods that reach `p`, their rim not counted in full: a sample misses what is near more surely than what is far.
+/// The elements that the neighbourhood of a sample misses, where they should be by its match.
+fn missed_by<'a, const D: usize>(
+    state: &'a State<'_, D>,
+    s: u32,
+) -> impl Iterator<Item = MissedElement<D>> + use<'a, D> {
+    let sample = state.sample(s);
+    let (level, library) = (state.level, state.library);
+    let frame = state.request.fields.frame(sample.position);
+    sample.matched.iter().flat_map(move |matched| {
+        let origin = level.position[matched.input];
+        // The samples of an element come together: the first speaks for all.
+        let firsts = matched.missing.iter().filter(|&&i| level.part[i] == 0);
+        firsts.map(move |&i| {
+            let element = level.element[i];
+            let place = sample.position + frame.to_output(library.centre[element] - origin);
+            let class = library.class[element];
+            let near = 0.5 * library.outlier[class] * frame.spacing_scale;
+            MissedElement { element, class, place: state.domain().wrap(place), near }
+        })
+    })
+}
+
+/// Number of neighbourhoods that reach `p`, their rim not counted in full: a sample misses what is near more surely
+/// than what is far.
 fn covering<const D: usize>(state: &State<'_, D>, p: Vector<D>) -> f64 {
     let radius = state.level.radius * state.request.fields.frame(p).spacing_scale;
     let mut n = 0.0;
-    state.index.within(p, radius, |slot, _| {
-        let sample = &state.samples[state.living[slot] as usize];
-        n += f64::from(u8::from(sample.matched.is_some()));
+    state.within(p, radius, |s, _| {
+        n += f64::from(u8::from(state.sample(s).matched.is_some()));
     });
     n
 }
@@ -265,9 +291,9 @@ fn covering<const D: usize>(state: &State<'_, D>, p: Vector<D>) -> f64 {
 /// The copyable element with the smallest sum of attribute distances to the votes.
 fn source<const D: usize>(state: &State<'_, D>, votes: &[u32]) -> Option<u32> {
     let spread = |e: u32| -> f32 {
-        let feature = &state.library.feature[e as usize];
-        votes.iter().map(|&v| feature.distance2(&state.library.feature[v as usize])).sum()
+        let feature = &state.library.feature[e];
+        votes.iter().map(|&v| feature.distance2(&state.library.feature[v])).sum()
     };
-    let usable = votes.iter().copied().filter(|&e| state.library.copyable[e as usize]);
+    let usable = votes.iter().copied().filter(|&e| state.library.copyable[e]);
     usable.map(|e| (spread(e), e)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, e)| e)
 }

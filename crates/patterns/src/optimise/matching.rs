@@ -1,11 +1,12 @@
 //! How alike two neighbourhoods are, and which samples correspond [Tu 2020 §4.2].
 //!
-//! The neighbourhood of an output sample is laid over the one of an exemplar sample, centres together, in the local frame. Pairs cost their
-//! squared distance in place and attributes. Robust matching assigns at the least total cost and lets a sample stay alone at the squared
-//! outlier distance; beyond the paper, exemplar samples inside the radius that find no partner cost the same, so that holes count as much
-//! as surplus elements. Hard matching pairs nearest first and charges nothing for what is missing [Ma 2011 §3.2].
+//! The neighbourhood of an output sample is laid over the one of an exemplar sample, centres together, in the local
+//! frame. Pairs cost their squared distance in place and attributes. Robust matching assigns at the least total cost
+//! and lets a sample stay alone at the squared outlier distance; beyond the paper, exemplar samples inside the radius
+//! that find no partner cost the same, so that holes count as much as surplus elements. Hard matching pairs nearest
+//! first and charges nothing for what is missing [Ma 2011 §3.2].
 
-use arabesque_core::Vector;
+use arabesque_core::{Numbered, Vector};
 
 use crate::{
     exemplar::{
@@ -13,7 +14,7 @@ use crate::{
         level::{Level, Near},
         library::Library,
     },
-    optimise::assignment::{Assignment, OUTLIER},
+    optimise::assignment::Assignment,
     params::Matching,
 };
 
@@ -33,8 +34,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) offset: Vector<D>,
     /// Weight by distance.
     pub(crate) weight: f32,
-    /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put them, and their neighbours
-    /// along the stroke serve as well.
+    /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put
+    /// them, and their neighbours along the stroke serve as well.
     pub(crate) frozen: bool,
     /// Its edges, in exemplar directions and units.
     pub(crate) star: Star<D>,
@@ -76,16 +77,16 @@ pub(crate) struct Matcher<'a, const D: usize> {
     matching: Matching,
     prices: Prices,
     assignment: Assignment,
-    used: Vec<bool>,
+    used: Numbered<bool>,
 }
 
 impl<'a, const D: usize> Matcher<'a, D> {
     pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, prices: Prices) -> Self {
-        Self { level, library, matching, prices, assignment: Assignment::default(), used: Vec::new() }
+        Self { level, library, matching, prices, assignment: Assignment::default(), used: Numbered::new() }
     }
 
-    /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed `limit`.
-    /// `wanted(p)` tells whether something that lies at offset `p` could be in the output at all.
+    /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed
+    /// `limit`. `wanted(p)` tells whether something that lies at offset `p` could be in the output at all.
     pub(crate) fn cost(
         &mut self,
         around: &Surroundings<D>,
@@ -93,7 +94,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         limit: f32,
         wanted: &dyn Fn(Vector<D>) -> bool,
     ) -> f32 {
-        let centre = self.difference((around.source, &around.star), i);
+        let centre = self.difference(around.source, &around.star, i);
         let pairs = match self.matching {
             Matching::Robust => self.robust(around, i, limit - centre),
             Matching::Hard => self.hard(around, i, limit - centre),
@@ -105,22 +106,23 @@ impl<'a, const D: usize> Matcher<'a, D> {
         cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted)
     }
 
-    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
-    fn difference(&self, (source, star): (u32, &Star<D>), i: u32) -> f32 {
-        let element = self.level.element[i as usize];
+    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an
+    /// element.
+    fn difference(&self, source: u32, star: &Star<D>, i: u32) -> f32 {
+        let element = self.level.element[i];
         if element >= self.level.base {
-            return star.distance2(&self.level.stars[i as usize], self.level.single2);
+            return star.distance2(&self.level.stars[i], self.level.single2);
         }
-        self.library.feature[source as usize].distance2(&self.library.feature[element as usize])
+        self.library.feature[source].distance2(&self.library.feature[element])
     }
 
     fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
         let (level, library) = (self.level, self.library);
         let near = level.neighbours(i);
-        let origin = level.position[i as usize];
+        let origin = level.position[i];
         self.assignment.begin(near.len());
         for row in &around.rows {
-            let outlier2 = level.outlier2[row.key as usize];
+            let outlier2 = level.outlier2[row.key];
             // Nobody knows what lies beyond the frame of the exemplar: half the price.
             let seen = library.view.contains(origin + row.offset);
             let alone = if seen { outlier2 } else { 0.5 * outlier2 };
@@ -130,7 +132,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
                 if d2 < outlier2 || row.frozen {
-                    let d2 = d2 + self.difference((row.source, &row.star), other.sample);
+                    let d2 = d2 + self.difference(row.source, &row.star, other.sample);
                     self.assignment.pair(column as u32, row.weight * d2);
                 }
             }
@@ -147,14 +149,15 @@ impl<'a, const D: usize> Matcher<'a, D> {
         self.assignment.begin(near.len());
         let mut bound = 0.0;
         for row in &around.rows {
-            // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last resort.
-            let mut least = LEFT_OVER * level.outlier2[row.key as usize];
+            // Only a neighbourhood that is too small leaves a row over; charge it so that such a sample is a last
+            // resort.
+            let mut least = LEFT_OVER * level.outlier2[row.key];
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);
             for column in level.neighbours_of_key(i, row.key) {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                let d2 = d2 + self.difference((row.source, &row.star), other.sample);
+                let d2 = d2 + self.difference(row.source, &row.star, other.sample);
                 self.assignment.pair(column as u32, d2);
                 least = least.min(d2);
             }
@@ -165,8 +168,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
             }
         }
         let total = self.assignment.settle_greedily();
-        let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| **column == OUTLIER);
-        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key as usize]).sum::<f32>()
+        let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| column.is_none());
+        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key]).sum::<f32>()
     }
 
     fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
@@ -178,7 +181,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
         let sum: f32 = absent
             .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
-            .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize])
+            .map(|(other, _)| other.weight * self.level.outlier2[self.level.key[other.sample]])
             .sum();
         self.prices.missing * sum
     }
@@ -189,18 +192,14 @@ impl<'a, const D: usize> Matcher<'a, D> {
         }
         let near = self.level.neighbours(i).iter().filter(|other| other.weight > 0.0);
         let outside = near.filter(|other| !wanted(Vector(other.offset.map(f64::from))));
-        let price =
-            |other: &Near<D>| other.weight * self.level.outlier2[self.level.key[other.sample as usize] as usize];
+        let price = |other: &Near<D>| other.weight * self.level.outlier2[self.level.key[other.sample]];
         self.prices.outside * outside.map(price).sum::<f32>()
     }
 
     fn mark_used(&mut self, columns: usize) {
-        self.used.clear();
-        self.used.resize(columns, false);
-        for &column in self.assignment.column_of() {
-            if column != OUTLIER {
-                self.used[column as usize] = true;
-            }
+        self.used.refill(false, columns);
+        for column in self.assignment.column_of().flatten() {
+            self.used[column] = true;
         }
     }
 
@@ -216,9 +215,8 @@ impl<'a, const D: usize> Matcher<'a, D> {
             Matching::Hard => self.hard(around, i, f32::INFINITY),
         };
         let near = self.level.neighbours(i);
-        let columns = self.assignment.column_of().iter().enumerate();
-        let pairs =
-            columns.filter(|(_, c)| **c != OUTLIER).map(|(r, &c)| (r as u32, near[c as usize].sample)).collect();
+        let columns = (0..).zip(self.assignment.column_of());
+        let pairs = columns.filter_map(|(row, column)| Some((row, near[column? as usize].sample))).collect();
         self.mark_used(near.len());
         let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
         let missing = absent

@@ -1,9 +1,9 @@
 //! Search: the exemplar neighbourhood most like that of each output sample.
 //!
-//! Candidates come from the matches of the neighbours: where neighbour `o` was matched, the exemplar sample that then corresponded to this
-//! sample is a candidate, and so are the ones most similar to it (k-coherence [Ma 2011 §4.2]) or random ones around it (PatchMatch
-//! [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the result does not depend on the number of threads).
-//! Samples around which nothing changed keep their match.
+//! Candidates come from the matches of the neighbours: where neighbour `o` was matched, the exemplar sample that then
+//! corresponded to this sample is a candidate, and so are the ones most similar to it (k-coherence [Ma 2011 §4.2]) or
+//! random ones around it (PatchMatch [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the
+//! result does not depend on the number of threads). Samples around which nothing changed keep their match.
 
 use arabesque_core::{Stream, Vector};
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ pub(crate) struct SearchParams {
     pub(crate) prices: Prices,
     /// Members of a similarity set.
     pub(crate) coherence: usize,
-    /// Random candidates a sample.
+    /// Random candidates per sample.
     pub(crate) random: usize,
     /// Rounds of propagation.
     pub(crate) rounds: usize,
@@ -44,7 +44,7 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
     for round in 0..params.rounds as u64 {
         let params = SearchParams { step: params.step + (round << 40), ..*params };
         let found: Vec<Option<Match>> = state
-            .living
+            .living()
             .par_iter()
             .map_init(
                 || Matcher::new(state.level, state.library, params.matching, params.prices),
@@ -52,12 +52,12 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
             )
             .collect();
         searched += found.iter().flatten().count();
-        for (k, found) in found.into_iter().enumerate().filter(|(_, found)| found.is_some()) {
-            let s = state.living[k] as usize;
-            state.samples[s].matched = found;
+        let searched_now: Vec<_> = state.living().iter().copied().zip(found).collect();
+        for (s, found) in searched_now {
+            found.into_iter().for_each(|found| state.set_match(s, found));
         }
     }
-    state.samples.iter_mut().for_each(|sample| sample.dirty = false);
+    state.clear_dirty();
     searched
 }
 
@@ -67,15 +67,16 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
 fn most_similar<const D: usize>(
     level: &Level<D>,
     library: &Library<D>,
-    (matching, number): (Matching, usize),
+    matching: Matching,
+    number: usize,
     i: u32,
 ) -> Vec<u32> {
-    const MOST: usize = 256;
+    const MAX_COMPARED: usize = 256;
     let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
-    let others = &level.of_key[level.key[i as usize] as usize];
+    let others = &level.of_key[level.key[i]];
     let around = exemplar_surroundings(level, i);
     let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
-    for &j in others.iter().step_by(others.len().div_ceil(MOST)).filter(|&&j| j != i) {
+    for &j in others.iter().step_by(others.len().div_ceil(MAX_COMPARED)).filter(|&&j| j != i) {
         let full = best.len() == number;
         let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
         let cost = matcher.cost(&around, j, limit, &|_| true);
@@ -88,12 +89,13 @@ fn most_similar<const D: usize>(
     best.into_iter().map(|(_, j)| j).collect()
 }
 
-/// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that do not overlap it much.
-/// 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where too little of it is seen to tell.
-pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
+/// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that
+/// do not overlap it much. 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where
+/// too little of it is seen to tell.
+pub(crate) fn dissimilarity<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
     const ASKED: usize = 96;
     let inner: Vec<u32> = (0..level.position.len() as u32)
-        .filter(|&i| library.view.signed_distance(level.position[i as usize]) > 0.7 * level.radius)
+        .filter(|&i| library.view.signed_distance(level.position[i]) > 0.7 * level.radius)
         .collect();
     let asked: Vec<u32> = inner.iter().copied().step_by(inner.len().div_ceil(ASKED).max(1)).collect();
     let energies: Vec<f64> = asked
@@ -101,9 +103,9 @@ pub(crate) fn strangeness<const D: usize>(level: &Level<D>, library: &Library<D>
         .filter_map(|&i| {
             let mut matcher = Matcher::new(level, library, matching, Prices { missing: 1.0, outside: 0.0 });
             let around = exemplar_surroundings(level, i);
-            let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key as usize]).sum();
-            let others = &level.of_key[level.key[i as usize] as usize];
-            let apart = |j: &&u32| (level.position[**j as usize] - level.position[i as usize]).norm() > level.radius;
+            let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key]).sum();
+            let others = &level.of_key[level.key[i]];
+            let apart = |j: &&u32| (level.position[**j] - level.position[i]).norm() > level.radius;
             let best = others
                 .iter()
                 .filter(apart)
@@ -120,16 +122,16 @@ fn exemplar_surroundings<const D: usize>(level: &Level<D>, i: u32) -> Surroundin
     let mut rows: Vec<_> = near
         .map(|n| Row {
             sample: n.sample,
-            key: level.key[n.sample as usize],
-            source: level.element[n.sample as usize],
+            key: level.key[n.sample],
+            source: level.element[n.sample],
             offset: Vector(n.offset.map(f64::from)),
             weight: n.weight,
             frozen: false,
-            star: level.stars[n.sample as usize],
+            star: level.stars[n.sample],
         })
         .collect();
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
-    Surroundings { source: level.element[i as usize], star: level.stars[i as usize], rows }
+    Surroundings { source: level.element[i], star: level.stars[i], rows }
 }
 
 fn search_one<const D: usize>(
@@ -139,16 +141,16 @@ fn search_one<const D: usize>(
     matcher: &mut Matcher<'_, D>,
 ) -> Option<Match> {
     let (around, dirty) = surroundings(state, s);
-    let old = state.samples[s as usize].matched.as_ref();
+    let old = state.sample(s).matched.as_ref();
     if !dirty && old.is_some_and(|m| m.members.len() == around.rows.len()) {
         return None;
     }
-    let position = state.samples[s as usize].position;
+    let position = state.sample(s).position;
     let frame = state.request.fields.frame(position);
     let reach = (state.level.radius) * frame.spacing_scale;
     let deep = state.domain().signed_distance(position) > reach;
     let wanted = |offset: Vector<D>| deep || state.extent.may_hold(position + frame.to_output(offset));
-    let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key as usize]).sum();
+    let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key]).sum();
     let mut best = (f32::INFINITY, u32::MAX);
     let mut candidates = likely(state, s, &around, params);
     let seeds = candidates.len();
@@ -166,7 +168,7 @@ fn search_one<const D: usize>(
     }
     let input = best.1;
     let found = matcher.correspondence(&around, input, &wanted);
-    let own = state.level.outlier2[state.samples[s as usize].key as usize];
+    let own = state.level.outlier2[state.sample(s).key];
     Some(Match {
         input,
         cost: best.0,
@@ -179,18 +181,17 @@ fn search_one<const D: usize>(
 
 /// The neighbourhood of sample `s`, and whether anything in it changed.
 fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D>, bool) {
-    let sample = &state.samples[s as usize];
+    let sample = state.sample(s);
     let frame = state.request.fields.frame(sample.position);
     let radius = state.level.radius;
     let mut dirty = sample.dirty;
     let mut rows = Vec::with_capacity(sample.matched.as_ref().map_or(24, |m| m.members.len() + 4));
-    state.index.within(sample.position, radius * frame.spacing_scale, |slot, offset| {
-        let other = state.living[slot];
+    state.within(sample.position, radius * frame.spacing_scale, |other, offset| {
         if other == s {
             return;
         }
-        let neighbour = &state.samples[other as usize];
-        let item = &state.items[neighbour.item as usize].item;
+        let neighbour = state.sample(other);
+        let item = &state.item(neighbour.item).item;
         let offset = frame.to_exemplar(offset);
         dirty |= neighbour.dirty;
         rows.push(Row {
@@ -205,14 +206,14 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
     });
     // Nearest first: the bound of the matcher then grows fastest.
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
-    let source = state.items[sample.item as usize].item.source;
+    let source = state.item(sample.item).item.source;
     (Surroundings { source, star: state.star(s), rows }, dirty)
 }
 
 /// Exemplar samples to try first for sample `s`, the likeliest first.
 fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>, params: &SearchParams) -> Vec<u32> {
-    let sample = &state.samples[s as usize];
-    let all = &state.level.of_key[sample.key as usize];
+    let sample = state.sample(s);
+    let all = &state.level.of_key[sample.key];
     if is_exhaustive(all, params) {
         return all.clone();
     }
@@ -220,7 +221,7 @@ fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>
     if let Some(m) = &sample.matched {
         push(&mut list, m.input);
     }
-    push(&mut list, state.level.first[around.source as usize] + sample.part);
+    push(&mut list, state.level.first[around.source] + sample.part);
     // PatchMatch asks the eight nearest neighbours [Tu 2020 §4.3.3], k-coherence all of them.
     let asked = if params.search == Search::PatchMatch { 8 } else { around.rows.len() };
     let from_neighbours = around.rows.iter().take(asked).filter_map(|row| implied(state, row.sample, s));
@@ -231,7 +232,7 @@ fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>
 /// Exemplar samples to try when none of the likely ones in `list` is a copy: what is similar to these, and random ones.
 fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u32, params: &SearchParams) {
     let level = state.level;
-    let all = &level.of_key[state.samples[s as usize].key as usize];
+    let all = &level.of_key[state.sample(s).key];
     if is_exhaustive(all, params) {
         return;
     }
@@ -239,7 +240,7 @@ fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u3
     if params.search == Search::KCoherence {
         for k in 0..seeds.min(6) {
             let i = list[k];
-            let find = || most_similar(level, state.library, (params.matching, params.coherence), i);
+            let find = || most_similar(level, state.library, params.matching, params.coherence, i);
             level.alike(i, find).iter().for_each(|&j| push(list, j));
         }
     }
@@ -262,7 +263,7 @@ fn push(list: &mut Vec<u32>, i: u32) {
 
 /// The exemplar sample that `s` corresponds to when neighbour `o` lies where it was matched.
 fn implied<const D: usize>(state: &State<'_, D>, o: u32, s: u32) -> Option<u32> {
-    let matched = state.samples[o as usize].matched.as_ref()?;
+    let matched = state.sample(o).matched.as_ref()?;
     matched.pairs.iter().find(|(sample, _)| *sample == s).map(|&(_, i)| i)
 }
 
@@ -270,11 +271,11 @@ fn implied<const D: usize>(state: &State<'_, D>, o: u32, s: u32) -> Option<u32> 
 fn random_near<const D: usize>(state: &State<'_, D>, seed: u32, all: &[u32], n: usize, random: &mut Stream) -> u32 {
     let size = state.library.view.window.size().0.into_iter().fold(0.0, f64::max);
     let window = size * 0.5_f64.powi((n % 4) as i32);
-    let centre = state.level.position[seed as usize];
+    let centre = state.level.position[seed];
     let mut pick = all[random.below(all.len())];
     // A few draws suffice: an empty window falls back to anywhere.
     for _ in 0..4 {
-        if (state.level.position[pick as usize] - centre).norm() <= window {
+        if (state.level.position[pick] - centre).norm() <= window {
             break;
         }
         pick = all[random.below(all.len())];

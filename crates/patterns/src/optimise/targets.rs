@@ -1,20 +1,20 @@
 //! How many elements of each class the output should have.
 
-use arabesque_core::{Border, Request};
+use arabesque_core::{Border, Numbered, Request};
 
 use crate::{border::Extent, exemplar::library::Library};
 
 /// Cells along the longest side of the grid that measures the output.
 const CELLS: f64 = 96.0;
 
-/// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output, each place counted by
-/// its local scale and density.
+/// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output,
+/// each place counted by its local scale and density.
 pub(crate) fn class_targets<const D: usize>(
     library: &Library<D>,
     request: &Request<D>,
     extent: &Extent<'_, D>,
     base: u32,
-) -> Vec<f64> {
+) -> Numbered<f64> {
     let reach = border_reach(library, request.border, base);
     let bounds = match request.domain.period() {
         Some(_) => request.domain.bounds(),
@@ -48,7 +48,7 @@ fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32)
     (0..library.classes() as u32)
         .map(|c| {
             let members = library.members(c);
-            let mean = members.iter().map(|&e| library.radius[e as usize]).sum::<f64>() / members.len().max(1) as f64;
+            let mean = members.iter().map(|&e| library.radius[e]).sum::<f64>() / members.len().max(1) as f64;
             let is_stroke = members.first().is_some_and(|&e| e >= base);
             match if is_stroke { Border::Clip } else { border } {
                 Border::Inside | Border::Turn => mean,
@@ -61,7 +61,7 @@ fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32)
 
 /// Elements of each class per measure of the exemplar's window.
 fn intensities<const D: usize>(library: &Library<D>) -> Vec<f64> {
-    let inside = |e: &&u32| library.view.contains(library.centre[**e as usize]);
+    let inside = |e: &&u32| library.view.contains(library.centre[**e]);
     let count = |c: u32| library.members(c).iter().filter(inside).count() as f64;
     (0..library.classes() as u32).map(|c| count(c) / library.view.measure()).collect()
 }

@@ -1,10 +1,10 @@
 //! The output while it is optimised: items, their samples, and what each sample was matched with.
 
-use arabesque_core::{Domain, GridIndex, Matrix, Request, Similarity, Vector};
+use arabesque_core::{Domain, GridIndex, Matrix, Numbered, Request, Similarity, Vector};
 
 use crate::{
     border::Extent,
-    exemplar::{graph::net::Star, level::Level, library::Library, samples::pose_of},
+    exemplar::{graph::net::Star, level::Level, level_exemplar::LevelExemplar, library::Library, samples::pose_of},
     output::draft::{Draft, Item},
     params::Deform,
 };
@@ -71,57 +71,56 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) extent: &'a Extent<'a, D>,
     /// Whether samples may leave the shape of their element.
     pub(crate) deform: Deform,
-    pub(crate) items: Vec<LiveItem<D>>,
-    pub(crate) samples: Vec<Sample<D>>,
+    items: Numbered<LiveItem<D>>,
+    samples: Numbered<Sample<D>>,
     /// The samples that each curve sample is joined to; empty for samples of elements.
-    pub(crate) links: Vec<Vec<u32>>,
+    links: Numbered<Vec<u32>>,
     /// Directions in which strokes leave each curve sample, unit vectors in output coordinates.
-    pub(crate) tangents: Vec<Vec<Vector<D>>>,
+    tangents: Numbered<Vec<Vector<D>>>,
     /// Living samples, parallel to the points of `index`.
-    pub(crate) living: Vec<u32>,
-    pub(crate) index: GridIndex<D>,
+    living: Vec<u32>,
+    index: GridIndex<D>,
 }
 
 impl<'a, const D: usize> State<'a, D> {
     pub(crate) fn new(
-        library: &'a Library<D>,
-        level: &'a Level<D>,
+        sampled: &'a LevelExemplar<D>,
         request: &'a Request<D>,
         extent: &'a Extent<'a, D>,
-        (draft, deform): (&Draft<D>, Deform),
+        deform: Deform,
+        draft: &Draft<D>,
     ) -> Self {
         let mut state = Self {
-            library,
-            level,
+            library: &sampled.library,
+            level: &sampled.level,
             request,
             extent,
             deform,
-            items: Vec::with_capacity(draft.items.len()),
-            samples: Vec::with_capacity(draft.items.len()),
-            links: Vec::new(),
-            tangents: Vec::new(),
+            items: Numbered::new(),
+            samples: Numbered::new(),
+            links: Numbered::new(),
+            tangents: Numbered::new(),
             living: Vec::new(),
             index: GridIndex::new(&[], 1.0, &request.domain),
         };
-        draft.items.iter().for_each(|&(item, turn)| state.push(item, turn));
+        draft.items.iter().for_each(|&(item, turn)| _ = state.push(item, turn));
         for &(a, b) in &draft.links {
-            let [a, b] = [a, b].map(|i| state.items[i as usize].first);
-            if a != b && !state.links[a as usize].contains(&b) {
-                state.links[a as usize].push(b);
-                state.links[b as usize].push(a);
+            let [a, b] = [a, b].map(|i| state.items[i].first);
+            if a != b && !state.are_linked(a, b) {
+                state.link(a, b);
             }
         }
         state.reindex();
         state
     }
 
-    /// Adds an item with its samples; [`State::reindex`] makes it visible.
-    pub(crate) fn push(&mut self, item: Item<D>, turn: Matrix<D>) {
-        let parts = &self.level.parts[item.source as usize];
-        let first_key = self.level.key[self.level.first[item.source as usize] as usize];
-        let (number, first) = (self.items.len() as u32, self.samples.len() as u32);
+    /// Adds an item with its samples, and returns the number of its first sample; [`State::reindex`] makes it visible.
+    pub(crate) fn push(&mut self, item: Item<D>, turn: Matrix<D>) -> u32 {
+        let parts = &self.level.parts[item.source];
+        let first_key = self.level.key[self.level.first[item.source]];
+        let first = self.samples.len() as u32;
         let item = Item { position: self.request.domain.wrap(item.position), ..item };
-        self.items.push(LiveItem { item, turn, alive: true, first, count: parts.len() as u32 });
+        let number = self.items.push(LiveItem { item, turn, alive: true, first, count: parts.len() as u32 });
         for part in 0..parts.len() as u32 {
             let position = self.part_position(number, part);
             self.samples.push(Sample {
@@ -136,27 +135,26 @@ impl<'a, const D: usize> State<'a, D> {
             self.links.push(Vec::new());
             self.tangents.push(Vec::new());
         }
+        first
     }
 
     /// From the source of item `i`, about its centre, to the output.
     pub(crate) fn pose(&self, i: u32) -> Similarity<D> {
-        let live = &self.items[i as usize];
+        let live = self.item(i);
         let frame = self.request.fields.frame(live.item.position);
         let rotation = frame.rotation.compose(&live.turn);
         Similarity::about(Vector::ZERO, live.item.position, rotation, frame.element_scale)
     }
 
     fn part_position(&self, item: u32, part: u32) -> Vector<D> {
-        let source = self.items[item as usize].item.source as usize;
-        self.pose(item).apply(self.level.parts[source][part as usize])
+        let parts = &self.level.parts[self.items[item].item.source];
+        self.pose(item).apply(parts[part as usize])
     }
 
     /// Makes the index fit the samples.
     pub(crate) fn reindex(&mut self) {
-        self.living = (0..self.samples.len() as u32)
-            .filter(|&s| self.items[self.samples[s as usize].item as usize].alive)
-            .collect();
-        let points: Vec<_> = self.living.iter().map(|&s| self.samples[s as usize].position).collect();
+        self.living = self.samples.numbers().filter(|&s| self.is_alive(s)).collect();
+        let points: Vec<_> = self.living.iter().map(|&s| self.samples[s].position).collect();
         let radius = self.level.radius * self.extent.largest_spacing_scale;
         self.index = GridIndex::new(&points, 0.5 * radius, &self.request.domain);
     }
@@ -168,25 +166,114 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Mean energy of the living samples that were matched.
     pub(crate) fn energy(&self) -> f64 {
-        let matched = self.living.iter().filter_map(|&s| self.samples[s as usize].matched.as_ref());
+        let matched = self.living.iter().filter_map(|&s| self.samples[s].matched.as_ref());
         let (n, sum) = matched.fold((0.0, 0.0), |(n, sum), m| (n + 1.0, sum + m.energy()));
         if n > 0.0 { sum / n } else { 0.0 }
     }
 
+    /// The items.
+    pub(crate) fn items(&self) -> &Numbered<LiveItem<D>> {
+        &self.items
+    }
+
+    pub(crate) fn item(&self, i: u32) -> &LiveItem<D> {
+        &self.items[i]
+    }
+
+    /// The item of a sample.
+    pub(crate) fn item_of(&self, s: u32) -> &LiveItem<D> {
+        &self.items[self.samples[s].item]
+    }
+
+    /// The samples, the dead ones included.
+    pub(crate) fn samples(&self) -> &Numbered<Sample<D>> {
+        &self.samples
+    }
+
+    #[inline]
+    pub(crate) fn sample(&self, s: u32) -> &Sample<D> {
+        &self.samples[s]
+    }
+
+    /// The living samples.
+    pub(crate) fn living(&self) -> &[u32] {
+        &self.living
+    }
+
+    /// Calls `visit(sample, offset)` for the living samples within `radius` of `p`.
+    #[inline]
+    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32, Vector<D>)) {
+        self.index.within(p, radius, |slot, offset| visit(self.living[slot], offset));
+    }
+
+    /// The samples that a sample is joined to.
+    pub(crate) fn links_of(&self, s: u32) -> &[u32] {
+        &self.links[s]
+    }
+
+    /// Number of edges of a sample.
+    pub(crate) fn degree(&self, s: u32) -> usize {
+        self.links[s].len()
+    }
+
+    pub(crate) fn are_linked(&self, a: u32, b: u32) -> bool {
+        self.links[a].contains(&b)
+    }
+
+    /// Whether the user placed both ends of an edge, which then must stay as it is.
+    pub(crate) fn is_frozen_edge(&self, a: u32, b: u32) -> bool {
+        self.is_frozen(a) && self.is_frozen(b)
+    }
+
+    /// Directions in which strokes leave a sample, unit vectors in output coordinates.
+    pub(crate) fn tangents_of(&self, s: u32) -> &[Vector<D>] {
+        &self.tangents[s]
+    }
+
+    /// Replaces the tangents of all samples.
+    pub(crate) fn set_tangents(&mut self, tangents: Vec<Vec<Vector<D>>>) {
+        self.tangents = tangents.into();
+    }
+
+    /// Replaces what the search found for a sample.
+    pub(crate) fn set_match(&mut self, s: u32, found: Match) {
+        self.samples[s].matched = Some(found);
+    }
+
+    /// Makes a sample search again, whether anything around it moves or not.
+    pub(crate) fn mark_dirty(&mut self, s: u32) {
+        self.samples[s].dirty = true;
+    }
+
+    /// Everything has been taken notice of.
+    pub(crate) fn clear_dirty(&mut self) {
+        self.samples.iter_mut().for_each(|sample| sample.dirty = false);
+    }
+
+    /// Puts every sample elsewhere, whatever its item is about.
+    pub(crate) fn set_positions(&mut self, position: Numbered<Vector<D>>) {
+        self.samples.iter_mut().zip(position).for_each(|(sample, p)| sample.position = p);
+    }
+
+    /// Removes an item. The edges of its samples are left to the next assignment of edges.
+    pub(crate) fn remove_item(&mut self, i: u32) {
+        self.items[i].alive = false;
+    }
+
     /// Moves every item to where its samples went, turned as a whole; frozen items stay.
     pub(crate) fn follow_samples(&mut self, position: &[Vector<D>]) {
-        for i in 0..self.items.len() as u32 {
-            let live = self.items[i as usize];
+        for i in self.items.numbers() {
+            let live = self.items[i];
             if !live.alive || live.item.frozen.is_some() {
                 continue;
             }
             let range = live.first as usize..(live.first + live.count) as usize;
-            let parts = &self.level.parts[live.item.source as usize];
+            let parts = &self.level.parts[live.item.source];
             let frame = self.request.fields.frame(position[range.start]);
             let fallback = frame.rotation.compose(&live.turn);
             let pose = pose_of(parts, &position[range.clone()], frame.element_scale, fallback);
             let centre = self.request.domain.wrap(pose.apply(Vector::ZERO));
-            let item = &mut self.items[i as usize];
+            let item = &mut self.items[i];
             item.item.position = centre;
             item.turn = frame.rotation.transpose().compose(&pose.rotation);
             for s in range {
@@ -200,13 +287,13 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Replaces the source of item `i`, which then lies as in the exemplar again.
     pub(crate) fn set_source(&mut self, i: u32, source: u32) {
-        let live = &mut self.items[i as usize];
+        let live = &mut self.items[i];
         live.item.source = source;
         live.turn = Matrix::identity();
         let range = live.first..live.first + live.count;
         for s in range {
-            let p = self.part_position(i, self.samples[s as usize].part);
-            let sample = &mut self.samples[s as usize];
+            let p = self.part_position(i, self.samples[s].part);
+            let sample = &mut self.samples[s];
             (sample.position, sample.dirty) = (p, true);
         }
     }
@@ -227,7 +314,7 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Source of the item of a sample.
     pub(crate) fn source(&self, s: u32) -> u32 {
-        self.items[self.samples[s as usize].item as usize].item.source
+        self.item_of(s).item.source
     }
 
     /// The node of the net that a curve sample was copied from; `None` for a sample of an element.
@@ -238,38 +325,38 @@ impl<'a, const D: usize> State<'a, D> {
     /// Whether a stroke may run from one sample to the other.
     pub(crate) fn share_style(&self, a: u32, b: u32) -> bool {
         match (&self.level.net, self.node(a), self.node(b)) {
-            (Some(net), Some(a), Some(b)) => net.nodes[a as usize].shares_style(&net.nodes[b as usize]),
+            (Some(net), Some(a), Some(b)) => net.nodes[a].shares_style(&net.nodes[b]),
             _ => false,
         }
     }
 
     /// Whether the user placed the sample.
     pub(crate) fn is_frozen(&self, s: u32) -> bool {
-        self.items[self.samples[s as usize].item as usize].item.frozen.is_some()
+        self.item_of(s).item.frozen.is_some()
     }
 
     /// Whether the sample is part of the output.
     pub(crate) fn is_alive(&self, s: u32) -> bool {
-        self.items[self.samples[s as usize].item as usize].alive
+        self.item_of(s).alive
     }
 
     /// From one sample to another by the shortest way.
     pub(crate) fn offset(&self, from: u32, to: u32) -> Vector<D> {
-        self.request.domain.offset(self.samples[from as usize].position, self.samples[to as usize].position)
+        self.request.domain.offset(self.samples[from].position, self.samples[to].position)
     }
 
     /// Distance of two samples in exemplar units.
     pub(crate) fn reach(&self, a: u32, b: u32) -> f64 {
-        self.offset(a, b).norm() / self.request.fields.frame(self.samples[a as usize].position).spacing_scale
+        self.offset(a, b).norm() / self.request.fields.frame(self.samples[a].position).spacing_scale
     }
 
     /// The edges of a sample in exemplar directions and units; none where edges take no part in the comparison.
     pub(crate) fn star(&self, s: u32) -> Star<D> {
-        let links = &self.links[s as usize];
-        if links.is_empty() || self.level.stars[self.level.first[self.source(s) as usize] as usize].len() == 0 {
+        let links = &self.links[s];
+        if links.is_empty() || self.level.stars[self.level.first[self.source(s)]].len() == 0 {
             return Star::EMPTY;
         }
-        let frame = self.request.fields.frame(self.samples[s as usize].position);
+        let frame = self.request.fields.frame(self.samples[s].position);
         Star::new(links.iter().map(|&o| frame.to_exemplar(self.offset(s, o))))
     }
 
@@ -281,15 +368,39 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Removes the item of a sample, and its edges.
     pub(crate) fn kill(&mut self, s: u32) {
-        self.items[self.samples[s as usize].item as usize].alive = false;
-        self.unlink(s);
+        let item = self.samples[s].item;
+        self.items[item].alive = false;
+        self.unlink_all(s);
     }
 
-    /// Removes the edges of a sample.
-    pub(crate) fn unlink(&mut self, s: u32) {
-        for o in std::mem::take(&mut self.links[s as usize]) {
-            self.links[o as usize].retain(|&p| p != s);
-            self.samples[o as usize].dirty = true;
+    /// Joins two samples by an edge.
+    pub(crate) fn link(&mut self, a: u32, b: u32) {
+        self.links[a].push(b);
+        self.links[b].push(a);
+    }
+
+    /// Removes the edge between two samples.
+    pub(crate) fn unlink(&mut self, a: u32, b: u32) {
+        self.links[a].retain(|&o| o != b);
+        self.links[b].retain(|&o| o != a);
+    }
+
+    /// Replaces the edges of a sample, sorted; its neighbours are replaced by whoever calls. Returns whether they
+    /// changed.
+    pub(crate) fn replace_links(&mut self, s: u32, links: Vec<u32>) -> bool {
+        let is_new = links != self.links[s];
+        if is_new {
+            self.samples[s].dirty = true;
+            self.links[s] = links;
+        }
+        is_new
+    }
+
+    /// Removes the edges of a sample; its neighbours must take notice.
+    fn unlink_all(&mut self, s: u32) {
+        for o in std::mem::take(&mut self.links[s]) {
+            self.links[o].retain(|&p| p != s);
+            self.samples[o].dirty = true;
         }
     }
 

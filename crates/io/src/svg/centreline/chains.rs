@@ -1,6 +1,9 @@
 //! Tracks chained through the nodes where one runs on straight into another.
 
-use arabesque_core::{Vector, pairing};
+use arabesque_core::{
+    Vector,
+    pairing::{Wish, pair_up},
+};
 
 use super::{
     graph::Graph,
@@ -45,12 +48,12 @@ fn partners(graph: &Graph, tracks: &[Track], width: f64) -> Vec<Option<usize>> {
             for j in 0..i {
                 let turn = (-ways[i]).angle_to(ways[j]).abs();
                 if turn < STRAIGHT_ON {
-                    wishes.push((turn, i as u32, j as u32));
+                    wishes.push(Wish { cost: turn, a: i, b: j });
                 }
             }
         }
-        pairing::pair_up(wishes, ends.len(), |i, j| {
-            let (i, j) = (ends[i as usize], ends[j as usize]);
+        pair_up(wishes, ends.len(), |i, j| {
+            let (i, j) = (ends[i], ends[j]);
             (partner[i], partner[j]) = (Some(j), Some(i));
             true
         });

@@ -1,18 +1,18 @@
 //! Strokes that turn at the border.
 //!
-//! All strokes are cut where their ink would touch the border: along the rings of the hem, polygons half a stroke width inside, their corners
-//! rounded. Where strokes of the exemplar branch or cross, each ring becomes a stroke of its own on which the others end. Elsewhere
-//! neighbours along the ring become one stroke, see [`super::turn`].
+//! All strokes are cut where their ink would touch the border: along rings half a stroke width inside, their corners
+//! rounded. Where strokes of the exemplar branch or cross, each ring becomes a stroke of its own on which the others
+//! end. Elsewhere neighbours along the ring become one stroke, see [`super::join`]. A drawing of the exemplar's kind
+//! then has no end that it would not have by itself, and can be cut out or stitched along its border.
 
-use std::any::Any;
-
-use arabesque_core::{Drawn, Measured, Outline, Path, spans_inside};
+use arabesque_core::{Drawn, Measured, Outline, Path, Vector, spans_inside};
 
 use crate::{
     curves::border::{
         join::join,
         rings::{ClippedStroke, OffsetRings, Place},
     },
+    dimension::Dimension,
     exemplar::graph::net::Net,
     output::state::State,
 };
@@ -37,7 +37,7 @@ pub(crate) struct BorderTurn {
     ending: Ending,
 }
 
-/// What the hem asks of an exemplar curve.
+/// What is asked of an exemplar curve here.
 #[derive(Clone, Copy, Debug)]
 struct Thickness {
     width: f64,
@@ -55,8 +55,11 @@ pub(crate) enum Ending {
 }
 
 impl BorderTurn {
-    /// The hem of a state, if its strokes turn at the border and there is one.
-    pub(crate) fn of<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Option<Self> {
+    /// For a state whose strokes turn at the border, if there is one.
+    pub(crate) fn of<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Option<Self>
+    where
+        Vector<D>: Dimension<D>,
+    {
         if state.extent.rule() != arabesque_core::Border::Turn {
             return None;
         }
@@ -75,7 +78,7 @@ impl BorderTurn {
         })
     }
 
-    /// A hem for strokes of width 1; whether each curve is closed.
+    /// For strokes of width 1; whether each curve is closed.
     #[cfg(test)]
     pub(crate) fn test(outline: Outline<2>, closed: &[bool], ending: Ending) -> Self {
         let curves = closed.iter().enumerate().map(|(style, &is_closed)| Thickness { width: 1.0, style, is_closed });
@@ -83,12 +86,11 @@ impl BorderTurn {
     }
 
     /// Strokes cut and joined at the border.
-    pub(crate) fn finish<const D: usize>(&self, mut strokes: Vec<Drawn<D>>) -> Vec<Drawn<D>> {
-        // There is a hem in the plane alone.
-        if let Some(plane) = (&mut strokes as &mut dyn Any).downcast_mut::<Vec<Drawn<2>>>() {
-            *plane = self.turned(std::mem::take(plane));
-        }
-        strokes
+    pub(crate) fn finish<const D: usize>(&self, strokes: Vec<Drawn<D>>) -> Vec<Drawn<D>>
+    where
+        Vector<D>: Dimension<D>,
+    {
+        Vector::map_plane_strokes(strokes, |strokes| self.turned(strokes))
     }
 
     fn width(&self, drawn: &Drawn<2>) -> f64 {
@@ -105,7 +107,7 @@ impl BorderTurn {
         }
     }
 
-    /// What is left of a stroke inside the hem.
+    /// What is left of a stroke inside the rings.
     fn clip(&self, drawn: &Drawn<2>, rings: &OffsetRings) -> Vec<ClippedStroke> {
         let width = self.width(drawn);
         let measured = Measured::new(drawn.path.clone(), 0.02 * self.unit);
@@ -138,7 +140,7 @@ impl BorderTurn {
 
 /// The strokes as they are, and a closed one along each ring that they reach, in the style of most that do.
 fn with_rings(clipped: Vec<ClippedStroke>, rings: &OffsetRings) -> Vec<Drawn<2>> {
-    let mut hems: Vec<Drawn<2>> = Vec::new();
+    let mut along_rings: Vec<Drawn<2>> = Vec::new();
     for (number, ring) in rings.all.iter().enumerate() {
         let is_here = |p: &Option<Place>| p.is_some_and(|p| p.ring == number);
         let ends = |t: &ClippedStroke| t.reaches.iter().filter(|p| is_here(p)).count();
@@ -151,7 +153,7 @@ fn with_rings(clipped: Vec<ClippedStroke>, rings: &OffsetRings) -> Vec<Drawn<2>>
         {
             last[3] = first;
         }
-        hems.push(Drawn { path, ..model.drawn.clone() });
+        along_rings.push(Drawn { path, ..model.drawn.clone() });
     }
-    clipped.into_iter().map(|t| t.drawn).chain(hems).collect()
+    clipped.into_iter().map(|t| t.drawn).chain(along_rings).collect()
 }

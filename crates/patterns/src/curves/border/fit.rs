@@ -3,21 +3,22 @@
 use arabesque_core::{Cubic, Vector, arc_lengths, cubic_at};
 
 /// Runs of so many points or fewer are not split further.
-const FEW: usize = 2;
+const MIN_POINTS: usize = 2;
 
 /// Places at which a cubic is compared with the points.
 const LOOKS: usize = 32;
 
-/// Cubics along a run of points, within `tolerance` of it and without corners. `ends`: unit directions of travel at its first and last point.
+/// Cubics along a run of points, within `tolerance` of it and without corners. `ends`: unit directions of travel at its
+/// first and last point.
 pub(crate) fn fit(points: &[Vector<2>], ends: [Vector<2>; 2], tolerance: f64) -> Vec<Cubic<2>> {
     let (Some(&a), Some(&b)) = (points.first(), points.last()) else { return Vec::new() };
-    if a == b && points.len() <= FEW {
+    if a == b && points.len() <= MIN_POINTS {
         return Vec::new();
     }
     let arcs = arc_lengths(points);
     let third = arcs[arcs.len() - 1] / 3.0;
     let cubic = [a, a + ends[0] * third, b - ends[1] * third, b];
-    if points.len() <= FEW || misfit(&cubic, points, &arcs) <= tolerance {
+    if points.len() <= MIN_POINTS || misfit(&cubic, points, &arcs) <= tolerance {
         return vec![cubic];
     }
     let half = 0.5 * arcs[arcs.len() - 1];
@@ -41,9 +42,17 @@ fn misfit(cubic: &Cubic<2>, points: &[Vector<2>], arcs: &[f64]) -> f64 {
     (1..LOOKS).map(apart).fold(0.0, f64::max)
 }
 
-/// A cubic from `a` to `b` that leaves and arrives in the unit directions given, an arc of a circle where there is one.
-pub(crate) fn arc((a, out): (Vector<2>, Vector<2>), (b, on): (Vector<2>, Vector<2>)) -> Cubic<2> {
-    let turn = out.angle_to(on).abs();
+/// A place on a path, and the unit direction in which the path passes it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage {
+    pub(crate) place: Vector<2>,
+    pub(crate) way: Vector<2>,
+}
+
+/// A cubic from one passage to another, an arc of a circle where there is one.
+pub(crate) fn arc(from: Passage, to: Passage) -> Cubic<2> {
+    let (Passage { place: a, way: out }, Passage { place: b, way: on }) = (from, to);
+    let turn = out.cross(on).atan2(out.dot(on)).abs();
     let reach = (b - a).norm() / (3.0 * (0.25 * turn).cos().powi(2));
     [a, a + out * reach, b - on * reach, b]
 }
@@ -75,7 +84,8 @@ mod tests {
 
     #[test]
     fn an_arc_is_a_quarter_circle() {
-        let c = arc((Vector::xy(1.0, 0.0), Vector::xy(0.0, 1.0)), (Vector::xy(0.0, 1.0), Vector::xy(-1.0, 0.0)));
+        let start = Passage { place: Vector::xy(1.0, 0.0), way: Vector::xy(0.0, 1.0) };
+        let c = arc(start, Passage { place: Vector::xy(0.0, 1.0), way: Vector::xy(-1.0, 0.0) });
         assert!((cubic_at(&c, 0.5).norm() - 1.0).abs() < 1e-3);
     }
 }

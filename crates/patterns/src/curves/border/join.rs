@@ -1,17 +1,19 @@
 //! Strokes that come back from the border as their neighbours.
 //!
-//! What the border leaves of a closed stroke is closed along it. Of the others, going round a ring, each end is joined to the next of its style, unless that closes a loop; of several places to begin at the one is
-//! taken that leaves the fewest ends and makes the shortest runs. Only neighbours are joined, so that no run crosses a stroke.
+//! What the border leaves of a closed stroke is closed along it. Of the others, going round a ring, each end is joined
+//! to the next of its style, unless that closes a loop; of several places to begin at the one is taken that leaves the
+//! fewest ends and makes the shortest runs. Only neighbours are joined, so that no run crosses a stroke. A loop would
+//! be a stroke that the exemplar has none of, cut off from all others.
 
-use arabesque_core::{Cubic, Drawn, Path, Vector};
+use arabesque_core::{Cubic, Drawn, Path};
 
 use crate::curves::border::{
-    fit::arc,
+    fit::{Passage, arc},
     rings::{ClippedStroke, OffsetRings},
 };
 
 /// Runs along the border are no longer than this many of the usual gaps between ends.
-const LONGEST: f64 = 4.0;
+const MAX_GAP: f64 = 4.0;
 
 /// What an end that is joined to nothing costs, in usual gaps.
 const ALONE: f64 = 4.0;
@@ -52,7 +54,7 @@ pub(crate) fn join(clipped: Vec<ClippedStroke>, rings: &OffsetRings) -> Vec<Draw
     StrokeJoiner::new(&clipped, &joints, rings).strokes()
 }
 
-/// The joints on a ring; clipped that become one stroke get into one group.
+/// The joints on a ring; strokes that become one get into one group.
 fn joints_on(ring: usize, clipped: &[ClippedStroke], rings: &OffsetRings, groups: &mut Vec<usize>) -> Vec<Joint> {
     let place = |(stroke, end): (usize, usize)| {
         let place = clipped[stroke].reaches[end].filter(|p| p.ring == ring)?;
@@ -70,7 +72,7 @@ fn joints_on(ring: usize, clipped: &[ClippedStroke], rings: &OffsetRings, groups
     let Some(&usual) = gaps.get(n / 2).filter(|_| n > 1) else { return Vec::new() };
     let usual = usual.max(2.0 * rings.radius);
     let mut joints = close(ring, &mut round, clipped);
-    joints.extend(best_round(ring, (&round, usual), clipped, groups));
+    joints.extend(best_round(ring, &round, usual, clipped, groups));
     joints
 }
 
@@ -95,7 +97,8 @@ fn close(ring: usize, round: &mut Round, clipped: &[ClippedStroke]) -> Vec<Joint
 /// The joints on a ring from the best of several places to begin.
 fn best_round(
     ring: usize,
-    (round, usual): (&Round, f64),
+    round: &Round,
+    usual: f64,
     clipped: &[ClippedStroke],
     groups: &mut Vec<usize>,
 ) -> Vec<Joint> {
@@ -105,7 +108,7 @@ fn best_round(
     for first in beginnings.flat_map(|k| [k, k + 1]) {
         let mut tried = groups.clone();
         let turned: Round = (0..n).map(|i| round[(first + i) % n]).collect();
-        let found = join_around(ring, (&turned, LONGEST * usual), clipped, &mut tried);
+        let found = join_around(ring, &turned, MAX_GAP * usual, clipped, &mut tried);
         let alone = (n - 2 * found.len()) as f64;
         let cost = found.iter().map(|j| j.gap).sum::<f64>() + ALONE * usual * alone;
         if best.as_ref().is_none_or(|b| cost < b.0 - 1e-9) {
@@ -118,10 +121,11 @@ fn best_round(
     })
 }
 
-/// Joins each tip to the next where that may be.
+/// Joins each end to the next where that may be.
 fn join_around(
     ring: usize,
-    (round, longest): (&Round, f64),
+    round: &Round,
+    longest: f64,
     clipped: &[ClippedStroke],
     groups: &mut [usize],
 ) -> Vec<Joint> {
@@ -141,47 +145,55 @@ fn join_around(
     joints
 }
 
+/// One of the two ends that a joint joins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct JointSide {
+    joint: usize,
+    /// Which of [`Joint::ends`].
+    side: usize,
+}
+
 /// Strokes and their joints, to be put together.
 struct StrokeJoiner<'a> {
     clipped: &'a [ClippedStroke],
     joints: &'a [Joint],
     rings: &'a OffsetRings,
-    /// The joint at each end of each stroke, and the tip of the joint it is.
-    joined: Vec<[Option<(usize, usize)>; 2]>,
+    /// The joint at each end of each stroke.
+    joined: Vec<[Option<JointSide>; 2]>,
 }
 
 impl<'a> StrokeJoiner<'a> {
     fn new(clipped: &'a [ClippedStroke], joints: &'a [Joint], rings: &'a OffsetRings) -> Self {
         let mut joined = vec![[None; 2]; clipped.len()];
-        for (number, joint) in joints.iter().enumerate() {
-            for (side, tip) in joint.ends.iter().enumerate() {
-                joined[tip.stroke][tip.end] = Some((number, side));
+        for (joint, Joint { ends, .. }) in joints.iter().enumerate() {
+            for (side, end) in ends.iter().enumerate() {
+                joined[end.stroke][end.end] = Some(JointSide { joint, side });
             }
         }
         Self { clipped, joints, rings, joined }
     }
 
-    /// Every stroke once. But for those that are joined to themselves each has a free end.
+    /// Every stroke once. Except those that are joined to themselves, each has a free end.
     fn strokes(&self) -> Vec<Drawn<2>> {
         let mut seen = vec![false; self.clipped.len()];
         let mut strokes = Vec::new();
         for t in 0..self.clipped.len() {
-            if let [Some((a, side)), Some((b, _))] = self.joined[t]
-                && a == b
+            if let [Some(a), Some(b)] = self.joined[t]
+                && a.joint == b.joint
             {
-                strokes.push(self.closed(t, (a, 1 - side)));
+                strokes.push(self.closed(t, b));
                 continue;
             }
             let Some(first) = (0..2).find(|&end| self.joined[t][end].is_none()).filter(|_| !seen[t]) else { continue };
-            strokes.push(self.stroke((t, first), &mut seen));
+            strokes.push(self.stroke(t, first, &mut seen));
         }
         strokes
     }
 
-    /// A stroke that is joined to itself. `side`: of the joint, the tip that is its end.
-    fn closed(&self, stroke: usize, (joint, side): (usize, usize)) -> Drawn<2> {
+    /// A stroke that is joined to itself. `end`: of the joint, the side that is its end.
+    fn closed(&self, stroke: usize, end: JointSide) -> Drawn<2> {
         let mut cubics = self.body(stroke, 0).cubics;
-        cubics.extend(self.turn(joint, side));
+        cubics.extend(self.turn(end));
         if let Some(&[start, ..]) = cubics.first()
             && let Some(last) = cubics.last_mut()
         {
@@ -191,7 +203,7 @@ impl<'a> StrokeJoiner<'a> {
     }
 
     /// The stroke that begins with a free end.
-    fn stroke(&self, (first, start): (usize, usize), seen: &mut [bool]) -> Drawn<2> {
+    fn stroke(&self, first: usize, start: usize, seen: &mut [bool]) -> Drawn<2> {
         let drawn = &self.clipped[first].drawn;
         if self.joined[first] == [None; 2] {
             seen[first] = true;
@@ -202,9 +214,9 @@ impl<'a> StrokeJoiner<'a> {
         loop {
             seen[stroke] = true;
             cubics.extend(self.body(stroke, from).cubics);
-            let Some((joint, side)) = self.joined[stroke][1 - from] else { break };
-            cubics.extend(self.turn(joint, side));
-            let next = self.joints[joint].ends[1 - side];
+            let Some(side) = self.joined[stroke][1 - from] else { break };
+            cubics.extend(self.turn(side));
+            let next = self.joints[side.joint].ends[1 - side.side];
             (stroke, from) = (next.stroke, next.end);
             if seen[stroke] {
                 break;
@@ -216,7 +228,7 @@ impl<'a> StrokeJoiner<'a> {
     /// A stroke without what its turns take, from one of its ends to the other.
     fn body(&self, stroke: usize, from: usize) -> Path<2> {
         let measured = &self.clipped[stroke].measured;
-        let cut = |end: usize| self.joined[stroke][end].map_or(0.0, |(joint, _)| self.radius(joint, stroke));
+        let cut = |end: usize| self.joined[stroke][end].map_or(0.0, |side| self.radius(side.joint, stroke));
         let (a, b) = (cut(0), measured.length() - cut(1));
         let (a, b) = if from == 0 { (a, b) } else { (b, a) };
         let mut path = measured.part(a, b);
@@ -235,19 +247,22 @@ impl<'a> StrokeJoiner<'a> {
         self.rings.radius.min(0.5 * self.joints[joint].gap)
     }
 
-    /// From the end of one stroke to the beginning of the next, `side` being the one it comes from.
-    fn turn(&self, number: usize, side: usize) -> Vec<Cubic<2>> {
+    /// From the end of one stroke to the beginning of the next, `side` being where it comes from.
+    fn turn(&self, JointSide { joint: number, side }: JointSide) -> Vec<Cubic<2>> {
         let joint = &self.joints[number];
         let radius = self.radius_on_ring(number);
         let (from, to) = (joint.ends[0].arc + radius, joint.ends[0].arc + joint.gap - radius);
         let ring = joint.ring;
-        let at = |arc: f64| self.rings.all[ring].point(arc.rem_euclid(self.rings.all[ring].length()));
-        let [a, b] = joint.ends.map(|tip| self.leave(number, tip));
-        let mut cubics = vec![arc(a, (at(from), self.rings.way(ring, from)))];
+        let on_ring = |arc: f64| Passage {
+            place: self.rings.all[ring].point(arc.rem_euclid(self.rings.all[ring].length())),
+            way: self.rings.way(ring, arc),
+        };
+        let [a, b] = joint.ends.map(|end| self.leave(number, end));
+        let mut cubics = vec![arc(a, on_ring(from))];
         if to - from > 1e-6 * self.rings.radius {
             cubics.extend(self.rings.run(ring, from, to));
         }
-        cubics.push(arc((at(to), self.rings.way(ring, to)), (b.0, b.1 * -1.0)));
+        cubics.push(arc(on_ring(to), Passage { way: b.way * -1.0, ..b }));
         for k in 1..cubics.len() {
             cubics[k][0] = cubics[k - 1][3];
         }
@@ -258,18 +273,18 @@ impl<'a> StrokeJoiner<'a> {
     }
 
     /// Where a turn leaves a stroke, and the direction towards the border there.
-    fn leave(&self, joint: usize, tip: End) -> (Vector<2>, Vector<2>) {
-        let measured = &self.clipped[tip.stroke].measured;
-        let (cut, length) = (self.radius(joint, tip.stroke), measured.length());
+    fn leave(&self, joint: usize, end: End) -> Passage {
+        let measured = &self.clipped[end.stroke].measured;
+        let (cut, length) = (self.radius(joint, end.stroke), measured.length());
         let step = 1e-3 * length;
-        let at = |back: f64| measured.point(if tip.end == 0 { back } else { length - back });
-        (at(cut), (at((cut - step).max(0.0)) - at(cut + step)).unit_or_zero())
+        let at = |back: f64| measured.point(if end.end == 0 { back } else { length - back });
+        Passage { place: at(cut), way: (at((cut - step).max(0.0)) - at(cut + step)).unit_or_zero() }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use arabesque_core::{Measured, Outline};
+    use arabesque_core::{Measured, Outline, Vector};
 
     use super::*;
     use crate::curves::border::border_turn::{BorderTurn, Ending};

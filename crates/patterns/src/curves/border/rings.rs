@@ -8,7 +8,7 @@ use crate::curves::border::fit::fit;
 const TURN: f64 = 0.5;
 
 /// Radius of turns, at least, in stroke widths.
-const LEAST_TURN: f64 = 1.0;
+const MIN_TURN: f64 = 1.0;
 
 /// Fitted lines keep to the ring within this share of the stroke width.
 const TOLERANCE: f64 = 0.1;
@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 0.1;
 const STEP: f64 = 0.25;
 
 /// Most points on a side of a ring.
-const MOST_STEPS: f64 = 10_000.0;
+const MAX_STEPS: f64 = 10_000.0;
 
 /// A place on a ring.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Place {
     pub(crate) arc: f64,
 }
 
-/// A stroke cut at the hem.
+/// A stroke cut at the rings.
 #[derive(Clone, Debug)]
 pub(crate) struct ClippedStroke {
     pub(crate) drawn: Drawn<2>,
@@ -38,7 +38,7 @@ pub(crate) struct ClippedStroke {
     pub(crate) is_closed: bool,
 }
 
-/// The rings of a hem.
+/// The border moved inside, in rings.
 #[derive(Clone, Debug)]
 pub(crate) struct OffsetRings {
     shape: Shape,
@@ -52,7 +52,7 @@ pub(crate) struct OffsetRings {
 impl OffsetRings {
     /// The rings for strokes of the given width in an outline, or `None` where there is no room for them.
     pub(crate) fn new(outline: &Outline<2>, width: f64, unit: f64) -> Option<Self> {
-        let radius = (TURN * unit).max(LEAST_TURN * width);
+        let radius = (TURN * unit).max(MIN_TURN * width);
         let tolerance = (TOLERANCE * width).max(1e-3 * unit);
         // A little more than half the width, so that fitted lines stay inside as well.
         let margin = 0.5 * width + tolerance;
@@ -115,7 +115,7 @@ impl OffsetRings {
         let mut points: Vec<_> = part.start().into_iter().collect();
         for c in &part.cubics {
             // Long straight sides next to short edges around a corner would take their bend over.
-            let count = ((c[3] - c[0]).norm() / (STEP * self.radius)).ceil().clamp(1.0, MOST_STEPS);
+            let count = ((c[3] - c[0]).norm() / (STEP * self.radius)).ceil().clamp(1.0, MAX_STEPS);
             points.extend((1..=count as usize).map(|k| c[0] + (c[3] - c[0]) * (k as f64 / count)));
         }
         fit(&points, [self.way(ring, from), self.way(ring, to)], 0.5 * self.tolerance)

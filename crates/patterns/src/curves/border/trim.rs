@@ -7,8 +7,8 @@ use crate::border::Extent;
 /// Scraps that the border leaves of a stroke are dropped when they are shorter than this many widths.
 const SCRAP: f64 = 0.5;
 
-/// Cuts a stroke where the border of the domain or something in the way asks for it. `width`: that of the stroke, `unit`: its scale in the
-/// output, by which it is flattened.
+/// Cuts a stroke where the border of the domain or something in the way asks for it. `width`: that of the stroke,
+/// `unit`: its scale in the output, by which it is flattened.
 pub(crate) fn at_border<const D: usize>(
     stroke: Drawn<D>,
     extent: &Extent<'_, D>,

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Vector, pairing};
+use arabesque_core::{
+    Numbered, Vector,
+    pairing::{self, Wish},
+};
 
 use crate::{
     curves::votes::edge_votes::Votes,
@@ -35,12 +38,12 @@ pub(crate) struct Chain {
 /// Chains all edges but those among frozen samples.
 pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tangents: bool) -> Vec<Chain> {
     let Some(net) = &state.level.net else { return Vec::new() };
-    let next = (0..state.samples.len() as u32).map(|s| continuations(state, s, by_tangents)).collect::<Vec<_>>();
-    let onwards = |from: u32, at: u32| next[at as usize].get(&from).copied().filter(|&to| !is_fixed(state, at, to));
+    let next = (0..state.samples().len() as u32).map(|s| continuations(state, s, by_tangents)).collect::<Numbered<_>>();
+    let onwards = |from: u32, at: u32| next[at].get(&from).copied().filter(|&to| !is_fixed(state, at, to));
     let mut seen: BTreeMap<(u32, u32), ()> = BTreeMap::new();
     let mut chains = Vec::new();
-    for s in 0..state.samples.len() as u32 {
-        for &o in state.links[s as usize].iter().filter(|&&o| o > s) {
+    for s in 0..state.samples().len() as u32 {
+        for &o in state.links_of(s).iter().filter(|&&o| o > s) {
             if is_fixed(state, s, o) || seen.contains_key(&(s, o)) {
                 continue;
             }
@@ -50,7 +53,7 @@ pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tan
             ends.windows(2).for_each(|w| {
                 seen.insert((w[0].min(w[1]), w[0].max(w[1])), ());
             });
-            let pieces = ends.windows(2).map(|w| piece(state, net, votes, (w[0], w[1]))).collect();
+            let pieces = ends.windows(2).map(|w| piece(state, net, votes, [w[0], w[1]])).collect();
             chains.push(Chain { samples, pieces, is_closed });
         }
     }
@@ -58,7 +61,7 @@ pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tan
 }
 
 fn is_fixed<const D: usize>(state: &State<'_, D>, a: u32, b: u32) -> bool {
-    state.is_frozen(a) && state.is_frozen(b)
+    state.is_frozen_edge(a, b)
 }
 
 /// The stroke through the edge from `a` to `b`, as far as it goes both ways, and whether it closes.
@@ -86,7 +89,7 @@ fn walk(a: u32, b: u32, onwards: &dyn Fn(u32, u32) -> Option<u32>) -> (Vec<u32>,
 
 /// Through sample `s`: coming from one neighbour, which one is next.
 fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool) -> BTreeMap<u32, u32> {
-    let links = &state.links[s as usize];
+    let links = state.links_of(s);
     let mut next = BTreeMap::new();
     let mut through = |a: u32, b: u32| {
         next.insert(a, b);
@@ -106,7 +109,7 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
             (free[i], free[j]) = (false, false);
         }
     }
-    let tangents = &state.tangents[s as usize];
+    let tangents = state.tangents_of(s);
     let directions = if by_tangents && tangents.len() >= ways.len() { matched(&ways, tangents) } else { ways };
     for (i, j) in opposite(&directions).into_iter().filter(|&(i, j)| free[i] && free[j]) {
         through(links[i], links[j]);
@@ -116,9 +119,9 @@ fn continuations<const D: usize>(state: &State<'_, D>, s: u32, by_tangents: bool
 
 /// Pairs of edges that are one stroke at the source of a sample, where it has as many arms.
 fn as_in_exemplar<const D: usize>(state: &State<'_, D>, s: u32, ways: &[Vector<D>]) -> Vec<(usize, usize)> {
-    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e as usize]);
+    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e]);
     let Some(node) = node.filter(|node| node.arms.len() == ways.len()) else { return Vec::new() };
-    let frame = state.request.fields.frame(state.samples[s as usize].position);
+    let frame = state.request.fields.frame(state.sample(s).position);
     let arms: Vec<Vector<D>> = node.arms.iter().map(|arm| frame.rotation.apply(arm.tangent)).collect();
     let arm_of = assigned(ways, &arms);
     let way_of = |arm: usize| arm_of.iter().position(|a| *a == Some(arm));
@@ -128,7 +131,7 @@ fn as_in_exemplar<const D: usize>(state: &State<'_, D>, s: u32, ways: &[Vector<D
 
 /// Whether the source of a sample is a place where two strokes end.
 fn is_meeting<const D: usize>(state: &State<'_, D>, s: u32) -> bool {
-    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e as usize]);
+    let node = state.node(s).zip(state.level.net.as_ref()).map(|(e, net)| &net.nodes[e]);
     node.is_some_and(|node| node.knot == Some(Knot::Junction) && node.arms.len() == 2)
 }
 
@@ -136,10 +139,10 @@ fn is_meeting<const D: usize>(state: &State<'_, D>, s: u32) -> bool {
 fn opposite<const D: usize>(directions: &[Vector<D>]) -> Vec<(usize, usize)> {
     let n = directions.len();
     let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-    let wishes = all.map(|(i, j)| (directions[i].dot(directions[j]), i as u32, j as u32)).filter(|w| w.0 < OPPOSITE);
+    let wishes = all.map(|(a, b)| Wish { cost: directions[a].dot(directions[b]), a, b }).filter(|w| w.cost < OPPOSITE);
     let mut found = Vec::new();
     pairing::pair_up(wishes.collect(), n, |i, j| {
-        found.push((i as usize, j as usize));
+        found.push((i, j));
         true
     });
     found
@@ -155,12 +158,13 @@ fn assigned<const D: usize>(ways: &[Vector<D>], tangents: &[Vector<D>]) -> Vec<O
     pairing::pair_sides(ways.len(), tangents.len(), |w, t| ways[w].dot(tangents[t]))
 }
 
-/// The exemplar line for an edge: of those voted for, the one whose ends lie best; else the one between the sources of its ends.
-fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, (a, b): (u32, u32)) -> Option<Piece> {
+/// The exemplar line for an edge: of those voted for, the one whose ends lie best; else the one between the sources of
+/// its ends.
+fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, [a, b]: [u32; 2]) -> Option<Piece> {
     let key = (a.min(b), a.max(b));
     let directed = |p: Piece| if a < b { p } else { p.reversed() };
     let offset = state.offset(key.0, key.1);
-    let frame = state.request.fields.frame(state.samples[key.0 as usize].position);
+    let frame = state.request.fields.frame(state.sample(key.0).position);
     let misfit = |p: &Piece| (frame.to_output(net.span(*p)) - offset).norm2() / offset.norm2().max(f64::MIN_POSITIVE);
     if let Ok(c) = votes.candidates.binary_search_by_key(&key, |c| c.ends) {
         let candidate = &votes.candidates[c];
@@ -169,9 +173,9 @@ fn piece<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, (a, 
         let best = candidate.pieces.iter().min_by(|x, y| cost(x).total_cmp(&cost(y)));
         return best.map(|(p, _)| directed(*p));
     }
-    let node = |s: u32| state.level.node_of(state.level.first[state.source(s) as usize]);
+    let node = |s: u32| state.level.node_of(state.level.first[state.source(s)]);
     let (from, to) = (node(key.0)?, node(key.1)?);
-    let arm = net.nodes[from as usize].arms.iter().find(|arm| arm.to == to)?;
+    let arm = net.nodes[from].arms.iter().find(|arm| arm.to == to)?;
     Some(directed(arm.piece))
 }
 

@@ -1,6 +1,6 @@
 //! From one level to the next: the strokes of the coarser one, sampled more densely [Tu 2020 §4.3.5].
 
-use arabesque_core::{Matrix, Vector};
+use arabesque_core::{Matrix, Numbered, Vector};
 
 use crate::{
     curves::draw::{chains::Chain, shape},
@@ -11,17 +11,19 @@ use crate::{
     },
 };
 
-/// The elements of `state` and samples along `chains` at the spacing of the `finer` net, whose first pseudo element is `base`.
+/// The elements of `state` and samples along `chains` at the spacing of the `finer` net, whose first pseudo element is
+/// `base`.
 pub(crate) fn resample<const D: usize>(
     state: &State<'_, D>,
     chains: &[Chain],
-    (finer, base): (&Net<D>, u32),
+    finer: &Net<D>,
+    base: u32,
     frozen: Draft<D>,
 ) -> Draft<D> {
     let strokes = frozen.items.iter().enumerate().filter(|(_, (item, _))| item.frozen == Some(Frozen::Stroke));
     let drawn = strokes.map(|(n, (item, _))| (n as u32, item.position)).collect();
     let draft = with_elements(state, frozen);
-    let mut made = Resampled { state, finer, base, draft, drawn, known: vec![u32::MAX; state.samples.len()] };
+    let mut made = Resampled { state, finer, base, draft, drawn, known: Numbered::filled(None, state.samples().len()) };
     if let Some(net) = &state.level.net {
         chains.iter().for_each(|chain| made.follow(net, chain));
     }
@@ -30,7 +32,7 @@ pub(crate) fn resample<const D: usize>(
 
 /// What is frozen, and the other items that are no curve samples.
 fn with_elements<const D: usize>(state: &State<'_, D>, mut frozen: Draft<D>) -> Draft<D> {
-    let free = state.items.iter().filter(|i| i.alive && i.item.source < state.level.base && i.item.frozen.is_none());
+    let free = state.items().iter().filter(|i| i.alive && i.item.source < state.level.base && i.item.frozen.is_none());
     frozen.items.extend(free.map(|i| (i.item, i.turn)));
     frozen
 }
@@ -43,7 +45,7 @@ struct Resampled<'a, const D: usize> {
     /// Items of frozen strokes, with their places.
     drawn: Vec<(u32, Vector<D>)>,
     /// New item of each old sample that is kept.
-    known: Vec<u32>,
+    known: Numbered<Option<u32>>,
 }
 
 impl<const D: usize> Resampled<'_, D> {
@@ -70,8 +72,8 @@ impl<const D: usize> Resampled<'_, D> {
     fn is_key(&self, net: &Net<D>, chain: &Chain, k: usize) -> bool {
         let s = chain.samples[k];
         let is_end = !chain.is_closed && (k == 0 || k + 1 == chain.samples.len());
-        let is_knot = self.state.node(s).is_some_and(|e| net.nodes[e as usize].knot.is_some());
-        is_end || self.state.links[s as usize].len() != 2 || is_knot
+        let is_knot = self.state.node(s).is_some_and(|e| net.nodes[e].knot.is_some());
+        is_end || self.state.degree(s) != 2 || is_knot
     }
 
     /// Samples the edges `range` of a chain evenly.
@@ -80,7 +82,7 @@ impl<const D: usize> Resampled<'_, D> {
         let lengths: Vec<f64> = range.clone().map(|k| self.state.offset(at(k), at(k + 1)).norm()).collect();
         let total: f64 = lengths.iter().sum();
         let (first, last) = (at(range.start), at(range.end));
-        let scale = self.state.request.fields.frame(self.state.samples[first as usize].position).spacing_scale;
+        let scale = self.state.request.fields.frame(self.state.sample(first).position).spacing_scale;
         let least = if first == last { 3 } else { 1 };
         let n = ((total / (self.finer.spacing * scale)).round() as usize).max(least);
         let mut previous = self.key(net, first);
@@ -94,7 +96,7 @@ impl<const D: usize> Resampled<'_, D> {
             let share = ((wanted - before) / lengths[edge].max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             let number = range.start + edge;
             let item =
-                self.between(net, (at(number), at(number + 1)), chain.pieces[number % chain.pieces.len()], share);
+                self.between(net, [at(number), at(number + 1)], chain.pieces[number % chain.pieces.len()], share);
             let Some(item) = item else { continue };
             let next = self.draft.items.len() as u32;
             self.draft.items.push((item, Matrix::identity()));
@@ -107,23 +109,22 @@ impl<const D: usize> Resampled<'_, D> {
 
     /// The new item of an old sample.
     fn key(&mut self, net: &Net<D>, s: u32) -> u32 {
-        if self.known[s as usize] == u32::MAX {
-            let sample = &self.state.samples[s as usize];
-            if let Some(known) = self.frozen(s) {
-                self.known[s as usize] = known;
-                return known;
-            }
-            let node = self.state.node(s).and_then(|e| self.same(net, e)).unwrap_or(0);
-            self.known[s as usize] = self.draft.items.len() as u32;
-            let item = Item { source: self.base + node, position: sample.position, frozen: None };
-            self.draft.items.push((item, Matrix::identity()));
+        if let Some(known) = self.known[s] {
+            return known;
         }
-        self.known[s as usize]
+        let number = self.frozen(s).unwrap_or_else(|| {
+            let node = self.state.node(s).and_then(|e| self.same(net, e)).unwrap_or(0);
+            let position = self.state.sample(s).position;
+            self.draft.items.push((Item { source: self.base + node, position, frozen: None }, Matrix::identity()));
+            self.draft.items.len() as u32 - 1
+        });
+        self.known[s] = Some(number);
+        number
     }
 
     /// The new item of a frozen sample: the nearest one of the frozen strokes.
     fn frozen(&self, s: u32) -> Option<u32> {
-        let p = self.state.samples[s as usize].position;
+        let p = self.state.sample(s).position;
         let nearest = self.drawn.iter().filter(|_| self.state.is_frozen(s));
         nearest.min_by(|a, b| (a.1 - p).norm2().total_cmp(&(b.1 - p).norm2())).map(|d| d.0)
     }
@@ -133,25 +134,25 @@ impl<const D: usize> Resampled<'_, D> {
         if (node as usize) < net.skeleton.knots.len() {
             return Some(node);
         }
-        let arm = net.nodes[node as usize].arms.first()?;
+        let arm = net.nodes[node].arms.first()?;
         self.nearest(arm.piece.line, arm.piece.from)
     }
 
     fn nearest(&self, line: u32, arc: f64) -> Option<u32> {
-        let measured = &self.finer.skeleton.lines[line as usize].measured;
+        let measured = &self.finer.skeleton.lines[line].measured;
         self.finer.nearest(line, measured.wrap(arc), measured.length(), measured.is_closed())
     }
 
     /// A new item at a share of the way along an edge.
-    fn between(&self, net: &Net<D>, (a, b): (u32, u32), piece: Option<Piece>, share: f64) -> Option<Item<D>> {
-        let start = self.state.samples[a as usize].position;
+    fn between(&self, net: &Net<D>, [a, b]: [u32; 2], piece: Option<Piece>, share: f64) -> Option<Item<D>> {
+        let start = self.state.sample(a).position;
         let end = start + self.state.offset(a, b);
         let Some(piece) = piece else {
             let node = self.state.node(a).and_then(|e| self.same(net, e))?;
             return Some(Item { source: self.base + node, position: start + (end - start) * share, frozen: None });
         };
         let source = self.nearest(piece.line, piece.from + (piece.to - piece.from) * share)?;
-        let part = shape::bent(self.state, net, (piece, [true; 2]), (start, end));
+        let part = shape::bent(self.state, net, piece, [true; 2], [start, end]);
         let path = arabesque_core::Path { cubics: part, closed: false };
         let measured = arabesque_core::Measured::new(path, 0.05 * net.spacing);
         let position: Vector<D> = measured.point(share * measured.length());

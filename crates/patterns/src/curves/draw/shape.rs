@@ -1,15 +1,16 @@
 //! The shape of a stroke: the exemplar's own lines, bent to the samples.
 //!
-//! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their mean direction. Where
-//! it has a corner, the corner stays.
+//! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their
+//! mean direction. Where it has a corner, the corner stays.
 
-use arabesque_core::{Cubic, Drawn, NormalEquations, Path, Prediction, Pull, Vector, segment, straight};
+use arabesque_core::{Cubic, Drawn, NormalEquations, Numbered, Path, Prediction, Pull, Vector, segment, straight};
 
 use crate::{
     curves::{
         border::{border_turn::BorderTurn, trim::at_border},
         draw::chains::Chain,
     },
+    dimension::Dimension,
     exemplar::graph::{
         net::{Net, Piece},
         skeleton::Knot,
@@ -24,15 +25,15 @@ const STAY: f64 = 0.08;
 const SHARP: f64 = 0.42;
 
 /// Places of the samples at which the edges come as close to the exemplar's as they can, near where they are.
-pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Vector<D>> {
-    let mut position: Vec<_> = state.samples.iter().map(|s| s.position).collect();
+pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Numbered<Vector<D>> {
+    let mut position: Numbered<_> = state.samples().iter().map(|s| s.position).collect();
     let Some(net) = &state.level.net else { return position };
     let mut predictions = Vec::new();
     for chain in chains {
         for (k, piece) in chain.pieces.iter().enumerate() {
             let (a, b) = (chain.samples[k], chain.samples[(k + 1) % chain.samples.len()]);
             let Some(piece) = piece else { continue };
-            let frame = state.request.fields.frame(position[a as usize]);
+            let frame = state.request.fields.frame(position[a]);
             let offset = frame.to_output(net.span(*piece)) - state.offset(a, b);
             predictions.push(Prediction { from: a, to: b, offset, weight: 1.0 });
         }
@@ -45,7 +46,10 @@ pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> 
 }
 
 /// The strokes of all chains, frozen ones first.
-pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>> {
+pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>>
+where
+    Vector<D>: Dimension<D>,
+{
     let frozen = state.request.frozen_curves.iter().enumerate().map(|(n, d)| Drawn { frozen: Some(n), ..d.clone() });
     let Some(net) = &state.level.net else { return frozen.collect() };
     let free = chains.iter().map(|chain| {
@@ -65,7 +69,7 @@ pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) ->
 
 /// The path of a chain, and the exemplar curve whose style it carries. On a torus the path is unrolled.
 fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (Path<D>, u32) {
-    let position = |s: u32| state.samples[s as usize].position;
+    let position = |s: u32| state.sample(s).position;
     let mut here = position(chain.samples[0]);
     let mut stretches: Vec<Vec<Cubic<D>>> = Vec::with_capacity(chain.pieces.len());
     let origin = here;
@@ -80,7 +84,7 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
         // Inside the stroke the pieces meet; its ends keep the distance that the exemplar's keep to what they touch.
         let snapped = [chain.is_closed || k > 0, chain.is_closed || k + 1 < chain.pieces.len()];
         stretches.push(match piece {
-            Some(piece) => bent(state, net, (*piece, snapped), (here, there)),
+            Some(piece) => bent(state, net, *piece, snapped, [here, there]),
             None => vec![straight(here, there)],
         });
         here = there;
@@ -92,15 +96,16 @@ fn draw<const D: usize>(state: &State<'_, D>, net: &Net<D>, chain: &Chain) -> (P
     (path, style(net, chain))
 }
 
-/// An exemplar piece moved, turned into the local frame and bent so that its nodes come to lie at `a` and `b`. Its start and its end are put
-/// exactly there where they are to be `snapped`.
+/// An exemplar piece moved, turned into the local frame and bent so that its nodes come to lie at `a` and `b`. Its
+/// start and its end are put exactly there where they are to be `snapped`.
 pub(crate) fn bent<const D: usize>(
     state: &State<'_, D>,
     net: &Net<D>,
-    (piece, snapped): (Piece, [bool; 2]),
-    (a, b): (Vector<D>, Vector<D>),
+    piece: Piece,
+    snapped: [bool; 2],
+    [a, b]: [Vector<D>; 2],
 ) -> Vec<Cubic<D>> {
-    let path = net.skeleton.lines[piece.line as usize].measured.part(piece.from, piece.to);
+    let path = net.skeleton.lines[piece.line].measured.part(piece.from, piece.to);
     if path.is_empty() {
         return vec![straight(a, b)];
     }
@@ -155,11 +160,11 @@ fn leaving<const D: usize>(c: &Cubic<D>) -> Vector<D> {
 /// Whether the exemplar has a corner where one piece ends and the next begins.
 fn is_corner<const D: usize>(net: &Net<D>, before: Option<Piece>, after: Option<Piece>) -> bool {
     let corner = |line: u32, arc: f64| {
-        let line = &net.skeleton.lines[line as usize];
+        let line = &net.skeleton.lines[line];
         let arc = line.measured.wrap(arc);
         let near = 1e-6 * line.measured.length();
         let hit = |a: f64| (a - arc).abs() < near || (line.measured.length() - (a - arc).abs()) < near;
-        line.stops.iter().any(|&(a, knot)| hit(a) && net.skeleton.knots[knot as usize].1 == Knot::Corner)
+        line.stops.iter().any(|&(a, knot)| hit(a) && net.skeleton.knots[knot].1 == Knot::Corner)
     };
     before.is_some_and(|p| corner(p.line, p.to)) || after.is_some_and(|p| corner(p.line, p.from))
 }
@@ -168,7 +173,7 @@ fn is_corner<const D: usize>(net: &Net<D>, before: Option<Piece>, after: Option<
 fn style<const D: usize>(net: &Net<D>, chain: &Chain) -> u32 {
     let mut lengths: Vec<(u32, f64)> = Vec::new();
     for piece in chain.pieces.iter().flatten() {
-        let curve = net.skeleton.lines[piece.line as usize].curve;
+        let curve = net.skeleton.lines[piece.line].curve;
         let length = (piece.to - piece.from).abs();
         match lengths.iter_mut().find(|(c, _)| *c == curve) {
             Some(entry) => entry.1 += length,

@@ -1,4 +1,8 @@
-//! Tangles: edges that cross, or leave a sample side by side, as those of the exemplar never do.
+//! Edges that cross, or leave a sample side by side, as those of the exemplar never do.
+//!
+//! Such edges come from neighbourhoods that were matched with parts of the exemplar a little out of step: each of them
+//! is right for itself. Of two that cross, one goes; of two side by side, the longer one becomes a continuation of the
+//! shorter one, which keeps the line it belongs to in one piece.
 
 use arabesque_core::{Bounds, Domain, GridIndex, Vector};
 
@@ -14,29 +18,29 @@ const SIDE_BY_SIDE: f64 = 0.6;
 /// No angle above this one is narrow, degrees.
 const NARROW: f64 = 35.0;
 
-/// Most rounds in which tangles are undone: each may leave another one beside it.
+/// Most rounds in which edges are taken apart: each may leave another fault beside it.
 const ROUNDS: usize = 8;
 
-/// What the edges of a net do not do.
+/// How the edges of a net lie to each other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Tangle {
-    /// Edges enclose no angle with a larger cosine.
-    narrow: f64,
+pub(crate) struct EdgeRules {
+    /// Cosine of the smallest angle that two edges of a sample enclose.
+    max_cosine: f64,
     /// Whether edges never cross. In space they pass each other.
-    is_plane: bool,
+    is_planar: bool,
 }
 
-impl Tangle {
+impl EdgeRules {
     /// Looks at the edges of a net.
     pub(crate) fn of<const D: usize>(net: &Net<D>) -> Self {
-        Self { narrow: (SIDE_BY_SIDE * sharpest_angle(net)).cos(), is_plane: D == 2 && !has_crossings(net) }
+        Self { max_cosine: (SIDE_BY_SIDE * sharpest_angle(net)).cos(), is_planar: D == 2 && !has_crossings(net) }
     }
 
-    /// Undoes the tangles of a state. Returns how many edges changed.
-    pub(crate) fn undo<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
+    /// Takes edges apart until they keep to the rules. Returns how many changed.
+    pub(crate) fn restore<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
         let mut changed = 0;
         for _ in 0..ROUNDS {
-            let now = self.part(state, votes) + self.straighten(state);
+            let now = self.uncross(state, votes) + self.straighten(state);
             changed += now;
             if now == 0 {
                 break;
@@ -45,27 +49,26 @@ impl Tangle {
         changed
     }
 
-    /// Whether an edge from `a` to `b` would be in no tangle.
-    pub(crate) fn allows<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
+    /// Whether an edge from `a` to `b` would keep to the rules.
+    pub(crate) fn allow<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
         let across = state.offset(a, b);
         let is_free = |s: u32, way: Vector<D>| {
-            state.links[s as usize].iter().all(|&o| state.offset(s, o).cosine(way) <= self.narrow)
+            state.links_of(s).iter().all(|&o| cosine(state.offset(s, o), way) <= self.max_cosine)
         };
-        is_free(a, across) && is_free(b, across * -1.0) && (!self.is_plane || !self.crosses_any(state, a, across, b))
+        is_free(a, across) && is_free(b, across * -1.0) && (!self.is_planar || !self.crosses_any(state, a, across, b))
     }
 
     /// Whether an edge crosses one that is there.
     fn crosses_any<const D: usize>(&self, state: &State<'_, D>, a: u32, across: Vector<D>, b: u32) -> bool {
         let Some(net) = &state.level.net else { return false };
-        let middle = state.samples[a as usize].position + across * 0.5;
+        let middle = state.sample(a).position + across * 0.5;
         let reach = 0.5 * across.norm() + MAX_EDGE * net.spacing * state.extent.largest_spacing_scale;
         let mut found = false;
-        state.index.within(middle, reach, |slot, offset| {
-            let c = state.living[slot];
+        state.within(middle, reach, |c, offset| {
             if found || c == a || c == b {
                 return;
             }
-            for &d in state.links[c as usize].iter().filter(|&&d| d != a && d != b) {
+            for &d in state.links_of(c).iter().filter(|&&d| d != a && d != b) {
                 let way = state.offset(c, d);
                 found |= cross(across, way, offset + way * 0.5);
             }
@@ -76,13 +79,12 @@ impl Tangle {
     /// Of two edges that leave a sample side by side, the longer one starts where the shorter one ends.
     fn straighten<const D: usize>(&self, state: &mut State<'_, D>) -> usize {
         let mut changed = 0;
-        for n in 0..state.living.len() {
-            let s = state.living[n];
+        for n in 0..state.living().len() {
+            let s = state.living()[n];
             while let Some((near, far)) = self.side_by_side(state, s) {
-                unlink(state, s, far);
-                if !state.links[near as usize].contains(&far) && state.share_style(near, far) {
-                    state.links[near as usize].push(far);
-                    state.links[far as usize].push(near);
+                state.unlink(s, far);
+                if !state.are_linked(near, far) && state.share_style(near, far) {
+                    state.link(near, far);
                 }
                 changed += 1;
             }
@@ -92,13 +94,13 @@ impl Tangle {
 
     /// The ends of two edges of `s` side by side, the farther one of an edge that may change.
     fn side_by_side<const D: usize>(&self, state: &State<'_, D>, s: u32) -> Option<(u32, u32)> {
-        let links = &state.links[s as usize];
+        let links = state.links_of(s);
         for (i, &a) in links.iter().enumerate() {
             for &b in &links[..i] {
                 let (to_a, to_b) = (state.offset(s, a), state.offset(s, b));
                 let (near, far) = if to_a.norm2() <= to_b.norm2() { (a, b) } else { (b, a) };
-                let is_fixed = state.is_frozen(s) && state.is_frozen(far);
-                if !is_fixed && to_a.cosine(to_b) > self.narrow {
+                let is_fixed = state.is_frozen_edge(s, far);
+                if !is_fixed && cosine(to_a, to_b) > self.max_cosine {
                     return Some((near, far));
                 }
             }
@@ -107,20 +109,19 @@ impl Tangle {
     }
 
     /// Of two edges that cross, the one goes that fewer neighbourhoods want.
-    fn part<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
-        if !self.is_plane {
+    fn uncross<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
+        if !self.is_planar {
             return 0;
         }
         let edges: Vec<(u32, u32)> = state
-            .living
+            .living()
             .iter()
-            .flat_map(|&a| state.links[a as usize].iter().map(move |&b| (a, b)))
+            .flat_map(|&a| state.links_of(a).iter().map(move |&b| (a, b)))
             .filter(|(a, b)| a < b)
             .collect();
         let ways: Vec<_> = edges.iter().map(|&(a, b)| state.offset(a, b)).collect();
-        let middle = |(&(a, _), way): (&(u32, u32), &Vector<D>)| {
-            state.domain().wrap(state.samples[a as usize].position + *way * 0.5)
-        };
+        let middle =
+            |(&(a, _), way): (&(u32, u32), &Vector<D>)| state.domain().wrap(state.sample(a).position + *way * 0.5);
         let middles: Vec<_> = edges.iter().zip(&ways).map(middle).collect();
         let longest = ways.iter().map(|w| w.norm()).fold(f64::MIN_POSITIVE, f64::max);
         let index = GridIndex::new(&middles, longest, state.domain());
@@ -130,12 +131,12 @@ impl Tangle {
                 let (c, d) = edges[j];
                 let apart = ![c, d].contains(&a) && ![c, d].contains(&b);
                 if j > i && apart && !gone[i] && !gone[j] && cross(ways[i], ways[j], offset) {
-                    gone[weaker(state, votes, &edges, (i, j))] = true;
+                    gone[weaker(state, votes, &edges, [i, j])] = true;
                 }
             });
         }
         let crossing = edges.into_iter().zip(gone).filter(|(_, gone)| *gone);
-        crossing.map(|((a, b), _)| unlink(state, a, b)).count()
+        crossing.map(|((a, b), _)| state.unlink(a, b)).count()
     }
 }
 
@@ -143,7 +144,7 @@ impl Tangle {
 fn sharpest_angle<const D: usize>(net: &Net<D>) -> f64 {
     let mut sharpest = NARROW.to_radians() / SIDE_BY_SIDE;
     for node in &net.nodes {
-        let ways: Vec<_> = node.arms.iter().map(|arm| net.nodes[arm.to as usize].position - node.position).collect();
+        let ways: Vec<_> = node.arms.iter().map(|arm| net.nodes[arm.to].position - node.position).collect();
         for (i, a) in ways.iter().enumerate() {
             let angles = ways[..i].iter().map(|b| a.cosine(*b).acos());
             sharpest = angles.fold(sharpest, f64::min);
@@ -154,7 +155,7 @@ fn sharpest_angle<const D: usize>(net: &Net<D>) -> f64 {
 
 /// Whether edges cross between their nodes, taken as straight.
 fn has_crossings<const D: usize>(net: &Net<D>) -> bool {
-    let place = |n: u32| net.nodes[n as usize].position;
+    let place = |n: u32| net.nodes[n].position;
     let arms = net.nodes.iter().zip(0..).flat_map(|(node, n)| node.arms.iter().map(move |arm| (n, arm.to)));
     let edges: Vec<(u32, u32)> = arms.filter(|(a, b)| a < b).collect();
     let ways: Vec<_> = edges.iter().map(|&(a, b)| place(b) - place(a)).collect();
@@ -172,10 +173,10 @@ fn has_crossings<const D: usize>(net: &Net<D>) -> bool {
 }
 
 /// The weaker of two edges: one that may change, then the less wanted, then the longer one.
-fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u32)], (i, j): (usize, usize)) -> usize {
+fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u32)], [i, j]: [usize; 2]) -> usize {
     let key = |k: usize| {
         let (a, b) = edges[k];
-        let is_fixed = state.is_frozen(a) && state.is_frozen(b);
+        let is_fixed = state.is_frozen_edge(a, b);
         let found = votes.candidates.binary_search_by_key(&(a, b), |c| c.ends);
         let wanted = found.map_or(0.0, |c| votes.candidates[c].confidence);
         (is_fixed, wanted, -state.offset(a, b).norm())
@@ -185,9 +186,8 @@ fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u3
     if order.is_le() { i } else { j }
 }
 
-fn unlink<const D: usize>(state: &mut State<'_, D>, a: u32, b: u32) {
-    state.links[a as usize].retain(|&o| o != b);
-    state.links[b as usize].retain(|&o| o != a);
+fn cosine<const D: usize>(a: Vector<D>, b: Vector<D>) -> f64 {
+    (a.dot(b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
 /// Whether two edges in the plane cross; `between`: from the middle of the first one to that of the second one.

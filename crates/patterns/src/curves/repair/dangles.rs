@@ -1,4 +1,4 @@
-//! Loose ends: how long a stroke may hang free before the exemplar would not show it.
+//! Dangles ends: how long a stroke may hang free before the exemplar would not show it.
 
 use arabesque_core::Vector;
 
@@ -14,11 +14,11 @@ use crate::{
 const SLACK: f64 = 1.3;
 
 /// Samples that are followed at most.
-const FAR: usize = 1000;
+const MAX_STEPS: usize = 1000;
 
 /// Longest free stretches of the exemplar.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Loose {
+pub(crate) struct Dangles {
     /// From a free end to a junction.
     hanging: f64,
     /// From a free end to a free end.
@@ -27,38 +27,36 @@ pub(crate) struct Loose {
     whole: f64,
 }
 
-impl Loose {
+impl Dangles {
     /// Measures the free ends of a net.
     pub(crate) fn of<const D: usize>(net: &Net<D>) -> Self {
-        let mut loose = Self::default();
+        let mut dangles = Self::default();
         let next = |from: u32, at: u32| {
-            let arms = &net.nodes[at as usize].arms;
+            let arms = &net.nodes[at].arms;
             if arms.len() == 2 { arms.iter().map(|a| a.to).find(|to| *to != from) } else { None }
         };
-        let place = |k: u32| net.nodes[k as usize].position;
+        let place = |k: u32| net.nodes[k].position;
         let step = |a: u32, b: u32| (place(b) - place(a)).norm();
-        let ends = net.nodes.iter().enumerate().filter(|(_, node)| node.arms.len() == 1);
+        let ends = (0..).zip(&net.nodes).filter(|(_, node)| node.arms.len() == 1);
         for (n, node) in ends {
-            let (end, length) = follow((n as u32, node.arms[0].to), &next, &step);
-            loose.whole = loose.whole.max(length);
-            match (node.knot, net.nodes[end as usize].knot) {
-                (Some(Knot::End), Some(Knot::End)) => loose.single = loose.single.max(length),
-                (Some(Knot::End), other) if other != Some(Knot::Cut) => loose.hanging = loose.hanging.max(length),
+            let (end, length) = follow([n, node.arms[0].to], &next, &step);
+            dangles.whole = dangles.whole.max(length);
+            match (node.knot, net.nodes[end].knot) {
+                (Some(Knot::End), Some(Knot::End)) => dangles.single = dangles.single.max(length),
+                (Some(Knot::End), other) if other != Some(Knot::Cut) => dangles.hanging = dangles.hanging.max(length),
                 _ => {}
             }
         }
         if net.branches() || net.nodes.iter().any(|node| node.arms.len() > 2) || has_loop(net) {
-            loose.whole = f64::INFINITY;
+            dangles.whole = f64::INFINITY;
         }
-        loose
+        dangles
     }
 
     /// Whether two free ends would make a stroke that is longer than the exemplar has any.
-    pub(crate) fn forbids<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
+    pub(crate) fn forbid<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
         let (ends, lengths): (Vec<u32>, Vec<f64>) = [a, b].iter().filter_map(|&s| run(state, s)).unzip();
-        let is_free = |s: &u32| {
-            state.links[*s as usize].len() == 1 && state.domain().contains(state.samples[*s as usize].position)
-        };
+        let is_free = |s: &u32| state.degree(*s) == 1 && state.domain().contains(state.sample(*s).position);
         let is_closing = ends.first() == Some(&b);
         ends.len() == 2
             && !is_closing
@@ -74,9 +72,9 @@ impl Loose {
     /// Whether the free end `s` hangs farther than the exemplar's do.
     pub(crate) fn is_too_long<const D: usize>(&self, state: &State<'_, D>, s: u32) -> bool {
         let Some((end, length)) = run(state, s) else { return false };
-        let is_single = state.links[end as usize].len() == 1;
+        let is_single = state.degree(end) == 1;
         // Where the other end lies beyond the border, how long it is there nobody sees.
-        let position: Vector<D> = state.samples[end as usize].position;
+        let position: Vector<D> = state.sample(end).position;
         if is_single && !state.domain().contains(position) {
             return length > SLACK * self.single.max(self.hanging);
         }
@@ -86,12 +84,12 @@ impl Loose {
 
 /// The other end of the stroke that ends at `s`, and its length; `None` where no stroke ends.
 fn run<const D: usize>(state: &State<'_, D>, s: u32) -> Option<(u32, f64)> {
-    let &[first] = state.links[s as usize].as_slice() else { return None };
+    let &[first] = state.links_of(s) else { return None };
     let next = |from: u32, at: u32| {
-        let links = &state.links[at as usize];
+        let links = state.links_of(at);
         if links.len() == 2 { links.iter().copied().find(|to| *to != from) } else { None }
     };
-    Some(follow((s, first), &next, &|a, b| state.reach(a, b)))
+    Some(follow([s, first], &next, &|a, b| state.reach(a, b)))
 }
 
 /// Whether a stroke of a net without branches closes: it has as many edges as nodes, and every other has one less.
@@ -105,12 +103,12 @@ fn has_loop<const D: usize>(net: &Net<D>) -> bool {
 
 /// The end of the path that begins with two neighbours, and its length.
 fn follow(
-    (mut from, mut at): (u32, u32),
+    [mut from, mut at]: [u32; 2],
     next: &dyn Fn(u32, u32) -> Option<u32>,
     step: &dyn Fn(u32, u32) -> f64,
 ) -> (u32, f64) {
     let (start, mut length) = (from, step(from, at));
-    for _ in 0..FAR {
+    for _ in 0..MAX_STEPS {
         match next(from, at).filter(|to| *to != start) {
             Some(to) => {
                 length += step(at, to);

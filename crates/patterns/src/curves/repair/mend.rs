@@ -1,314 +1,98 @@
 //! Clean-up: ends that the exemplar would not show are joined to what they just miss, or trimmed.
-
-use arabesque_core::{
-    GridIndex, Matrix, Vector,
-    pairing::{self, Wish},
-};
+//!
+//! Edge assignment [Tu 2020 §4.3.4] decides edge by edge, so that a few strokes always stop short of their neighbours:
+//! the dangling components that the paper names among its limits [Tu 2020 §5]. What an end should look like is measured
+//! on the exemplar: [`Dangles`] says how long a stroke may hang free there, [`EdgeRules`] how its edges lie to each
+//! other, and the votes how many edges each sample should have. The order matters:
+//!
+//! 1. crossings are undone and missing junctions put back, since both make ends that look false;
+//! 2. false ends are joined to what is near, a few times over, for a joint makes other ends false or right;
+//! 3. those that face each other across a wider gap are bridged, and strokes that go on beyond the border are taken over it;
+//! 4. in nets, what still ends goes on to the nearest stroke ahead, as a T junction;
+//! 5. what is left and only a single edge long is taken away.
 
 use crate::{
     curves::{
-        repair::{crossings::Tangle, dangles::Loose},
-        votes::{
-            edge_votes::Votes,
-            edges::{OpenArm, open_arms},
-        },
+        repair::{crossings::EdgeRules, dangles::Dangles},
+        votes::edge_votes::Votes,
     },
     exemplar::graph::net::Net,
-    output::{draft::Item, state::State},
+    output::state::State,
 };
 
-/// How far an end looks for something to join, in sampling distances.
-const REACH: f64 = 1.7;
-
 /// An end is out of place when this many edges are expected at it.
-const EXPECTED: f64 = 1.5;
+pub(crate) const EXPECTED: f64 = 1.5;
 
-/// Widest gap that two ends bridge when they face each other, in sampling distances.
-const SPAN: f64 = 5.0;
-
-/// They face each other when the line between them turns by less than this from either: cosine of 25 degrees.
-const FACING: f64 = 0.9;
-
-/// What a false end is taken on to lies ahead of it: cosine of 70 degrees.
-const AHEAD: f64 = 0.34;
-
-/// How far beyond the border of the domain a kept stroke may end that goes on inside, in sampling distances.
+/// How far beyond the border of the domain a frozen stroke may end that goes on inside, in sampling distances.
 const AT_BORDER: f64 = 0.3;
 
-/// Edges that end within this many sampling distances of one another want the same sample.
-const SAME_PLACE: f64 = 0.5;
+/// Rounds in which false ends are joined.
+const ROUNDS: usize = 3;
 
-/// Cost of a joint that makes a new junction, in sampling distances.
-const NEW_JUNCTION: f64 = 0.6;
-
-/// Cost of a joint at a right angle to the end's direction, in sampling distances.
-const ANGLE: f64 = 0.8;
+/// What mending goes by.
+pub(crate) struct Repair<'a, const D: usize> {
+    pub(crate) net: &'a Net<D>,
+    pub(crate) votes: &'a Votes,
+    pub(crate) dangles: Dangles,
+    pub(crate) rules: EdgeRules,
+}
 
 /// Joins and trims. Returns how many samples changed.
 pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> usize {
     let level = state.level;
     let Some(net) = &level.net else { return 0 };
-    let (loose, tangle) = (Loose::of(net), Tangle::of(net));
-    let mut changed = tangle.undo(state, votes) + restore(state, net);
-    for _ in 0..3 {
-        let ends = false_ends(state, net, votes, &loose);
-        let joined = join(state, net, votes, (&loose, &tangle), &ends);
+    let repair = Repair { net, votes, dangles: Dangles::of(net), rules: EdgeRules::of(net) };
+    let mut changed = repair.rules.restore(state, votes) + repair.put_back_junctions(state);
+    for _ in 0..ROUNDS {
+        let joined = repair.join_near(state);
         changed += joined;
         if joined == 0 {
             break;
         }
     }
-    changed += bridge(state, net, votes, (&loose, &tangle)) + reach_border(state, net);
+    changed += repair.bridge(state) + repair.reach_border(state);
     if net.branches() {
-        changed += extend(state, net, votes, (&loose, &tangle));
+        changed += repair.extend(state);
     }
-    changed += tangle.undo(state, votes);
-    changed + trim(state, net, votes, &loose)
+    changed += repair.rules.restore(state, votes);
+    changed + repair.trim(state)
 }
 
-/// Takes false ends on to the nearest stroke ahead, where strokes branch anyway.
-fn extend<const D: usize>(
-    state: &mut State<'_, D>,
-    net: &Net<D>,
-    votes: &Votes,
-    (loose, tangle): (&Loose, &Tangle),
-) -> usize {
-    let mut joined = 0;
-    for s in false_ends(state, net, votes, loose) {
-        // An earlier one may have been joined to this.
-        if state.links[s as usize].len() != 1 {
-            continue;
-        }
-        let position = state.samples[s as usize].position;
-        let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
-        let before = state.links[s as usize][0];
-        let way = state.offset(before, s).unit_or_zero();
-        let mut ahead: Vec<(f64, u32)> = Vec::new();
-        state.index.within(position, SPAN * unit, |slot, offset| {
-            let o = state.living[slot];
-            let cosine = way.dot(offset.unit_or_zero());
-            let cost = offset.norm() * (2.0 - cosine);
-            let is_own = o == s || o == before || state.links[before as usize].contains(&o);
-            let degree = state.links[o as usize].len();
-            let is_kept = state.is_frozen(s) && state.is_frozen(o);
-            if !is_own && !is_kept && cosine > AHEAD && (1..=2).contains(&degree) && state.share_style(o, s) {
-                ahead.push((cost, o));
-            }
-        });
-        ahead.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        if let Some(&(_, o)) = ahead.iter().find(|(_, o)| tangle.allows(state, s, *o)) {
-            state.links[s as usize].push(o);
-            state.links[o as usize].push(s);
-            joined += 1;
-        }
+impl<const D: usize> Repair<'_, D> {
+    /// Number of edges that a sample should have.
+    pub(crate) fn expected(&self, state: &State<'_, D>, s: u32) -> f64 {
+        // Of a frozen sample its own strokes tell more than its neighbours.
+        let told = self.votes.degree(s).filter(|_| !state.is_frozen(s));
+        told.unwrap_or_else(|| state.node(s).map_or(0.0, |e| self.net.degree(e) as f64))
     }
-    joined
-}
 
-/// Takes strokes over the border where their sources go on beyond it.
-fn reach_border<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
-    let inside: Vec<u32> = state
-        .living
-        .iter()
-        .copied()
-        .filter(|&s| !state.is_frozen(s) && state.domain().contains(state.samples[s as usize].position))
-        .collect();
-    let open: Vec<OpenArm<D>> = inside.iter().flat_map(|&s| open_arms(state, net, s)).collect();
-    let beyond = |arm: &&OpenArm<D>| !state.domain().contains(arm.place) || state.extent.is_blocked(arm.place, 0.0);
-    let base = state.level.base;
-    let is_open = |arm: &&OpenArm<D>| !state.extent.is_known(arm.place);
-    let new: Vec<OpenArm<D>> = open.iter().filter(beyond).filter(is_open).cloned().collect();
-    for arm in &new {
-        let sample = state.samples.len() as u32;
-        state.push(Item { source: base + arm.node, position: arm.place, frozen: None }, Matrix::identity());
-        state.links[sample as usize].push(arm.sample);
-        state.links[arm.sample as usize].push(sample);
+    /// Whether a stroke ends at `s` that should go on. Beyond the border of the domain anything may end.
+    fn is_false_end(&self, state: &State<'_, D>, s: u32) -> bool {
+        let p = state.sample(s).position;
+        let room = if state.is_frozen(s) { -AT_BORDER * self.net.spacing } else { 0.0 };
+        state.node(s).is_some()
+            && state.degree(s) == 1
+            && state.domain().signed_distance(p) > room
+            && (self.expected(state, s) > EXPECTED || (!state.is_frozen(s) && self.dangles.is_too_long(state, s)))
     }
-    new.len()
-}
 
-/// Joins false ends that face each other across a gap.
-fn bridge<const D: usize>(
-    state: &mut State<'_, D>,
-    net: &Net<D>,
-    votes: &Votes,
-    (loose, tangle): (&Loose, &Tangle),
-) -> usize {
-    let ends = false_ends(state, net, votes, loose);
-    let places: Vec<_> = ends.iter().map(|&s| state.samples[s as usize].position).collect();
-    let ways: Vec<_> = ends.iter().map(|&s| state.offset(state.links[s as usize][0], s).unit_or_zero()).collect();
-    let unit = net.spacing * state.extent.largest_spacing_scale;
-    let index = GridIndex::new(&places, SPAN * unit, state.domain());
-    let mut wishes: Vec<Wish> = Vec::new();
-    for (i, &s) in ends.iter().enumerate() {
-        index.within(places[i], SPAN * unit, |j, offset| {
-            let across = offset.unit_or_zero();
-            let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
-            let is_new = !(state.is_frozen(s) && state.is_frozen(ends[j]));
-            if j > i && is_new && out > FACING && back > FACING && state.share_style(s, ends[j]) {
-                wishes.push((offset.norm() / unit + ANGLE * (2.0 - out - back), i as u32, j as u32));
-            }
-        });
+    /// The false ends of a state.
+    pub(crate) fn false_ends(&self, state: &State<'_, D>) -> Vec<u32> {
+        state.living().iter().copied().filter(|&s| self.is_false_end(state, s)).collect()
     }
-    pairing::pair_up(wishes, ends.len(), |i, j| {
-        let (a, b) = (ends[i as usize], ends[j as usize]);
-        let is_good = tangle.allows(state, a, b) && !loose.forbids(state, a, b);
-        if is_good {
-            state.links[a as usize].push(b);
-            state.links[b as usize].push(a);
-        }
-        is_good
-    })
-}
 
-/// Puts back samples that several strokes reach for: where the missing edges of three or more samples end at one place, or
-/// two run into each other, and nothing is there.
-fn restore<const D: usize>(state: &mut State<'_, D>, net: &Net<D>) -> usize {
-    let wanted = |arm: &OpenArm<D>| state.domain().contains(arm.place) && !state.extent.is_blocked(arm.place, 0.0);
-    let open: Vec<OpenArm<D>> = state.living.iter().flat_map(|&s| open_arms(state, net, s)).filter(wanted).collect();
-    let unit = net.spacing * state.extent.smallest_spacing_scale;
-    let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
-    let index = GridIndex::new(&places, unit, state.domain());
-    let mut used = vec![false; open.len()];
-    let mut restored = 0;
-    for i in 0..open.len() {
-        let mut group: Vec<usize> = Vec::new();
-        index.within(places[i], SAME_PLACE * unit, |j, _| {
-            let is_new = group.iter().all(|&g: &usize| open[g].sample != open[j].sample);
-            let alike = net.nodes[open[i].node as usize].shares_style(&net.nodes[open[j].node as usize]);
-            if !used[j] && is_new && alike {
-                group.push(j);
-            }
-        });
-        group.sort_unstable();
-        let shift = group.iter().fold(Vector::ZERO, |sum, &j| sum + state.domain().offset(places[i], places[j]));
-        let place = state.domain().wrap(places[i] + shift * (1.0 / group.len().max(1) as f64));
-        let asked = group.len() >= 3 || is_gap(state, &open, &group);
-        if used[i] || !asked || is_taken(state, net, open[i].node, place) {
-            continue;
+    /// Takes away false ends that are a single edge long, and samples without any edge.
+    fn trim(&self, state: &mut State<'_, D>) -> usize {
+        let is_stub = |s: u32| {
+            let ended = self.is_false_end(state, s);
+            ended && state.links_of(s).first().is_some_and(|&o| state.degree(o) != 2)
+        };
+        let is_alone = |s: u32| state.node(s).is_some() && state.degree(s) == 0;
+        let is_gone = |&s: &u32| !state.is_frozen(s) && (is_alone(s) || is_stub(s));
+        let gone: Vec<u32> = state.living().iter().copied().filter(is_gone).collect();
+        for &s in &gone {
+            state.kill(s);
         }
-        // The node with as many edges as there are strokes reaching for it.
-        let misfit = |j: usize| net.degree(open[j].node).abs_diff(group.len());
-        let Some(node) = group.iter().copied().min_by_key(|&j| (misfit(j), j)).map(|j| open[j].node) else { continue };
-        let sample = state.samples.len() as u32;
-        let item = Item { source: state.level.base + node, position: place, frozen: None };
-        state.push(item, Matrix::identity());
-        for j in group {
-            used[j] = true;
-            state.links[sample as usize].push(open[j].sample);
-            state.links[open[j].sample as usize].push(sample);
-        }
-        restored += 1;
+        gone.len()
     }
-    if restored > 0 {
-        state.reindex();
-    }
-    restored
-}
-
-/// Whether two edges run into each other from opposite sides.
-fn is_gap<const D: usize>(state: &State<'_, D>, open: &[OpenArm<D>], group: &[usize]) -> bool {
-    let way = |j: usize| {
-        let arm = &open[j];
-        state.domain().offset(state.samples[arm.sample as usize].position, arm.place).unit_or_zero()
-    };
-    matches!(group, [i, j] if way(*i).dot(way(*j)) < -FACING)
-}
-
-/// Whether something that could be `node` lies at `place` already.
-fn is_taken<const D: usize>(state: &State<'_, D>, net: &Net<D>, node: u32, place: Vector<D>) -> bool {
-    let mut taken = false;
-    let room = SAME_PLACE * net.spacing * state.request.fields.frame(place).spacing_scale;
-    state.index.within(place, room, |slot, _| {
-        let other = state.node(state.living[slot]);
-        taken |= other.is_some_and(|e| net.nodes[e as usize].shares_style(&net.nodes[node as usize]));
-    });
-    taken
-}
-
-/// Number of edges that a sample should have.
-fn expected<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, s: u32) -> f64 {
-    // Of a kept sample its strokes tell more than its neighbours.
-    let told = votes.degree.get(s as usize).copied().filter(|d| d.is_finite() && !state.is_frozen(s));
-    told.unwrap_or_else(|| state.node(s).map_or(0.0, |e| net.degree(e) as f64))
-}
-
-/// Whether a stroke ends at `s` that should go on. Beyond the border of the domain anything may end.
-fn is_false_end<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose, s: u32) -> bool {
-    let p = state.samples[s as usize].position;
-    let room = if state.is_frozen(s) { -AT_BORDER * net.spacing } else { 0.0 };
-    state.node(s).is_some()
-        && state.links[s as usize].len() == 1
-        && state.domain().signed_distance(p) > room
-        && (expected(state, net, votes, s) > EXPECTED || (!state.is_frozen(s) && loose.is_too_long(state, s)))
-}
-
-/// The false ends of a state.
-fn false_ends<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> Vec<u32> {
-    state.living.iter().copied().filter(|&s| is_false_end(state, net, votes, loose, s)).collect()
-}
-
-fn join<const D: usize>(
-    state: &mut State<'_, D>,
-    net: &Net<D>,
-    votes: &Votes,
-    (loose, tangle): (&Loose, &Tangle),
-    ends: &[u32],
-) -> usize {
-    let wishes: Vec<Wish> = ends.iter().flat_map(|&s| partners(state, net, votes, loose, s)).collect();
-    pairing::pair_up(wishes, state.samples.len(), |a, b| {
-        let is_good = tangle.allows(state, a, b) && !loose.forbids(state, a, b);
-        if is_good {
-            state.links[a as usize].push(b);
-            state.links[b as usize].push(a);
-        }
-        is_good
-    })
-}
-
-/// What the end `s` could be joined to, with the cost in sampling distances.
-fn partners<const D: usize>(state: &State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose, s: u32) -> Vec<Wish> {
-    let position = state.samples[s as usize].position;
-    let unit = net.spacing * state.request.fields.frame(position).spacing_scale;
-    let Some(&before) = state.links[s as usize].first() else { return Vec::new() };
-    let way = state.offset(before, s).unit_or_zero();
-    let branches = net.branches();
-    // What is too long would only grow with another end of a stroke.
-    let takes_ends = expected(state, net, votes, s) > EXPECTED || !loose.has_single();
-    let mut found = Vec::new();
-    state.index.within(position, REACH * unit, |slot, offset| {
-        let o = state.living[slot];
-        let is_near = o == s || o == before || state.links[before as usize].contains(&o);
-        let is_kept = state.is_frozen(s) && state.is_frozen(o);
-        if is_near || is_kept || !state.share_style(o, s) {
-            return;
-        }
-        let degree = state.links[o as usize].len();
-        if degree == 0 || (degree == 1 && !takes_ends) {
-            return;
-        }
-        let wants = expected(state, net, votes, o) - degree as f64 > 0.4;
-        let turn = 1.0 - way.dot(offset.unit_or_zero());
-        let cost = offset.norm() / unit + ANGLE * turn + if wants { 0.0 } else { NEW_JUNCTION };
-        let is_crowded = degree >= 4 || (!wants && (degree >= 3 || (degree == 2 && !branches)));
-        if cost <= REACH && !is_crowded {
-            found.push((cost, s, o));
-        }
-    });
-    found
-}
-
-/// Takes away false ends that are a single edge long, and samples without any edge.
-fn trim<const D: usize>(state: &mut State<'_, D>, net: &Net<D>, votes: &Votes, loose: &Loose) -> usize {
-    let is_stub = |s: u32| {
-        let ended = is_false_end(state, net, votes, loose, s);
-        ended && state.links[s as usize].first().is_some_and(|&o| state.links[o as usize].len() != 2)
-    };
-    let alone = |s: u32| state.node(s).is_some() && state.links[s as usize].is_empty();
-    let gone: Vec<u32> =
-        state.living.iter().copied().filter(|&s| !state.is_frozen(s) && (alone(s) || is_stub(s))).collect();
-    for &s in &gone {
-        state.kill(s);
-    }
-    gone.len()
 }

@@ -2,4 +2,6 @@
 
 pub(crate) mod crossings;
 pub(crate) mod dangles;
+pub(crate) mod joints;
 pub(crate) mod mend;
+pub(crate) mod missing;

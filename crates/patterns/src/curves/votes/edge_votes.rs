@@ -1,5 +1,7 @@
 //! What the matched neighbourhoods say about edges.
 
+use arabesque_core::Numbered;
+
 use rayon::prelude::*;
 
 use crate::{
@@ -22,12 +24,20 @@ pub(crate) struct Candidate {
 }
 
 /// All votes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Votes {
     /// By ends.
     pub(crate) candidates: Vec<Candidate>,
-    /// Expected number of edges of each sample [Tu 2020 eq. 18]; NaN for those nobody voted on.
-    pub(crate) degree: Vec<f64>,
+    /// Expected number of edges of each sample [Tu 2020 eq. 18]; `None` for those nobody voted on.
+    pub(crate) degree: Numbered<Option<f64>>,
+}
+
+impl Votes {
+    /// Expected number of edges of a sample; `None` for those nobody voted on, and for those that are younger than the
+    /// votes.
+    pub(crate) fn degree(&self, s: u32) -> Option<f64> {
+        self.degree.get(s as usize).copied().flatten()
+    }
 }
 
 /// One neighbourhood's opinion.
@@ -41,13 +51,13 @@ struct Opinion {
 pub(crate) fn collect_votes<const D: usize>(state: &State<'_, D>) -> Votes {
     match &state.level.net {
         Some(net) => collect(state, net),
-        None => Votes { candidates: Vec::new(), degree: Vec::new() },
+        None => Votes::default(),
     }
 }
 
 /// Collects the votes of all matched neighbourhoods.
 pub(crate) fn collect<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Votes {
-    let opinions: Vec<Opinion> = state.living.par_iter().filter_map(|&s| opinion(state, s)).collect();
+    let opinions: Vec<Opinion> = state.living().par_iter().filter_map(|&s| opinion(state, s)).collect();
     let mut joined: Vec<((u32, u32), Piece, f64)> =
         opinions.par_iter().flat_map_iter(|o| joined_pairs(state, net, o)).collect();
     joined.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.line.cmp(&b.1.line)).then(a.1.from.total_cmp(&b.1.from)));
@@ -63,7 +73,7 @@ fn candidate(votes: &[((u32, u32), Piece, f64)]) -> Candidate {
 }
 
 fn opinion<const D: usize>(state: &State<'_, D>, s: u32) -> Option<Opinion> {
-    let matched = state.samples[s as usize].matched.as_ref()?;
+    let matched = state.sample(s).matched.as_ref()?;
     let all = std::iter::once((s, matched.input)).chain(matched.pairs.iter().copied());
     let node = |(o, i): (u32, u32)| Some((o, state.level.node_of(i)?)).filter(|_| state.is_alive(o));
     let pairs: Vec<_> = all.filter_map(node).collect();
@@ -78,7 +88,7 @@ fn joined_pairs<const D: usize>(
 ) -> Vec<((u32, u32), Piece, f64)> {
     let mut found = Vec::new();
     for &(o, e) in &opinion.pairs {
-        for arm in &net.nodes[e as usize].arms {
+        for arm in &net.nodes[e].arms {
             let Some(&(p, _)) = opinion.pairs.iter().find(|(p, i)| *i == arm.to && *p > o) else { continue };
             if state.reach(o, p) <= MAX_EDGE * net.spacing {
                 found.push(((o, p), arm.piece, opinion.weight));
@@ -90,18 +100,20 @@ fn joined_pairs<const D: usize>(
 
 /// Divides the weight of each candidate by that of all neighbourhoods that hold both its ends.
 fn weigh<const D: usize>(state: &State<'_, D>, opinions: &[Opinion], candidates: &mut [Candidate]) {
-    let mut of_sample: Vec<Vec<u32>> = vec![Vec::new(); state.samples.len()];
+    let mut of_sample: Numbered<Vec<u32>> = Numbered::filled(Vec::new(), state.samples().len());
     for (c, candidate) in candidates.iter().enumerate() {
-        of_sample[candidate.ends.0 as usize].push(c as u32);
+        of_sample[candidate.ends.0].push(c as u32);
     }
-    let mut all = vec![0.0; candidates.len()];
-    let mut stamp = vec![u32::MAX; state.samples.len()];
+    let second_end = |c: u32| candidates[c as usize].ends.1;
+    let mut all = Numbered::filled(0.0, candidates.len());
+    // The last neighbourhood that holds each sample.
+    let mut stamp = Numbered::filled(None, state.samples().len());
     for (n, opinion) in opinions.iter().enumerate() {
-        opinion.pairs.iter().for_each(|(o, _)| stamp[*o as usize] = n as u32);
+        opinion.pairs.iter().for_each(|(o, _)| stamp[*o] = Some(n));
         for (o, _) in &opinion.pairs {
-            for &c in &of_sample[*o as usize] {
-                if stamp[candidates[c as usize].ends.1 as usize] == n as u32 {
-                    all[c as usize] += opinion.weight;
+            for &c in &of_sample[*o] {
+                if stamp[second_end(c)] == Some(n) {
+                    all[c] += opinion.weight;
                 }
             }
         }
@@ -111,13 +123,13 @@ fn weigh<const D: usize>(state: &State<'_, D>, opinions: &[Opinion], candidates:
     }
 }
 
-fn degrees<const D: usize>(state: &State<'_, D>, net: &Net<D>, opinions: &[Opinion]) -> Vec<f64> {
-    let mut sum = vec![(0.0, 0.0); state.samples.len()];
+fn degrees<const D: usize>(state: &State<'_, D>, net: &Net<D>, opinions: &[Opinion]) -> Numbered<Option<f64>> {
+    let mut sum = Numbered::filled((0.0, 0.0), state.samples().len());
     for opinion in opinions {
         for &(o, e) in &opinion.pairs {
-            let entry = &mut sum[o as usize];
+            let entry = &mut sum[o];
             *entry = (entry.0 + opinion.weight * net.degree(e) as f64, entry.1 + opinion.weight);
         }
     }
-    sum.into_iter().map(|(total, weight)| total / weight).collect()
+    sum.into_iter().map(|(total, weight)| (weight > 0.0).then_some(total / weight)).collect()
 }

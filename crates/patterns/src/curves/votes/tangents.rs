@@ -1,6 +1,6 @@
 //! Orientation assignment: the directions in which strokes leave a sample [Tu 2020 §4.3.4, eq. 6, fig. 9].
 
-use arabesque_core::{Vector, pairing};
+use arabesque_core::{Numbered, Vector, pairing};
 use rayon::prelude::*;
 
 use crate::output::state::State;
@@ -10,35 +10,35 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) {
     let level = state.level;
     let Some(net) = &level.net else { return };
     let votes = votes(state);
-    let updated: Vec<Vec<Vector<D>>> = (0..state.samples.len())
+    let updated: Vec<Vec<Vector<D>>> = (0..state.samples().len() as u32)
         .into_par_iter()
         .map(|s| {
-            let own = &state.tangents[s];
-            if votes[s].is_empty() || state.is_frozen(s as u32) {
-                return own.clone();
+            let own = state.tangents_of(s);
+            if votes[s].is_empty() || state.is_frozen(s) {
+                return own.to_vec();
             }
-            let frame = state.request.fields.frame(state.samples[s].position);
+            let frame = state.request.fields.frame(state.sample(s).position);
             let turned = |v: Vector<D>| frame.rotation.apply(v);
             let sets: Vec<Vec<Vector<D>>> =
                 votes[s].iter().map(|&e| net.directions(e).into_iter().map(turned).collect()).collect();
             update(own, &sets)
         })
         .collect();
-    state.tangents = updated;
+    state.set_tangents(updated);
 }
 
 /// For every sample, the exemplar nodes that it was matched with; its own match first.
-fn votes<const D: usize>(state: &State<'_, D>) -> Vec<Vec<u32>> {
-    let mut votes: Vec<Vec<u32>> = vec![Vec::new(); state.samples.len()];
-    for &s in &state.living {
-        if let Some(matched) = &state.samples[s as usize].matched {
-            votes[s as usize].extend(state.level.node_of(matched.input));
+fn votes<const D: usize>(state: &State<'_, D>) -> Numbered<Vec<u32>> {
+    let mut votes = Numbered::filled(Vec::new(), state.samples().len());
+    for &s in state.living() {
+        if let Some(matched) = &state.sample(s).matched {
+            votes[s].extend(state.level.node_of(matched.input));
         }
     }
-    for &s in &state.living {
-        let Some(matched) = &state.samples[s as usize].matched else { continue };
+    for &s in state.living() {
+        let Some(matched) = &state.sample(s).matched else { continue };
         for &(o, i) in &matched.pairs {
-            votes[o as usize].extend(state.level.node_of(i));
+            votes[o].extend(state.level.node_of(i));
         }
     }
     votes
@@ -77,7 +77,8 @@ fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>]) -> Vec<Vec
     result
 }
 
-/// For each entry the vote it is matched with: the largest sum of cosines, which is the smallest sum of angles for small ones.
+/// For each entry the vote it is matched with: the largest sum of cosines, which is the smallest sum of angles for
+/// small ones.
 fn partners<const D: usize>(entries: &[Vector<D>], votes: &[Vector<D>]) -> Vec<Option<usize>> {
     pairing::pair_sides(entries.len(), votes.len(), |e, v| entries[e].dot(votes[v]))
 }

@@ -1,11 +1,11 @@
 //! Where lines touch one another.
 
-use arabesque_core::{Bounds, Domain, GridIndex, Vector, segment};
+use arabesque_core::{Bounds, Domain, GridIndex, Numbered, Vector};
 
 use crate::exemplar::graph::line::Line;
 
 /// No more crossings are looked for when there are so many.
-pub(crate) const MOST_CONTACTS: usize = 200_000;
+pub(crate) const MAX_CONTACTS: usize = 200_000;
 
 /// Two passages of lines through one place.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,7 @@ struct Chords<const D: usize> {
 }
 
 impl<const D: usize> Chords<D> {
-    fn new(lines: &[Line<D>], longest: f64) -> Self {
+    fn new(lines: &Numbered<Line<D>>, longest: f64) -> Self {
         let mut all = Vec::new();
         for (line, l) in lines.iter().enumerate() {
             let (points, mut number) = (l.measured.points(), 0);
@@ -73,23 +73,24 @@ impl<const D: usize> Chords<D> {
     }
 
     /// Whether two chords are neighbours on one line.
-    fn adjoin(&self, lines: &[Line<D>], a: &Chord<D>, b: &Chord<D>) -> bool {
+    fn adjoin(&self, lines: &Numbered<Line<D>>, a: &Chord<D>, b: &Chord<D>) -> bool {
         if a.line != b.line {
             return false;
         }
-        let measured = &lines[a.line as usize].measured;
+        let measured = &lines[a.line].measured;
         let gap = (a.arc[0] - b.arc[0]).abs();
         let around = if measured.is_closed() { gap.min(measured.length() - gap) } else { gap };
         a.number.abs_diff(b.number) <= 1 || around <= 1.5 * self.longest
     }
 }
 
-/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after [`MOST_CONTACTS`].
-pub(crate) fn crossings<const D: usize>(lines: &[Line<D>], side: f64, near: f64) -> Vec<Contact<D>> {
+/// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after
+/// [`MAX_CONTACTS`].
+pub(crate) fn crossings<const D: usize>(lines: &Numbered<Line<D>>, side: f64, near: f64) -> Vec<Contact<D>> {
     let chords = Chords::new(lines, side / 100.0);
     let mut found = Vec::new();
     for (i, a) in chords.all.iter().enumerate() {
-        if found.len() >= MOST_CONTACTS {
+        if found.len() >= MAX_CONTACTS {
             break;
         }
         chords.index.within(a.middle(), chords.longest + near, |j, _| {
@@ -123,7 +124,7 @@ fn crossing<const D: usize>(a: &Chord<D>, b: &Chord<D>, near: f64) -> Option<(f6
 }
 
 /// Ends that come within `reach` (of their line) of another line, or of their own far from the end.
-pub(crate) fn end_contacts<const D: usize>(lines: &[Line<D>], reach: &[f64], side: f64) -> Vec<Contact<D>> {
+pub(crate) fn end_contacts<const D: usize>(lines: &Numbered<Line<D>>, reach: &[f64], side: f64) -> Vec<Contact<D>> {
     let chords = Chords::new(lines, side / 100.0);
     let mut found = Vec::new();
     for (l, line) in lines.iter().enumerate().filter(|(_, line)| !line.measured.is_closed()) {
@@ -150,17 +151,18 @@ fn nearest_by_line<const D: usize>(
     reach: f64,
     mut visit: impl FnMut(&Chord<D>, f64, f64),
 ) {
-    let mut near: Vec<(u32, u32, f64, f64)> = Vec::new();
+    let mut near: Vec<(u32, usize, f64, f64)> = Vec::new();
     chords.index.within(p, reach + chords.longest, |j, _| {
         let chord = &chords.all[j];
-        let ends = (chord.a, chord.b);
-        near.push((chord.line, j as u32, segment::nearest_share(ends, p), segment::distance(ends, p)));
+        let r = chord.b - chord.a;
+        let t = ((p - chord.a).dot(r) / r.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        near.push((chord.line, j, t, (chord.a + r * t - p).norm()));
     });
     near.sort_by_key(|n| (n.0, n.1));
     // Neighbouring chords are one passage of the line; only its nearest place counts.
     for passage in near.chunk_by(|a, b| a.0 == b.0 && b.1 == a.1 + 1) {
         if let Some(best) = passage.iter().min_by(|a, b| a.3.total_cmp(&b.3)) {
-            visit(&chords.all[best.1 as usize], best.2, best.3);
+            visit(&chords.all[best.1], best.2, best.3);
         }
     }
 }

@@ -11,10 +11,10 @@ const GRID: (usize, usize) = (48, 14);
 const STEP: f64 = 0.25;
 
 /// Most points on all lines.
-const MOST_POINTS: f64 = 200_000.0;
+const MAX_POINTS: f64 = 200_000.0;
 
-/// Share of the window that lies under strokes, as round bars of their width: 0 to 1. Strokes without that much ink are not looked at and
-/// count as nothing.
+/// Share of the window that lies under strokes, as round bars of their width: 0 to 1. Strokes without that much ink are
+/// not looked at and count as nothing.
 pub(crate) fn coverage<const D: usize>(skeleton: &Skeleton<D>, window: &Bounds<D>, least: f64) -> f64 {
     let ink = |width: f64| if D == 2 { width } else { 0.25 * std::f64::consts::PI * width * width };
     let total: f64 = skeleton.lines.iter().map(|l| ink(l.width) * l.measured.length()).sum();
@@ -24,7 +24,7 @@ pub(crate) fn coverage<const D: usize>(skeleton: &Skeleton<D>, window: &Bounds<D
     let length: f64 = skeleton.lines.iter().map(|l| l.measured.length()).sum();
     let (mut points, mut reach) = (Vec::new(), Vec::new());
     for line in &skeleton.lines {
-        let step = (STEP * line.width).max(length / MOST_POINTS);
+        let step = (STEP * line.width).max(length / MAX_POINTS);
         let count = (line.measured.length() / step).ceil().max(1.0) as usize;
         points.extend((0..=count).map(|k| line.measured.point(line.measured.length() * k as f64 / count as f64)));
         reach.resize(points.len(), 0.5 * line.width.hypot(step));

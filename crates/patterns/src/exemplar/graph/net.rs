@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Measured, Vector};
+use arabesque_core::{Measured, Numbered, Vector};
 
 use crate::exemplar::graph::{
     line::Line,
@@ -70,8 +70,8 @@ impl<const D: usize> Star<D> {
         usize::from(self.len)
     }
 
-    /// Difference of two edge sets: matched edges by the vectors to their other ends, the others at `single2` each; nothing where the
-    /// first has no edges yet [Tu 2020 eq. 5].
+    /// Difference of two edge sets: matched edges by the vectors to their other ends, the others at `single2` each;
+    /// nothing where the first has no edges yet [Tu 2020 eq. 5].
     pub(crate) fn distance2(&self, other: &Self, single2: f32) -> f32 {
         if self.len == 0 {
             return 0.0;
@@ -162,9 +162,9 @@ impl<const D: usize> Node<D> {
 /// A sample graph: the knots of the skeleton first, then the samples between.
 #[derive(Clone, Debug)]
 pub(crate) struct Net<const D: usize> {
-    pub(crate) nodes: Vec<Node<D>>,
+    pub(crate) nodes: Numbered<Node<D>>,
     /// Nodes along each line, by arc length.
-    pub(crate) along: Vec<Vec<(f64, u32)>>,
+    pub(crate) along: Numbered<Vec<(f64, u32)>>,
     /// Distance of neighbouring samples.
     pub(crate) spacing: f64,
     /// What was sampled.
@@ -177,7 +177,7 @@ impl<const D: usize> Net<D> {
         let knot = |&(position, kind): &(Vector<D>, Knot)| Node::new(position, u32::MAX, Some(kind));
         let mut net = Self {
             nodes: skeleton.knots.iter().map(knot).collect(),
-            along: Vec::new(),
+            along: Numbered::new(),
             spacing,
             skeleton: Arc::clone(skeleton),
         };
@@ -196,16 +196,16 @@ impl<const D: usize> Net<D> {
         for pair in line.stops.windows(2) {
             // Two lines between the same knots, and a line back to its knot, stay apart by a sample between.
             let least = if pair[0].1 == pair[1].1 { 3 } else { 1 + usize::from(self.are_joined(pair[0].1, pair[1].1)) };
-            self.stretch(line, (pair[0].0, pair[1].0), least, &mut along);
+            self.stretch(line, [pair[0].0, pair[1].0], least, &mut along);
         }
         match (line.stops.first(), line.stops.last()) {
             (Some(first), Some(last)) if measured.is_closed() => {
                 let least = [1, 3, 2][line.stops.len().min(3) % 3];
-                self.stretch(line, (last.0, first.0 + length), least, &mut along);
+                self.stretch(line, [last.0, first.0 + length], least, &mut along);
             }
             (None, _) => {
                 self.sample(line, 0.0, &mut along);
-                self.stretch(line, (0.0, length), 3, &mut along);
+                self.stretch(line, [0.0, length], 3, &mut along);
             }
             _ => {}
         }
@@ -215,7 +215,7 @@ impl<const D: usize> Net<D> {
     }
 
     /// Even samples inside a stretch of a line, at least so many that they divide it into `least` parts.
-    fn stretch(&mut self, line: &Line<D>, (from, to): (f64, f64), least: usize, along: &mut Vec<(f64, u32)>) {
+    fn stretch(&mut self, line: &Line<D>, [from, to]: [f64; 2], least: usize, along: &mut Vec<(f64, u32)>) {
         let n = (((to - from) / self.spacing).round() as usize).max(least);
         for k in 1..n {
             self.sample(line, line.measured.wrap(from + (to - from) * k as f64 / n as f64), along);
@@ -229,53 +229,53 @@ impl<const D: usize> Net<D> {
     }
 
     fn are_joined(&self, a: u32, b: u32) -> bool {
-        self.nodes[a as usize].arms.iter().any(|arm| arm.to == b)
+        self.nodes[a].arms.iter().any(|arm| arm.to == b)
     }
 
     fn connect(&mut self, line: &Line<D>, number: u32, along: &[(f64, u32)]) {
         let (measured, length) = (&line.measured, line.measured.length());
         for pair in along.windows(2) {
-            self.edge(measured, Piece { line: number, from: pair[0].0, to: pair[1].0 }, (pair[0].1, pair[1].1));
+            self.edge(measured, Piece { line: number, from: pair[0].0, to: pair[1].0 }, [pair[0].1, pair[1].1]);
         }
         if let (true, Some(first), Some(last)) = (measured.is_closed(), along.first(), along.last()) {
-            self.edge(measured, Piece { line: number, from: last.0, to: first.0 + length }, (last.1, first.1));
+            self.edge(measured, Piece { line: number, from: last.0, to: first.0 + length }, [last.1, first.1]);
         }
         for &(_, node) in along {
-            let node = &mut self.nodes[node as usize];
+            let node = &mut self.nodes[node];
             node.curve = node.curve.min(line.curve);
         }
         for (end, is_cut) in [(along.first(), line.is_cut[0]), (along.last(), line.is_cut[1])] {
             if let (Some(&(arc, node)), true, false) = (end, is_cut, measured.is_closed()) {
                 let outwards = if arc <= 0.0 { -1.0 } else { 1.0 };
                 let tangent = tangent(measured, arc, outwards, self.spacing);
-                self.nodes[node as usize].beyond.push(tangent);
+                self.nodes[node].beyond.push(tangent);
             }
         }
     }
 
-    fn edge(&mut self, measured: &Measured<D>, piece: Piece, (a, b): (u32, u32)) {
+    fn edge(&mut self, measured: &Measured<D>, piece: Piece, [a, b]: [u32; 2]) {
         let out = tangent(measured, piece.from, 1.0, 0.3 * (piece.to - piece.from));
         let back = tangent(measured, piece.to, -1.0, 0.3 * (piece.to - piece.from));
-        self.nodes[a as usize].arms.push(Arm { to: b, piece, tangent: out });
-        self.nodes[b as usize].arms.push(Arm { to: a, piece: piece.reversed(), tangent: back });
+        self.nodes[a].arms.push(Arm { to: b, piece, tangent: out });
+        self.nodes[b].arms.push(Arm { to: a, piece: piece.reversed(), tangent: back });
     }
 
     /// The edge set of a node. An arm that the window cuts off counts as one of the usual length.
     pub(crate) fn star(&self, node: u32) -> Star<D> {
-        let node = &self.nodes[node as usize];
-        let arms = node.arms.iter().map(|arm| self.nodes[arm.to as usize].position - node.position);
+        let node = &self.nodes[node];
+        let arms = node.arms.iter().map(|arm| self.nodes[arm.to].position - node.position);
         Star::new(arms.chain(node.beyond.iter().map(|t| *t * self.spacing)))
     }
 
     /// Unit vectors in which strokes leave a node, those included that the window cuts off.
     pub(crate) fn directions(&self, node: u32) -> Vec<Vector<D>> {
-        let node = &self.nodes[node as usize];
+        let node = &self.nodes[node];
         node.arms.iter().map(|a| a.tangent).chain(node.beyond.iter().copied()).collect()
     }
 
     /// Number of edges of a node, those included that the window cuts off.
     pub(crate) fn degree(&self, node: u32) -> usize {
-        let node = &self.nodes[node as usize];
+        let node = &self.nodes[node];
         node.arms.len() + node.beyond.len()
     }
 
@@ -287,14 +287,14 @@ impl<const D: usize> Net<D> {
 
     /// Where the node at `arc` of a line is: a line that ends at a junction may stop short of it by a touch.
     pub(crate) fn anchor(&self, line: u32, arc: f64) -> Vector<D> {
-        let line = &self.skeleton.lines[line as usize];
+        let line = &self.skeleton.lines[line];
         let (arc, length) = (line.measured.wrap(arc), line.measured.length());
         let gap = |a: f64| {
             let d = (a - arc).abs();
             if line.measured.is_closed() { d.min(length - d) } else { d }
         };
         let stop = line.stops.iter().find(|(a, _)| gap(*a) <= 1e-9 * length);
-        stop.map_or_else(|| line.measured.point(arc), |&(_, knot)| self.skeleton.knots[knot as usize].0)
+        stop.map_or_else(|| line.measured.point(arc), |&(_, knot)| self.skeleton.knots[knot].0)
     }
 
     /// From the node at the start of a piece to that at its end.
@@ -308,7 +308,7 @@ impl<const D: usize> Net<D> {
             let d = (a - arc).abs();
             if is_closed { d.min(length - d) } else { d }
         };
-        self.along[line as usize].iter().min_by(|a, b| gap(a.0).total_cmp(&gap(b.0))).map(|n| n.1)
+        self.along[line].iter().min_by(|a, b| gap(a.0).total_cmp(&gap(b.0))).map(|n| n.1)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Curve samples in the clothes of elements, so that the engine can handle them.
+//! Pseudo elements: curve samples as elements of one sample each, so that the engine can handle them like any others.
 
 use std::sync::Arc;
 
@@ -9,31 +9,31 @@ use crate::exemplar::graph::{
     skeleton::{Knot, Skeleton},
 };
 
-/// The exemplar of one level: its elements, then one pseudo element a curve sample.
+/// The exemplar of one level: its elements, then one pseudo element per curve sample.
 #[derive(Clone, Debug)]
-pub(crate) struct Cast<const D: usize> {
+pub(crate) struct PseudoElements<const D: usize> {
     pub(crate) exemplar: Exemplar<D>,
     /// First pseudo element.
     pub(crate) base: usize,
     pub(crate) net: Arc<Net<D>>,
 }
 
-impl<const D: usize> Cast<D> {
+impl<const D: usize> PseudoElements<D> {
     /// Samples the skeleton at `spacing` and appends the samples to the elements of `exemplar`.
     pub(crate) fn new(exemplar: &Exemplar<D>, skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
         let mut net = Net::new(skeleton, spacing);
-        let mut cast = exemplar.clone();
+        let mut pseudo = exemplar.clone();
         let mut kinds: Vec<Vec<usize>> = Vec::new();
         for number in 0..net.nodes.len() as u32 {
             let styles = styles(exemplar, &net, number);
-            net.nodes[number as usize].styles.clone_from(&styles);
+            net.nodes[number].styles.clone_from(&styles);
             let kind = kinds.iter().position(|k| *k == styles).unwrap_or_else(|| {
                 kinds.push(styles);
                 kinds.len() - 1
             });
-            let node = &net.nodes[number as usize];
+            let node = &net.nodes[number];
             let tips = net.directions(number).into_iter().map(|t| node.position + t * spacing);
-            cast.elements.push(Element {
+            pseudo.elements.push(Element {
                 class: exemplar.classes.len() + kind,
                 centre: node.position,
                 pose: Similarity::shift(node.position),
@@ -42,16 +42,16 @@ impl<const D: usize> Cast<D> {
                 role: if node.knot == Some(Knot::Cut) { Role::Context } else { Role::Source },
             });
         }
-        cast.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
-        Self { exemplar: cast, base: exemplar.elements.len(), net: Arc::new(net) }
+        pseudo.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
+        Self { exemplar: pseudo, base: exemplar.elements.len(), net: Arc::new(net) }
     }
 }
 
 /// The styles of all strokes through a node, sorted: only samples with the same ones match.
 fn styles<const D: usize>(exemplar: &Exemplar<D>, net: &Net<D>, node: u32) -> Vec<usize> {
     let lines = &net.skeleton.lines;
-    let own = &net.nodes[node as usize];
-    let arms = own.arms.iter().map(|arm| lines[arm.piece.line as usize].curve);
+    let own = &net.nodes[node];
+    let arms = own.arms.iter().map(|arm| lines[arm.piece.line].curve);
     let mut styles: Vec<_> =
         arms.chain(std::iter::once(own.curve)).map(|c| exemplar.curves[c as usize].style).collect();
     styles.sort_unstable();

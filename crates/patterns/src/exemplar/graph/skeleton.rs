@@ -1,12 +1,13 @@
-//! The lines of an exemplar and the places where they meet, end or turn sharply: what every level samples alike [Tu 2020 §4.1.1].
+//! The lines of an exemplar and the places where they meet, end or turn sharply: what every level samples alike [Tu
+//! 2020 §4.1.1].
 //!
-//! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the stroke is wide. Lines
-//! that run side by side do not meet, however close they are.
+//! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the
+//! stroke is wide. Lines that run side by side do not meet, however close they are.
 
-use arabesque_core::{Curve, DisjointSets, Error, Measured, Path, Result, Vector, View, spans_inside};
+use arabesque_core::{Curve, DisjointSets, Error, Measured, Numbered, Path, Result, Vector, View, spans_inside};
 
 use crate::exemplar::graph::{
-    contact::{Contact, MOST_CONTACTS, crossings, end_contacts},
+    contact::{Contact, MAX_CONTACTS, crossings, end_contacts},
     line::Line,
 };
 
@@ -20,7 +21,7 @@ const TOUCH_SHARE: f64 = 0.003;
 const CORNER: f64 = 0.766;
 
 /// Most knots of an exemplar: with more, each neighbourhood would take minutes to be compared with all others.
-const MOST_KNOTS: usize = 10_000;
+const MAX_KNOTS: usize = 10_000;
 
 /// An end is at the frame when it is this near, as a share of the side of the window, however wide the stroke is.
 const AT_FRAME: f64 = 0.02;
@@ -44,9 +45,9 @@ pub(crate) enum Knot {
 /// Lines and knots.
 #[derive(Clone, Debug)]
 pub(crate) struct Skeleton<const D: usize> {
-    pub(crate) lines: Vec<Line<D>>,
+    pub(crate) lines: Numbered<Line<D>>,
     /// Place and kind of every knot.
-    pub(crate) knots: Vec<(Vector<D>, Knot)>,
+    pub(crate) knots: Numbered<(Vector<D>, Knot)>,
 }
 
 impl<const D: usize> Skeleton<D> {
@@ -56,40 +57,41 @@ impl<const D: usize> Skeleton<D> {
     /// [`Error::Limit`] when they meet in too many places.
     pub(crate) fn new(curves: &[Curve<D>], view: &View<D>) -> Result<Self> {
         let side = view.side();
-        let lines: Vec<_> = curves.iter().enumerate().flat_map(|(k, c)| cut(k as u32, c, view, side)).collect();
+        let lines: Numbered<_> = curves.iter().enumerate().flat_map(|(k, c)| cut(k as u32, c, view, side)).collect();
         let too_many = |found: String| Error::Limit {
             what: "places of the exemplar where strokes meet, end or turn sharply".into(),
             found,
-            limit: MOST_KNOTS.to_string(),
+            limit: MAX_KNOTS.to_string(),
             advice: "show a smaller part of the pattern, or draw it with fewer lines".into(),
         };
         let contacts = contacts(&lines, side);
-        if contacts.len() >= MOST_CONTACTS {
-            return Err(too_many(format!("{MOST_CONTACTS} or more")));
+        if contacts.len() >= MAX_CONTACTS {
+            return Err(too_many(format!("{MAX_CONTACTS} or more")));
         }
         let skeleton = Self::joined(lines, &contacts, side);
         match skeleton.knots.len() {
-            0..=MOST_KNOTS => Ok(skeleton),
+            0..=MAX_KNOTS => Ok(skeleton),
             found => Err(too_many(found.to_string())),
         }
     }
 
-    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first [`MOST_CONTACTS`] contacts
-    /// count.
-    pub(crate) fn of_lines(lines: Vec<Line<D>>, side: f64) -> Self {
+    /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first
+    /// [`MAX_CONTACTS`] contacts count.
+    pub(crate) fn of_lines(lines: Numbered<Line<D>>, side: f64) -> Self {
         let contacts = contacts(&lines, side);
         Self::joined(lines, &contacts, side)
     }
 
-    /// Whether lines meet so close to a place that what lies there is part of the junction; `side` is the size of the picture.
+    /// Whether lines meet so close to a place that what lies there is part of the junction; `side` is the size of the
+    /// picture.
     pub(crate) fn is_in_junction(&self, place: Vector<D>, side: f64) -> bool {
         let is_near = |p: Vector<D>| (p - place).norm() <= TOUCH_SHARE * side;
         self.knots.iter().any(|&(p, knot)| knot == Knot::Junction && is_near(p))
     }
 
-    fn joined(lines: Vec<Line<D>>, contacts: &[Contact<D>], side: f64) -> Self {
+    fn joined(lines: Numbered<Line<D>>, contacts: &[Contact<D>], side: f64) -> Self {
         let reach = reach(&lines, side);
-        let mut skeleton = Self { lines, knots: Vec::new() };
+        let mut skeleton = Self { lines, knots: Numbered::new() };
         skeleton.join(contacts, &reach);
         skeleton.end_lines(&reach);
         skeleton.find_corners(&reach);
@@ -98,7 +100,7 @@ impl<const D: usize> Skeleton<D> {
     }
 
     /// Makes a knot of every cluster of contacts.
-    fn join(&mut self, contacts: &[Contact<D>], reach: &[f64]) {
+    fn join(&mut self, contacts: &[Contact<D>], reach: &Numbered<f64>) {
         let points: Vec<_> = contacts.iter().flat_map(|c| [c.place, c.place]).collect();
         let sides: Vec<(u32, f64)> = contacts.iter().flat_map(|c| c.sides).collect();
         let mut group = DisjointSets::new(sides.len());
@@ -108,8 +110,7 @@ impl<const D: usize> Skeleton<D> {
             let centre = members.iter().fold(Vector::ZERO, |sum, &m| sum + points[m]) * (1.0 / members.len() as f64);
             let knot = self.knots.len() as u32;
             // Of a junction on the frame nobody sees all arms.
-            let is_cut =
-                |&m: &usize| is_cut_at(&self.lines[sides[m].0 as usize], sides[m].1, reach[sides[m].0 as usize]);
+            let is_cut = |&m: &usize| is_cut_at(&self.lines[sides[m].0], sides[m].1, reach[sides[m].0]);
             let kind = if members.iter().all(is_cut) { Knot::Cut } else { Knot::Junction };
             self.knots.push((centre, kind));
             self.stop_at(knot, &members, &sides, reach);
@@ -117,12 +118,18 @@ impl<const D: usize> Skeleton<D> {
     }
 
     /// Joins the touches of each line that lie close together, along it and in the plane.
-    fn join_passages(&self, points: &[Vector<D>], sides: &[(u32, f64)], reach: &[f64], group: &mut DisjointSets) {
+    fn join_passages(
+        &self,
+        points: &[Vector<D>],
+        sides: &[(u32, f64)],
+        reach: &Numbered<f64>,
+        group: &mut DisjointSets,
+    ) {
         let mut order: Vec<usize> = (0..sides.len()).collect();
         order.sort_by(|&a, &b| sides[a].0.cmp(&sides[b].0).then(sides[a].1.total_cmp(&sides[b].1)));
         for run in order.chunk_by(|&a, &b| sides[a].0 == sides[b].0) {
             let line = sides[run[0]].0;
-            let near = reach[line as usize];
+            let near = reach[line];
             for (k, &a) in run.iter().enumerate() {
                 // Ahead along the line; on a closed one, past its start too.
                 let ahead = (k + 1..k + run.len()).map(|i| run[i % run.len()]);
@@ -137,25 +144,25 @@ impl<const D: usize> Skeleton<D> {
 
     /// Distance along a line.
     fn gap(&self, line: u32, a: f64, b: f64) -> f64 {
-        let measured = &self.lines[line as usize].measured;
+        let measured = &self.lines[line].measured;
         let d = (a - b).abs();
         if measured.is_closed() { d.min(measured.length() - d) } else { d }
     }
 
     /// One stop for every passage of a line through a knot.
-    fn stop_at(&mut self, knot: u32, members: &[usize], sides: &[(u32, f64)], reach: &[f64]) {
+    fn stop_at(&mut self, knot: u32, members: &[usize], sides: &[(u32, f64)], reach: &Numbered<f64>) {
         let mut passages: Vec<(u32, f64)> = members.iter().map(|&m| sides[m]).collect();
         passages.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let mut kept: Vec<(u32, f64)> = Vec::new();
         for (line, arc) in passages {
-            let near = 2.5 * reach[line as usize];
+            let near = 2.5 * reach[line];
             if kept.iter().all(|&(l, a)| l != line || self.gap(line, a, arc) > near) {
                 kept.push((line, arc));
             }
         }
         for (line, arc) in kept {
-            let own = &mut self.lines[line as usize];
-            let (length, near) = (own.measured.length(), reach[line as usize]);
+            let own = &mut self.lines[line];
+            let (length, near) = (own.measured.length(), reach[line]);
             // An end that meets something is where the line ends: the rest is overshoot.
             let arc = match own.measured.is_closed() {
                 false if arc <= near => 0.0,
@@ -167,7 +174,7 @@ impl<const D: usize> Skeleton<D> {
     }
 
     /// Knots at the ends that meet nothing.
-    fn end_lines(&mut self, reach: &[f64]) {
+    fn end_lines(&mut self, reach: &Numbered<f64>) {
         for (line, reach) in self.lines.iter_mut().zip(reach) {
             if line.measured.is_closed() {
                 continue;
@@ -184,7 +191,7 @@ impl<const D: usize> Skeleton<D> {
         }
     }
 
-    fn find_corners(&mut self, reach: &[f64]) {
+    fn find_corners(&mut self, reach: &Numbered<f64>) {
         for (line, reach) in self.lines.iter_mut().zip(reach) {
             for arc in corners(&line.measured, *reach) {
                 let length = line.measured.length();
@@ -203,12 +210,12 @@ impl<const D: usize> Skeleton<D> {
 }
 
 /// How near an end comes to a line that it meets, for each line.
-fn reach<const D: usize>(lines: &[Line<D>], side: f64) -> Vec<f64> {
+fn reach<const D: usize>(lines: &Numbered<Line<D>>, side: f64) -> Numbered<f64> {
     lines.iter().map(|line| (TOUCH_WIDTHS * line.width).max(TOUCH_SHARE * side)).collect()
 }
 
 /// All places where lines touch.
-fn contacts<const D: usize>(lines: &[Line<D>], side: f64) -> Vec<Contact<D>> {
+fn contacts<const D: usize>(lines: &Numbered<Line<D>>, side: f64) -> Vec<Contact<D>> {
     let reach = reach(lines, side);
     let mut contacts = crossings(lines, side, 1e-4 * side);
     contacts.extend(end_contacts(lines, &reach, side));

@@ -9,7 +9,7 @@ pub(crate) type Edge = Segment<2>;
 const EDGES_PER_BAND: usize = 2;
 
 /// Most bands: bounds memory where every edge is as high as the outline.
-const MOST_BANDS: usize = 512;
+const MAX_BANDS: usize = 512;
 
 /// Edges sorted into bands of equal height.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ impl EdgeBands {
     pub(crate) fn new(outline: &Outline<2>) -> Self {
         let bounds = outline.bounds();
         let count = outline.edges().count();
-        let bands = (count / EDGES_PER_BAND).clamp(1, MOST_BANDS);
+        let bands = (count / EDGES_PER_BAND).clamp(1, MAX_BANDS);
         let height = if count == 0 { 0.0 } else { bounds.size()[1] };
         let bands_per_unit = if height > 0.0 { bands as f64 / height } else { 0.0 };
         let mut sorted = Self { low: bounds.min[1], bands_per_unit, starts: vec![0; bands + 1], edges: Vec::new() };

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use arabesque_core::{Domain, Exemplar, Outline, Placement, Role, Similarity, Warp};
 
 use crate::finish::clearance::{
+    arrangement::{Arrangement, Overlap, PlacedFigure},
     figure::Figure,
-    scene::{Body, Overlap, Scene},
 };
 
 /// Overlaps below this share of the smaller element are rounding.
@@ -36,7 +36,7 @@ struct Allowance {
 /// Outlines of the exemplar's elements, and how they lie to each other.
 #[derive(Clone, Debug)]
 pub(crate) struct ExemplarClearance {
-    /// One figure an element.
+    /// One figure per element.
     pub(crate) figures: Vec<Figure>,
     class: Vec<usize>,
     /// Elements that may be copied, by class, largest first.
@@ -65,40 +65,41 @@ impl ExemplarClearance {
 
     fn measure(&mut self, window: &Domain<2>) {
         let bodies = (0..self.figures.len()).map(|i| self.body(i, Similarity::identity())).collect();
-        let scene = Scene::new(window, &self.figures, Vec::new(), bodies);
-        let overlaps = scene.overlaps();
+        let arrangement = Arrangement::new(window, &self.figures, Vec::new(), bodies);
+        let overlaps = arrangement.overlaps();
         let mut allowed = BTreeMap::<ClassPair, Allowance>::new();
         for overlap in &overlaps {
-            let share = overlap.area / smaller_area(&scene, overlap);
+            let share = overlap.area / smaller_area(&arrangement, overlap);
             let entry = allowed.entry(pair(self.class[overlap.a], self.class[overlap.b])).or_default();
             entry.share = entry.share.max(share);
         }
-        for (classes, gap) in smallest_gaps(&scene, &overlaps, WIDEST_GAP * self.spacing) {
+        for (classes, gap) in smallest_gaps(&arrangement, &overlaps, WIDEST_GAP * self.spacing) {
             allowed.entry(classes).or_default().gap = Some(gap);
         }
-        let ratio = |this: &Self| this.unlayered_area(&scene, &overlaps) / ink(&scene).max(f64::MIN_POSITIVE);
+        let ratio =
+            |this: &Self| this.unlayered_area(&arrangement, &overlaps) / ink(&arrangement).max(f64::MIN_POSITIVE);
         self.allowed.clone_from(&allowed);
         self.ratio = ratio(self);
     }
 
-    /// Body of exemplar element `source` under `place`.
-    pub(crate) fn body(&self, source: usize, place: Similarity<2>) -> Body {
-        Body { class: Some(self.class[source]), ..Body::new(source, &self.figures[source], place) }
+    /// PlacedFigure of exemplar element `source` under `place`.
+    pub(crate) fn body(&self, source: usize, place: Similarity<2>) -> PlacedFigure {
+        PlacedFigure { class: Some(self.class[source]), ..PlacedFigure::new(source, &self.figures[source], place) }
     }
 
     /// Bodies of placements, with figures of their own for the bent ones.
-    pub(crate) fn bodies(&self, placements: &[Placement<2>]) -> (Vec<Figure>, Vec<Body>) {
+    pub(crate) fn bodies(&self, placements: &[Placement<2>]) -> (Vec<Figure>, Vec<PlacedFigure>) {
         let mut own = Vec::new();
         let bodies = placements.iter().map(|placement| {
             let body = self.body(placement.source, placement.transform);
             let fixed = placement.frozen.is_some();
             if placement.control.is_empty() {
-                return Body { fixed, ..body };
+                return PlacedFigure { fixed, ..body };
             }
             let figure = bent(&self.figures[placement.source], placement);
-            let bent = Body::new(self.figures.len() + own.len(), &figure, Similarity::identity());
+            let bent = PlacedFigure::new(self.figures.len() + own.len(), &figure, Similarity::identity());
             own.push(figure);
-            Body { class: body.class, fixed, ..bent }
+            PlacedFigure { class: body.class, fixed, ..bent }
         });
         let bodies = bodies.collect();
         (own, bodies)
@@ -115,24 +116,24 @@ impl ExemplarClearance {
     }
 
     /// Largest common area that two bodies may have.
-    pub(crate) fn allowed_area(&self, a: &Body, b: &Body) -> f64 {
+    pub(crate) fn allowed_area(&self, a: &PlacedFigure, b: &PlacedFigure) -> f64 {
         let share = self.allowance(a, b).map_or(0.0, |allowance| allowance.share);
         share.max(NEGLIGIBLE) * (1.0 + NEGLIGIBLE) * a.area.min(b.area)
     }
 
     /// Whether any overlap at all is too much for two bodies.
-    pub(crate) fn must_be_apart(&self, a: &Body, b: &Body) -> bool {
+    pub(crate) fn must_be_apart(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
         self.allowance(a, b).is_none_or(|allowance| allowance.share <= NEGLIGIBLE)
     }
 
     /// Whether the classes of two bodies lie on top of each other on purpose.
-    fn layered(&self, a: &Body, b: &Body) -> bool {
+    fn layered(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
         self.allowance(a, b).is_some_and(|allowance| allowance.share > LAYERED)
     }
 
-    /// Distance to leave between two bodies that are pushed apart, for elements of exemplar size: as close as the exemplar has
-    /// any, none for bodies that may overlap.
-    pub(crate) fn gap(&self, a: &Body, b: &Body) -> f64 {
+    /// Distance to leave between two bodies that are pushed apart, for elements of exemplar size: as close as the
+    /// exemplar has any, none for bodies that may overlap.
+    pub(crate) fn gap(&self, a: &PlacedFigure, b: &PlacedFigure) -> f64 {
         let widest = WIDEST_GAP * self.spacing;
         match self.allowance(a, b) {
             Some(allowance) if allowance.share > NEGLIGIBLE => 0.0,
@@ -141,22 +142,22 @@ impl ExemplarClearance {
         }
     }
 
-    fn allowance(&self, a: &Body, b: &Body) -> Option<&Allowance> {
+    fn allowance(&self, a: &PlacedFigure, b: &PlacedFigure) -> Option<&Allowance> {
         self.allowed.get(&pair(a.class?, b.class?))
     }
 
-    fn unlayered_area(&self, scene: &Scene, overlaps: &[Overlap]) -> f64 {
-        let counts = |o: &&Overlap| !self.layered(&scene.bodies[o.a], &scene.bodies[o.b]);
+    fn unlayered_area(&self, arrangement: &Arrangement, overlaps: &[Overlap]) -> f64 {
+        let counts = |o: &&Overlap| !self.layered(&arrangement.bodies[o.a], &arrangement.bodies[o.b]);
         overlaps.iter().filter(counts).fold(0.0, |sum, o| sum + o.area)
     }
 
-    /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than in the
-    /// exemplar: pairs that are allowed one by one can still be too many.
-    pub(crate) fn surplus(&self, scene: &Scene, allowed: &[Overlap]) -> Vec<(usize, usize)> {
-        let budget = self.ratio * ink(scene);
-        let mut sum = self.unlayered_area(scene, allowed);
+    /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than
+    /// in the exemplar: pairs that are allowed one by one can still be too many.
+    pub(crate) fn surplus(&self, arrangement: &Arrangement, allowed: &[Overlap]) -> Vec<(usize, usize)> {
+        let budget = self.ratio * ink(arrangement);
+        let mut sum = self.unlayered_area(arrangement, allowed);
         let is_free = |o: &&Overlap| {
-            let (a, b) = (&scene.bodies[o.a], &scene.bodies[o.b]);
+            let (a, b) = (&arrangement.bodies[o.a], &arrangement.bodies[o.b]);
             !(self.layered(a, b) || a.fixed && b.fixed) && o.a != o.b && o.area > NEGLIGIBLE * a.area.min(b.area)
         };
         let mut candidates: Vec<_> = allowed.iter().filter(is_free).collect();
@@ -177,13 +178,13 @@ fn pair(a: usize, b: usize) -> ClassPair {
     (a.min(b), a.max(b))
 }
 
-fn smaller_area(scene: &Scene, overlap: &Overlap) -> f64 {
-    scene.bodies[overlap.a].area.min(scene.bodies[overlap.b].area).max(f64::MIN_POSITIVE)
+fn smaller_area(arrangement: &Arrangement, overlap: &Overlap) -> f64 {
+    arrangement.bodies[overlap.a].area.min(arrangement.bodies[overlap.b].area).max(f64::MIN_POSITIVE)
 }
 
 /// Area of all elements together, overlaps counted twice.
-pub(crate) fn ink(scene: &Scene) -> f64 {
-    scene.bodies.iter().filter(|body| body.class.is_some()).map(|body| body.area).sum()
+pub(crate) fn ink(arrangement: &Arrangement) -> f64 {
+    arrangement.bodies.iter().filter(|body| body.class.is_some()).map(|body| body.area).sum()
 }
 
 fn sources(exemplar: &Exemplar<2>, figures: &[Figure]) -> Vec<Vec<usize>> {
@@ -205,11 +206,11 @@ fn bent(figure: &Figure, placement: &Placement<2>) -> Figure {
 }
 
 /// Smallest distance between elements of two classes that do not overlap, no larger than `widest`.
-fn smallest_gaps(scene: &Scene, overlaps: &[Overlap], widest: f64) -> BTreeMap<ClassPair, f64> {
+fn smallest_gaps(arrangement: &Arrangement, overlaps: &[Overlap], widest: f64) -> BTreeMap<ClassPair, f64> {
     let mut near = BTreeMap::<ClassPair, Vec<(f64, usize, usize)>>::new();
-    for i in 0..scene.bodies.len() {
-        for j in scene.neighbours(i, 0.5 * widest).into_iter().filter(|&j| j > i) {
-            let (a, b) = (&scene.bodies[i], &scene.bodies[j]);
+    for i in 0..arrangement.bodies.len() {
+        for j in arrangement.neighbours(i, 0.5 * widest).into_iter().filter(|&j| j > i) {
+            let (a, b) = (&arrangement.bodies[i], &arrangement.bodies[j]);
             let between = (a.centre - b.centre).norm() - a.radius - b.radius;
             let apart = overlaps.binary_search_by_key(&(i, j), |o| (o.a, o.b)).is_err();
             if let (Some(x), Some(y), true) = (a.class, b.class, apart && between < widest) {
@@ -219,7 +220,7 @@ fn smallest_gaps(scene: &Scene, overlaps: &[Overlap], widest: f64) -> BTreeMap<C
     }
     let smallest = |pairs: &mut Vec<(f64, usize, usize)>| {
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let gaps = pairs.iter().take(MEASURED_PAIRS).map(|&(_, i, j)| scene.gap(i, j));
+        let gaps = pairs.iter().take(MEASURED_PAIRS).map(|&(_, i, j)| arrangement.gap(i, j));
         gaps.fold(widest, f64::min)
     };
     near.into_iter().map(|(classes, mut pairs)| (classes, smallest(&mut pairs))).collect()

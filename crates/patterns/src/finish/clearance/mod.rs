@@ -1,27 +1,26 @@
-//! The last word on the output: no element overlaps another, or anything in the way, more than the exemplar shows, and none
-//! breaks the rule of the border.
+//! The last check of the output: no element overlaps another, or anything in the way, more than the exemplar shows, and
+//! none breaks the rule of the border.
 //!
-//! Checked on the real outlines. What is wrong is mended with the smallest change that works: a shift, then a smaller element of
-//! the same class, then removal. In space, and for points, there is nothing to check.
+//! Checked on the real outlines. What is wrong is mended with the smallest change that works: a shift, then a smaller
+//! element of the same class, then removal. In space, and for points, there is nothing to check.
 
+mod arrangement;
+mod border_check;
 mod edges;
 mod figure;
-mod ground;
 mod limits;
 mod relax;
 mod repair;
-mod scene;
 #[cfg(test)]
 mod tests;
 
-use std::any::Any;
+use arabesque_core::{Domain, Exemplar, Placement, Request, Vector, Warning};
 
-use arabesque_core::{Domain, Exemplar, Placement, Request, Warning};
-
+use crate::dimension::Dimension;
+use arrangement::Arrangement;
 pub(crate) use limits::ExemplarClearance;
-use scene::Scene;
 
-/// Share of the elements whose exchange or removal is nothing to speak of.
+/// Share of the elements whose exchange or removal goes without a warning.
 const NORMAL: f64 = 0.02;
 
 /// What a repair did.
@@ -55,21 +54,25 @@ impl Summary {
 }
 
 /// Measures the exemplar. `None` where overlaps have no meaning: in space, and for points.
-pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<ExemplarClearance> {
-    (exemplar as &dyn Any).downcast_ref().and_then(ExemplarClearance::new)
+pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<ExemplarClearance>
+where
+    Vector<D>: Dimension<D>,
+{
+    Vector::plane_exemplar(exemplar).and_then(ExemplarClearance::new)
 }
 
 /// Mends overlaps and border violations in `placements`; those with a `frozen` entry stay untouched. Order is kept.
 ///
 /// `clearance` is [`measure`]d from the exemplar of the placements.
-#[expect(clippy::ptr_arg, reason = "a vector of another dimension is looked into; what is found loses elements")]
 pub(crate) fn repair<const D: usize>(
     clearance: Option<&ExemplarClearance>,
     request: &Request<D>,
     placements: &mut Vec<Placement<D>>,
-) -> Summary {
-    let request = (request as &dyn Any).downcast_ref::<Request<2>>();
-    let placements = (placements as &mut dyn Any).downcast_mut::<Vec<Placement<2>>>();
+) -> Summary
+where
+    Vector<D>: Dimension<D>,
+{
+    let (request, placements) = (Vector::plane_request(request), Vector::plane_placements(placements));
     match (clearance, request, placements) {
         (Some(clearance), Some(request), Some(placements)) => repair::repair(clearance, request, placements),
         _ => Summary::default(),
@@ -78,13 +81,14 @@ pub(crate) fn repair<const D: usize>(
 
 /// Common area of all pairs of elements as a share of the area of all elements; 0 for points.
 ///
-/// `placements` refer to the elements of `exemplar`; on a torus every element counts once, with the images of the others.
+/// `placements` refer to the elements of `exemplar`; on a torus every element counts once, with the images of the
+/// others.
 pub fn overlap_ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], domain: &Domain<2>) -> f64 {
     let Some(clearance) = ExemplarClearance::new(exemplar) else {
         return 0.0;
     };
     let (own, bodies) = clearance.bodies(placements);
-    let scene = Scene::new(domain, &clearance.figures, own, bodies);
-    let common = scene.overlaps().iter().fold(0.0, |sum, overlap| sum + overlap.area);
-    common / limits::ink(&scene).max(f64::MIN_POSITIVE)
+    let arrangement = Arrangement::new(domain, &clearance.figures, own, bodies);
+    let common = arrangement.overlaps().iter().fold(0.0, |sum, overlap| sum + overlap.area);
+    common / limits::ink(&arrangement).max(f64::MIN_POSITIVE)
 }

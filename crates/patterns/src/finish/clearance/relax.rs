@@ -6,9 +6,9 @@ use arabesque_core::{Outline, Vector, ring};
 use rayon::prelude::*;
 
 use crate::finish::clearance::{
+    arrangement::PlacedFigure,
     figure::extent,
     repair::{Repair, Violation},
-    scene::Body,
 };
 
 /// Most rounds over the overlapping pairs.
@@ -24,10 +24,11 @@ const PROGRESS: f64 = 0.95;
 const DIRECTIONS: u32 = 8;
 
 impl Repair<'_> {
-    /// Pushes pairs apart, round by round, and keeps the state with the least excess. Returns the violations left in it.
+    /// Pushes pairs apart, round by round, and keeps the state with the least excess. Returns the violations left in
+    /// it.
     pub(crate) fn relax(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
-        let (mut best, mut best_bodies) = (violations.clone(), Vec::<(usize, Body)>::new());
-        let mut original = BTreeMap::<usize, Body>::new();
+        let (mut best, mut best_bodies) = (violations.clone(), Vec::<(usize, PlacedFigure)>::new());
+        let mut original = BTreeMap::<usize, PlacedFigure>::new();
         let mut active = violations;
         let mut idle = 0;
         for _ in 0..SWEEPS {
@@ -38,20 +39,20 @@ impl Repair<'_> {
             for &(i, j, _) in &active {
                 for (k, body) in self.push(i, j).into_iter().flatten() {
                     suspects.insert(k);
-                    let before = std::mem::replace(&mut self.scene.bodies[k], body);
+                    let before = std::mem::replace(&mut self.arrangement.bodies[k], body);
                     original.entry(k).or_insert(before);
                 }
             }
             active = self.violations_among(&suspects);
             idle = if excess(&active) < PROGRESS * excess(&best) { 0 } else { idle + 1 };
             if excess(&active) < excess(&best) {
-                best_bodies = original.keys().map(|&k| (k, self.scene.bodies[k].clone())).collect();
+                best_bodies = original.keys().map(|&k| (k, self.arrangement.bodies[k].clone())).collect();
                 best.clone_from(&active);
             }
         }
         original.extend(best_bodies);
         for (k, body) in original {
-            self.scene.bodies[k] = body;
+            self.arrangement.bodies[k] = body;
         }
         best
     }
@@ -68,15 +69,15 @@ impl Repair<'_> {
     }
 
     /// Bodies `i` and `j` moved apart, each by the share of the other's area: a small element gives way to a large one.
-    fn push(&self, i: usize, j: usize) -> [Option<(usize, Body)>; 2] {
-        let (a, b) = (&self.scene.bodies[i], &self.scene.bodies[j]);
+    fn push(&self, i: usize, j: usize) -> [Option<(usize, PlacedFigure)>; 2] {
+        let (a, b) = (&self.arrangement.bodies[i], &self.arrangement.bodies[j]);
         if i == j {
             return [None, None];
         }
-        let Some((common, offset)) = self.scene.overlap_region(a, b) else {
+        let Some((common, offset)) = self.arrangement.overlap_region(a, b) else {
             return [None, None];
         };
-        let (area, allowed) = (common.area(), self.allowed_area((i, j), a, b));
+        let (area, allowed) = (common.area(), self.allowed_area([i, j], a, b));
         if area <= allowed {
             return [None, None];
         }
@@ -91,9 +92,9 @@ impl Repair<'_> {
         [self.shifted(i, -(apart * share)), self.shifted(j, apart * (1.0 - share))]
     }
 
-    /// Body `i` moved by `shift` as far as its reach and the border let it.
-    fn shifted(&self, i: usize, shift: Vector<2>) -> Option<(usize, Body)> {
-        let body = &self.scene.bodies[i];
+    /// PlacedFigure `i` moved by `shift` as far as its reach and the border let it.
+    fn shifted(&self, i: usize, shift: Vector<2>) -> Option<(usize, PlacedFigure)> {
+        let body = &self.arrangement.bodies[i];
         let moved = self.within_reach(i, body.centre + shift);
         let stays = body.fixed || (!self.admits(&moved) && self.admits(body));
         (!stays).then_some((i, moved))
@@ -104,8 +105,8 @@ fn excess(violations: &[Violation]) -> f64 {
     violations.iter().map(|v| v.2).sum()
 }
 
-/// Shortest way that parts two bodies, from the second one's side: the width of the largest piece of their overlap across its
-/// narrowest direction. `offset` leads from the first to the second.
+/// Shortest way that parts two bodies, from the second one's side: the width of the largest piece of their overlap
+/// across its narrowest direction. `offset` leads from the first to the second.
 fn narrowest(common: &Outline<2>, offset: Vector<2>) -> Vector<2> {
     let piece = common.rings.iter().max_by(|a, b| ring::area(a).abs().total_cmp(&ring::area(b).abs()));
     let piece: &[Vector<2>] = piece.map_or(&[], |ring| ring);

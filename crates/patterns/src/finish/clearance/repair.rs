@@ -10,10 +10,10 @@ use rayon::prelude::*;
 
 use crate::finish::clearance::{
     Summary,
+    arrangement::{Arrangement, PlacedFigure},
+    border_check::BorderCheck,
     figure::Figure,
-    ground::Ground,
     limits::{ExemplarClearance, NEGLIGIBLE},
-    scene::{Body, Scene},
 };
 
 /// How far an element may be shifted, in mean spacings.
@@ -40,11 +40,11 @@ const ONE: u64 = 1000;
 /// Two bodies that overlap too much, the lower index first, and by how much area.
 pub(crate) type Violation = (usize, usize, f64);
 
-/// A scene being mended.
+/// An arrangement being mended.
 pub(crate) struct Repair<'a> {
     pub(crate) limits: &'a ExemplarClearance,
-    pub(crate) scene: Scene<'a>,
-    pub(crate) ground: Ground<'a>,
+    pub(crate) arrangement: Arrangement<'a>,
+    pub(crate) border_check: BorderCheck<'a>,
     /// Pairs that must be apart although the exemplar has such: there are too many of them.
     surplus: BTreeSet<(usize, usize)>,
     alive: Vec<bool>,
@@ -76,8 +76,8 @@ impl<'a> Repair<'a> {
         let mut reach: Vec<_> = placements.iter().map(|p| REACH * limits.spacing * p.transform.scale).collect();
         for obstacle in request.obstacles.iter().filter(|o| !o.rings.is_empty()) {
             let figure = Figure::new(obstacle.clone(), obstacle.bounds().centre());
-            let body = Body::new(limits.figures.len() + own.len(), &figure, Similarity::identity());
-            bodies.push(Body { fixed: true, ..body });
+            let body = PlacedFigure::new(limits.figures.len() + own.len(), &figure, Similarity::identity());
+            bodies.push(PlacedFigure { fixed: true, ..body });
             own.push(figure);
         }
         reach.resize(bodies.len(), 0.0);
@@ -85,8 +85,8 @@ impl<'a> Repair<'a> {
         Self {
             limits,
             alive: vec![true; bodies.len()],
-            scene: Scene::new(&request.domain, &limits.figures, own, bodies),
-            ground: Ground { domain: &request.domain, border: request.border },
+            arrangement: Arrangement::new(&request.domain, &limits.figures, own, bodies),
+            border_check: BorderCheck { domain: &request.domain, border: request.border },
             surplus: BTreeSet::new(),
             reach,
             slack,
@@ -95,16 +95,16 @@ impl<'a> Repair<'a> {
 
     /// Every violation at the start; decides which allowed overlaps are too many.
     fn find_violations(&mut self) -> Vec<Violation> {
-        let mut allowed = self.scene.overlaps();
+        let mut allowed = self.arrangement.overlaps();
         let mut violations = Vec::new();
         allowed.retain(|o| {
-            let excess = self.excess_of(&self.scene.bodies[o.a], &self.scene.bodies[o.b], o.area);
+            let excess = self.excess_of(&self.arrangement.bodies[o.a], &self.arrangement.bodies[o.b], o.area);
             if excess > 0.0 {
                 violations.push((o.a, o.b, excess));
             }
             excess <= 0.0
         });
-        self.surplus = self.limits.surplus(&self.scene, &allowed).into_iter().collect();
+        self.surplus = self.limits.surplus(&self.arrangement, &allowed).into_iter().collect();
         for overlap in allowed.iter().filter(|o| self.surplus.contains(&(o.a, o.b))) {
             violations.push((overlap.a, overlap.b, overlap.area));
         }
@@ -114,24 +114,24 @@ impl<'a> Repair<'a> {
 
     fn misplaced(&self) -> Vec<usize> {
         let is_misplaced = |i: &usize| {
-            let body = &self.scene.bodies[*i];
+            let body = &self.arrangement.bodies[*i];
             !body.fixed && body.radius > 0.0 && !self.admits(body)
         };
-        (0..self.scene.bodies.len()).filter(is_misplaced).collect()
+        (0..self.arrangement.bodies.len()).filter(is_misplaced).collect()
     }
 
     /// Whether the border lets `body` be where it is.
-    pub(crate) fn admits(&self, body: &Body) -> bool {
-        self.ground.admits(body, self.scene.figure(body.figure))
+    pub(crate) fn admits(&self, body: &PlacedFigure) -> bool {
+        self.border_check.admits(body, self.arrangement.figure(body.figure))
     }
 
     /// Common area of `a` and `b` beyond what they may have.
-    fn excess_of(&self, a: &Body, b: &Body, area: f64) -> f64 {
+    fn excess_of(&self, a: &PlacedFigure, b: &PlacedFigure, area: f64) -> f64 {
         if a.fixed && b.fixed { 0.0 } else { (area - self.limits.allowed_area(a, b)).max(0.0) }
     }
 
     /// Common area that bodies `i` and `j` may have, as `a` and `b`.
-    pub(crate) fn allowed_area(&self, (i, j): (usize, usize), a: &Body, b: &Body) -> f64 {
+    pub(crate) fn allowed_area(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> f64 {
         if self.surplus.contains(&(i.min(j), i.max(j))) {
             return NEGLIGIBLE * a.area.min(b.area);
         }
@@ -139,11 +139,11 @@ impl<'a> Repair<'a> {
     }
 
     /// Whether bodies `i` and `j`, as `a` and `b`, overlap too much.
-    fn conflict(&self, (i, j): (usize, usize), a: &Body, b: &Body) -> bool {
+    fn conflict(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> bool {
         if a.fixed && b.fixed {
             return false;
         }
-        self.scene.overlap_area(a, b, i == j) > self.allowed_area((i, j), a, b)
+        self.arrangement.overlap_area(a, b, i == j) > self.allowed_area([i, j], a, b)
     }
 
     /// Violations of body `i` with the partners that `counts` lets through, ascending.
@@ -151,37 +151,38 @@ impl<'a> Repair<'a> {
         if !self.alive[i] {
             return Vec::new();
         }
-        let body = &self.scene.bodies[i];
+        let body = &self.arrangement.bodies[i];
         let excess = |j: usize| {
-            let other = &self.scene.bodies[j];
-            let area = if body.fixed && other.fixed { 0.0 } else { self.scene.overlap_area(body, other, i == j) };
-            (i.min(j), i.max(j), area - self.allowed_area((i, j), body, other))
+            let other = &self.arrangement.bodies[j];
+            let area = if body.fixed && other.fixed { 0.0 } else { self.arrangement.overlap_area(body, other, i == j) };
+            (i.min(j), i.max(j), area - self.allowed_area([i, j], body, other))
         };
-        let others = self.scene.neighbours(i, self.slack).into_iter().filter(|&j| self.alive[j] && counts(j));
+        let others = self.arrangement.neighbours(i, self.slack).into_iter().filter(|&j| self.alive[j] && counts(j));
         others.chain([i]).map(excess).filter(|v| v.2 > 0.0).collect()
     }
 
     /// Whether body `i`, changed to `candidate`, breaks no rule. `neighbours` are those of body `i`.
-    fn is_clean(&self, i: usize, candidate: &Body, neighbours: &[usize]) -> bool {
+    fn is_clean(&self, i: usize, candidate: &PlacedFigure, neighbours: &[usize]) -> bool {
         self.admits(candidate)
-            && !self.conflict((i, i), candidate, candidate)
-            && neighbours.iter().all(|&j| !self.alive[j] || !self.blocks((i, j), candidate))
+            && !self.conflict([i, i], candidate, candidate)
+            && neighbours.iter().all(|&j| !self.alive[j] || !self.blocks([i, j], candidate))
     }
 
     /// Whether body `j` is in the way of `candidate` for body `i`: where nothing may overlap, a touch is enough.
-    fn blocks(&self, (i, j): (usize, usize), candidate: &Body) -> bool {
-        let other = &self.scene.bodies[j];
-        if self.must_be_apart((i, j), candidate, other) {
-            return self.scene.meet(candidate, other);
+    fn blocks(&self, [i, j]: [usize; 2], candidate: &PlacedFigure) -> bool {
+        let other = &self.arrangement.bodies[j];
+        if self.must_be_apart([i, j], candidate, other) {
+            return self.arrangement.meet(candidate, other);
         }
-        self.conflict((i, j), candidate, other)
+        self.conflict([i, j], candidate, other)
     }
 
-    fn must_be_apart(&self, (i, j): (usize, usize), a: &Body, b: &Body) -> bool {
+    fn must_be_apart(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> bool {
         self.limits.must_be_apart(a, b) || self.surplus.contains(&(i.min(j), i.max(j)))
     }
 
-    /// Pushes apart what overlaps. Where far too much lies in one place that cannot succeed: there the most crowded leave first.
+    /// Pushes apart what overlaps. Where far too much lies in one place that cannot succeed: there the most crowded
+    /// leave first.
     fn make_room(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
         let violations = self.thin_out(violations, HOPELESS);
         let violations = self.relax(violations);
@@ -190,18 +191,18 @@ impl<'a> Repair<'a> {
         if violations.len() < before { self.relax(violations) } else { violations }
     }
 
-    /// Body `i` at `centre`, no farther from its start than its reach.
-    pub(crate) fn within_reach(&self, i: usize, centre: Vector<2>) -> Body {
-        let origin = self.scene.origin(i);
+    /// PlacedFigure `i` at `centre`, no farther from its start than its reach.
+    pub(crate) fn within_reach(&self, i: usize, centre: Vector<2>) -> PlacedFigure {
+        let origin = self.arrangement.origin(i);
         let shift = centre - origin;
         let factor = (self.reach[i] / shift.norm().max(f64::MIN_POSITIVE)).min(1.0);
-        self.scene.bodies[i].moved_to(origin + shift * factor)
+        self.arrangement.bodies[i].moved_to(origin + shift * factor)
     }
 
     /// Mends what pushing could not: body by body, with everything else as it is.
     fn settle(&mut self, violations: &[Violation], outside: &[usize]) {
         for &i in outside.iter() {
-            let stays = self.is_clean(i, &self.scene.bodies[i], &self.scene.neighbours(i, self.slack));
+            let stays = self.is_clean(i, &self.arrangement.bodies[i], &self.arrangement.neighbours(i, self.slack));
             self.alive[i] = stays || self.relocate(i) || self.exchange(i);
         }
         let mut worst_first = violations.to_vec();
@@ -209,8 +210,10 @@ impl<'a> Repair<'a> {
         let mut tried = BTreeSet::new();
         for (i, j, _) in worst_first {
             if self.is_violation(i, j) {
-                let mut free: Vec<_> = [i, j].into_iter().filter(|&k| !self.scene.bodies[k].fixed).collect();
-                free.sort_by(|&a, &b| self.scene.bodies[a].area.total_cmp(&self.scene.bodies[b].area).then(a.cmp(&b)));
+                let mut free: Vec<_> = [i, j].into_iter().filter(|&k| !self.arrangement.bodies[k].fixed).collect();
+                free.sort_by(|&a, &b| {
+                    self.arrangement.bodies[a].area.total_cmp(&self.arrangement.bodies[b].area).then(a.cmp(&b))
+                });
                 // What found no place once will hardly find one later: nothing makes room any more.
                 free.retain(|&k| tried.insert(k));
                 let _settled = free.iter().any(|&k| self.relocate(k)) || free.iter().any(|&k| self.exchange(k));
@@ -219,19 +222,21 @@ impl<'a> Repair<'a> {
     }
 
     fn is_violation(&self, i: usize, j: usize) -> bool {
-        self.alive[i] && self.alive[j] && self.conflict((i, j), &self.scene.bodies[i], &self.scene.bodies[j])
+        self.alive[i]
+            && self.alive[j]
+            && self.conflict([i, j], &self.arrangement.bodies[i], &self.arrangement.bodies[j])
     }
 
     /// Puts body `i` on the nearest free place within its reach.
     fn relocate(&mut self, i: usize) -> bool {
-        let neighbours = self.scene.neighbours(i, self.slack);
+        let neighbours = self.arrangement.neighbours(i, self.slack);
         for ring in 1..=RINGS {
             for place in 0..PLACES {
                 let turn = (f64::from(place) + 0.5 * f64::from(ring % 2)) / f64::from(PLACES) * std::f64::consts::TAU;
                 let shift = Vector::xy(turn.cos(), turn.sin()) * (self.reach[i] * f64::from(ring) / f64::from(RINGS));
-                let candidate = self.scene.bodies[i].moved_to(self.scene.origin(i) + shift);
+                let candidate = self.arrangement.bodies[i].moved_to(self.arrangement.origin(i) + shift);
                 if self.is_clean(i, &candidate, &neighbours) {
-                    self.scene.bodies[i] = candidate;
+                    self.arrangement.bodies[i] = candidate;
                     return true;
                 }
             }
@@ -241,12 +246,12 @@ impl<'a> Repair<'a> {
 
     /// Puts a smaller element of the same class in the place of body `i`, the largest that fits.
     fn exchange(&mut self, i: usize) -> bool {
-        let body = self.scene.bodies[i].clone();
+        let body = self.arrangement.bodies[i].clone();
         if body.figure >= self.limits.figures.len() {
             // A bent element has no counterpart with its bend.
             return false;
         }
-        let neighbours = self.scene.neighbours(i, self.slack);
+        let neighbours = self.arrangement.neighbours(i, self.slack);
         let smaller: Vec<_> = self.limits.smaller_sources(body.figure).collect();
         let step = smaller.len().div_ceil(EXCHANGES).max(1);
         for &source in smaller.iter().step_by(step) {
@@ -254,15 +259,15 @@ impl<'a> Repair<'a> {
             let place = Similarity::about(centre, body.centre, body.place.rotation, body.place.scale);
             let candidate = self.limits.body(source, place);
             if self.is_clean(i, &candidate, &neighbours) {
-                self.scene.bodies[i] = candidate;
+                self.arrangement.bodies[i] = candidate;
                 return true;
             }
         }
         false
     }
 
-    /// Takes bodies out until none has a crowd of more than `most` around it: the most crowded first, of these the smallest.
-    /// Returns the violations that are left.
+    /// Takes bodies out until none has a crowd of more than `most` around it: the most crowded first, of these the
+    /// smallest. Returns the violations that are left.
     fn thin_out(&mut self, violations: Vec<Violation>, most: u64) -> Vec<Violation> {
         let mut violations: Vec<_> = violations.into_par_iter().filter(|v| self.is_violation(v.0, v.1)).collect();
         let mut partners = BTreeMap::<usize, Vec<usize>>::new();
@@ -271,9 +276,10 @@ impl<'a> Repair<'a> {
             partners.entry(j).or_default().push(i);
         }
         // Small area first among equals: the bits of positive numbers are ordered like the numbers.
-        let key =
-            |this: &Self, i: usize| (this.crowd(i, &partners[&i]), Reverse(this.scene.bodies[i].area.to_bits()), i);
-        let free = partners.keys().filter(|&&i| !self.scene.bodies[i].fixed);
+        let key = |this: &Self, i: usize| {
+            (this.crowd(i, &partners[&i]), Reverse(this.arrangement.bodies[i].area.to_bits()), i)
+        };
+        let free = partners.keys().filter(|&&i| !self.arrangement.bodies[i].fixed);
         let mut queue: BinaryHeap<_> = free.map(|&i| key(self, i)).collect();
         while let Some(entry) = queue.pop() {
             let now = key(self, entry.2);
@@ -290,26 +296,27 @@ impl<'a> Repair<'a> {
         violations
     }
 
-    /// Number of partners that are still there, in multiples of [`ONE`]; one that is smaller than body `i` counts by its size.
+    /// Number of partners that are still there, in multiples of [`ONE`]; one that is smaller than body `i` counts by
+    /// its size.
     fn crowd(&self, i: usize, partners: &[usize]) -> u64 {
-        let own = self.scene.bodies[i].area.max(f64::MIN_POSITIVE);
-        let weight = |&j: &usize| ((self.scene.bodies[j].area / own).min(1.0) * ONE as f64) as u64;
+        let own = self.arrangement.bodies[i].area.max(f64::MIN_POSITIVE);
+        let weight = |&j: &usize| ((self.arrangement.bodies[j].area / own).min(1.0) * ONE as f64) as u64;
         partners.iter().filter(|&&j| self.alive[i] && self.alive[j]).map(|j| weight(j).max(1)).sum()
     }
 
     fn write_back(&self, placements: &mut Vec<Placement<2>>, summary: &mut Summary) {
-        for (i, (placement, body)) in placements.iter_mut().zip(&self.scene.bodies).enumerate() {
+        for (i, (placement, body)) in placements.iter_mut().zip(&self.arrangement.bodies).enumerate() {
             let exchanged = placement.control.is_empty() && placement.source != body.figure;
-            let centre = self.scene.domain().wrap(body.centre);
+            let centre = self.arrangement.domain().wrap(body.centre);
             if !self.alive[i] {
                 summary.removed += 1;
             } else if exchanged {
                 summary.exchanged += 1;
                 placement.source = body.figure;
                 placement.transform = body.moved_to(centre).place;
-            } else if body.centre != self.scene.origin(i) {
+            } else if body.centre != self.arrangement.origin(i) {
                 summary.moved += 1;
-                shift(placement, centre - self.scene.origin(i));
+                shift(placement, centre - self.arrangement.origin(i));
             }
         }
         let mut alive = self.alive.iter();

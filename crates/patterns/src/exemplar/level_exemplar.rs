@@ -6,8 +6,8 @@ use arabesque_core::{Exemplar, Vector, parallel_line_spacing};
 
 use crate::{
     exemplar::{
-        graph::{pseudo::Cast, skeleton::Skeleton},
-        level::Level,
+        graph::{pseudo::PseudoElements, skeleton::Skeleton},
+        level::{Ball, Level},
         library::Library,
         samples::ElementSamples,
     },
@@ -25,7 +25,7 @@ const NEIGHBOURS: (f64, f64) = (30.0, 20.0);
 
 /// The exemplar at one level.
 #[derive(Clone, Debug)]
-pub(crate) struct Setting<const D: usize> {
+pub(crate) struct LevelExemplar<const D: usize> {
     /// Elements and, as pseudo elements, curve samples.
     pub(crate) exemplar: Arc<Exemplar<D>>,
     pub(crate) library: Arc<Library<D>>,
@@ -33,38 +33,38 @@ pub(crate) struct Setting<const D: usize> {
 }
 
 /// The settings of all levels, coarsest first.
-pub(crate) fn settings<const D: usize>(
+pub(crate) fn level_exemplars<const D: usize>(
     exemplar: &Exemplar<D>,
     skeleton: Option<&Arc<Skeleton<D>>>,
     params: &Params,
-) -> Vec<Setting<D>> {
+) -> Vec<LevelExemplar<D>> {
     let samples = ElementSamples::new(exemplar, params.samples);
     let Some(skeleton) = skeleton else {
         let (shared, library) = (Arc::new(exemplar.clone()), Arc::new(Library::new(exemplar, None)));
-        let setting = |number| {
+        let sampled = |number| {
             let counts = (params.coarse_neighbours, params.fine_neighbours);
             let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
-            Setting { exemplar: shared.clone(), library: library.clone(), level }
+            LevelExemplar { exemplar: shared.clone(), library: library.clone(), level }
         };
-        return (0..params.levels).map(setting).collect();
+        return (0..params.levels).map(sampled).collect();
     };
     let step = finest_spacing(exemplar, skeleton, params);
-    let mut made: Vec<(f64, Cast<D>, Arc<Exemplar<D>>, Arc<Library<D>>)> = Vec::new();
-    let mut setting = |number| {
+    let mut made: Vec<(f64, PseudoElements<D>, Arc<Exemplar<D>>, Arc<Library<D>>)> = Vec::new();
+    let mut sampled = |number| {
         let spacing = step * params.coarsening.powf(1.0 - detail(params, number));
         // Levels with the same sampling distance share everything but the radius.
         if made.last().is_none_or(|m| m.0 != spacing) {
-            let cast = Cast::new(exemplar, skeleton, spacing);
-            let library = Arc::new(Library::new(&cast.exemplar, Some((exemplar.classes.len(), spacing))));
-            made.push((spacing, cast.clone(), Arc::new(cast.exemplar), library));
+            let pseudo = PseudoElements::new(exemplar, skeleton, spacing);
+            let library = Arc::new(Library::new(&pseudo.exemplar, Some((exemplar.classes.len(), spacing))));
+            made.push((spacing, pseudo.clone(), Arc::new(pseudo.exemplar), library));
         }
-        let (_, cast, shared, library) = &made[made.len() - 1];
-        let samples = samples.with_points(shared.elements.len() - cast.base);
+        let (_, pseudo, shared, library) = &made[made.len() - 1];
+        let samples = samples.with_points(shared.elements.len() - pseudo.base);
         let level = Level::new(library, &samples, detail(params, number), ball(library, params, number, NEIGHBOURS));
-        let level = level.with_net(Arc::clone(&cast.net), cast.base as u32, params.edges == Switch::On);
-        Setting { exemplar: Arc::clone(shared), library: Arc::clone(library), level }
+        let level = level.with_net(Arc::clone(&pseudo.net), pseudo.base as u32, params.edges == Switch::On);
+        LevelExemplar { exemplar: Arc::clone(shared), library: Arc::clone(library), level }
     };
-    (0..params.levels).map(&mut setting).collect()
+    (0..params.levels).map(&mut sampled).collect()
 }
 
 /// 0 at the coarsest level, 1 at the finest.
@@ -73,7 +73,7 @@ fn detail(params: &Params, number: usize) -> f64 {
 }
 
 /// Radius of the neighbourhoods, and by how much those of the exemplar are larger.
-fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> (f64, f64) {
+fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> Ball {
     let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
     let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(library.view.side()));
     let slack = match params.matching {
@@ -81,11 +81,11 @@ fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, co
         Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max).min(radius),
         Matching::Hard => radius,
     };
-    (radius, slack)
+    Ball { radius, slack }
 }
 
-/// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that neighbourhoods are as dense along as
-/// across.
+/// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that
+/// neighbourhoods are as dense along as across.
 fn finest_spacing<const D: usize>(exemplar: &Exemplar<D>, skeleton: &Skeleton<D>, params: &Params) -> f64 {
     let side = exemplar.view().side();
     let gap = parallel_line_spacing::<D>(exemplar.view().measure(), length(skeleton));

@@ -2,7 +2,7 @@
 
 use arabesque_core::{Border, Bounds, Domain, Region, Similarity, Vector};
 
-use crate::finish::clearance::{figure::Figure, scene::Body};
+use crate::finish::clearance::{arrangement::PlacedFigure, figure::Figure};
 
 /// Edges are followed along the border of a region down to this share of the element's radius.
 const FINEST: f64 = 1e-3;
@@ -15,14 +15,14 @@ const ROUNDING: f64 = 1e-9;
 
 /// A domain with its border rule.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ground<'a> {
+pub(crate) struct BorderCheck<'a> {
     pub(crate) domain: &'a Domain<2>,
     pub(crate) border: Border,
 }
 
-impl Ground<'_> {
+impl BorderCheck<'_> {
     /// Whether `body`, which shows `figure`, may lie where it is.
-    pub(crate) fn admits(&self, body: &Body, figure: &Figure) -> bool {
+    pub(crate) fn admits(&self, body: &PlacedFigure, figure: &Figure) -> bool {
         match self.border {
             Border::Cross => self.domain.contains(body.centre),
             Border::Clip => true,
@@ -33,7 +33,7 @@ impl Ground<'_> {
     }
 
     /// Whether the ink lies wholly inside.
-    fn holds(&self, body: &Body, figure: &Figure) -> bool {
+    fn holds(&self, body: &PlacedFigure, figure: &Figure) -> bool {
         let slack = ROUNDING * body.radius;
         match self.domain {
             Domain::Torus(_) => true,
@@ -42,12 +42,13 @@ impl Ground<'_> {
                 let finest = (FINEST * body.radius).max(f64::MIN_POSITIVE);
                 let cover = Cover { region: region.as_ref(), figure, back: body.place.inverse() };
                 figure.placed_edges(&body.place).all(|(a, b)| self.holds_edge(a, b, finest, slack))
-                    && cover.spares_holes(&figure.placed_bounds(&body.place), HOLE_DEPTH)
+                    && cover.avoids_holes(&figure.placed_bounds(&body.place), HOLE_DEPTH)
             }
         }
     }
 
-    /// Whether the edge lies inside: its half length fits into the distance of its middle from the border, or both halves lie inside.
+    /// Whether the edge lies inside: its half length fits into the distance of its middle from the border, or both
+    /// halves lie inside.
     fn holds_edge(&self, a: Vector<2>, b: Vector<2>, finest: f64, slack: f64) -> bool {
         let (middle, half) = ((a + b) * 0.5, 0.5 * (b - a).norm());
         let depth = self.domain.signed_distance(middle) + slack;
@@ -70,7 +71,7 @@ struct Cover<'a> {
 
 impl Cover<'_> {
     /// Whether no border of the region that is seen from `cell` lies under the figure.
-    fn spares_holes(&self, cell: &Bounds<2>, depth: u32) -> bool {
+    fn avoids_holes(&self, cell: &Bounds<2>, depth: u32) -> bool {
         let middle = cell.centre();
         let border = self.region.nearest_boundary(middle);
         if (border - middle).norm2() >= 0.25 * cell.size().norm2() {
@@ -80,7 +81,7 @@ impl Cover<'_> {
         if self.covers(border + (border - middle) * 1e-6) {
             return false;
         }
-        depth == 0 || quarters(cell).iter().all(|quarter| self.spares_holes(quarter, depth - 1))
+        depth == 0 || quarters(cell).iter().all(|quarter| self.avoids_holes(quarter, depth - 1))
     }
 
     fn covers(&self, p: Vector<2>) -> bool {
@@ -114,8 +115,8 @@ mod tests {
 
     fn admits(domain: &Domain<2>, border: Border, x: f64, y: f64) -> bool {
         let figure = Figure::new(Outline { rings: vec![ring(-1.0, -1.0, 2.0)] }, Vector::ZERO);
-        let body = Body::new(0, &figure, Similarity::shift(Vector::xy(x, y)));
-        Ground { domain, border }.admits(&body, &figure)
+        let body = PlacedFigure::new(0, &figure, Similarity::shift(Vector::xy(x, y)));
+        BorderCheck { domain, border }.admits(&body, &figure)
     }
 
     #[test]

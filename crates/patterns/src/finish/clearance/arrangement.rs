@@ -9,14 +9,14 @@ use crate::finish::clearance::figure::Figure;
 
 /// A figure at its place.
 #[derive(Clone, Debug)]
-pub(crate) struct Body {
+pub(crate) struct PlacedFigure {
     /// Index of the figure.
     pub(crate) figure: usize,
     /// Class of the element; `None` for an obstacle.
     pub(crate) class: Option<usize>,
-    /// From figure coordinates to the scene.
+    /// From figure coordinates to the arrangement.
     pub(crate) place: Similarity<2>,
-    /// Centre in the scene.
+    /// Centre in the arrangement.
     pub(crate) centre: Vector<2>,
     /// Distance from the centre to the farthest ink.
     pub(crate) radius: f64,
@@ -26,7 +26,7 @@ pub(crate) struct Body {
     pub(crate) fixed: bool,
 }
 
-impl Body {
+impl PlacedFigure {
     pub(crate) fn new(index: usize, figure: &Figure, place: Similarity<2>) -> Self {
         Self {
             figure: index,
@@ -67,28 +67,34 @@ struct Layer {
 
 /// Bodies in a domain, indexed by the place they had at the start.
 #[derive(Clone, Debug)]
-pub(crate) struct Scene<'a> {
+pub(crate) struct Arrangement<'a> {
     domain: &'a Domain<2>,
     shared: &'a [Figure],
     own: Vec<Figure>,
-    pub(crate) bodies: Vec<Body>,
+    pub(crate) bodies: Vec<PlacedFigure>,
     layers: Vec<Layer>,
     layer_of: Vec<usize>,
     /// Centre of each body in the index.
     origin: Vec<Vector<2>>,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> Arrangement<'a> {
     /// `shared` figures have the indices from 0, `own` ones follow.
-    pub(crate) fn new(domain: &'a Domain<2>, shared: &'a [Figure], own: Vec<Figure>, bodies: Vec<Body>) -> Self {
+    pub(crate) fn new(
+        domain: &'a Domain<2>,
+        shared: &'a [Figure],
+        own: Vec<Figure>,
+        bodies: Vec<PlacedFigure>,
+    ) -> Self {
         let origin = bodies.iter().map(|b| b.centre).collect();
-        let mut scene =
+        let mut arrangement =
             Self { domain, shared, own, layer_of: vec![0; bodies.len()], bodies, layers: Vec::new(), origin };
-        scene.build_layers();
-        scene
+        arrangement.build_layers();
+        arrangement
     }
 
-    /// Sorts the bodies by size, a power of two a layer: a query for small bodies then never widens for the sake of large ones.
+    /// Sorts the bodies by size, a power of two per layer: a query for small bodies then never widens for the sake of
+    /// large ones.
     fn build_layers(&mut self) {
         let mut by_size = BTreeMap::<i32, Vec<usize>>::new();
         for (i, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.radius > 0.0) {
@@ -111,12 +117,13 @@ impl<'a> Scene<'a> {
         self.shared.get(index).unwrap_or_else(|| &self.own[index - self.shared.len()])
     }
 
-    /// Where body `i` was when the scene was made.
+    /// Where body `i` was when the arrangement was made.
     pub(crate) fn origin(&self, i: usize) -> Vector<2> {
         self.origin[i]
     }
 
-    /// Calls `visit(j)` for every body of some layers that started within `reach` and its own layer's largest radius of the start of body `i`.
+    /// Calls `visit(j)` for every body of some layers that started within `reach` and its own layer's largest radius of
+    /// the start of body `i`.
     fn near(&self, i: usize, reach: f64, layers: std::ops::Range<usize>, mut visit: impl FnMut(usize)) {
         for layer in &self.layers[layers] {
             layer.grid.within(self.origin[i], reach + layer.largest, |slot, _| visit(layer.members[slot]));
@@ -132,7 +139,7 @@ impl<'a> Scene<'a> {
         found
     }
 
-    /// Every overlap among bodies that have not moved since the scene was made, ordered by `a`, then `b`.
+    /// Every overlap among bodies that have not moved since the arrangement was made, ordered by `a`, then `b`.
     pub(crate) fn overlaps(&self) -> Vec<Overlap> {
         let all: Vec<Vec<Overlap>> = (0..self.bodies.len()).into_par_iter().map(|i| self.overlaps_of(i)).collect();
         let mut all = all.concat();
@@ -159,14 +166,14 @@ impl<'a> Scene<'a> {
     }
 
     /// Common area of two bodies, all images on a torus together; `itself` leaves out the body's own place.
-    pub(crate) fn overlap_area(&self, a: &Body, b: &Body, itself: bool) -> f64 {
+    pub(crate) fn overlap_area(&self, a: &PlacedFigure, b: &PlacedFigure, itself: bool) -> f64 {
         let area = |offset| self.overlap_at(a, b, offset).map_or(0.0, |common| common.area());
         let sum: f64 = self.images(a, b).filter(|o| !itself || o.norm2() > 0.0).map(area).sum();
         // An image to the left and one to the right are the same meeting of a body with itself.
         if itself { 0.5 * sum } else { sum }
     }
 
-    /// Smallest distance between the inks of two bodies of a scene that is no torus.
+    /// Smallest distance between the inks of two bodies of an arrangement that is not a torus.
     pub(crate) fn gap(&self, i: usize, j: usize) -> f64 {
         let (a, b) = (&self.bodies[i], &self.bodies[j]);
         let place = a.place.inverse().after(&b.place);
@@ -174,28 +181,30 @@ impl<'a> Scene<'a> {
     }
 
     /// Whether two bodies share area, however little, or touch so closely that they may.
-    pub(crate) fn meet(&self, a: &Body, b: &Body) -> bool {
+    pub(crate) fn meet(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
         self.images(a, b).any(|offset| {
             let (first, second, place) = self.arranged(a, b, offset);
             first.meets(second, &place).unwrap_or_else(|| self.overlap_at(a, b, offset).is_some())
         })
     }
 
-    /// Common part of two bodies in scene coordinates around `a`, with the offset from `a` to `b`: the largest over all images.
-    pub(crate) fn overlap_region(&self, a: &Body, b: &Body) -> Option<(Outline<2>, Vector<2>)> {
+    /// Common part of two bodies in arrangement coordinates around `a`, with the offset from `a` to `b`: the largest
+    /// over all images.
+    pub(crate) fn overlap_region(&self, a: &PlacedFigure, b: &PlacedFigure) -> Option<(Outline<2>, Vector<2>)> {
         let regions = self.images(a, b).filter_map(|offset| Some((self.overlap_at(a, b, offset)?, offset)));
         regions.max_by(|x, y| x.0.area().total_cmp(&y.0.area()))
     }
 
-    fn overlap_at(&self, a: &Body, b: &Body, offset: Vector<2>) -> Option<Outline<2>> {
+    fn overlap_at(&self, a: &PlacedFigure, b: &PlacedFigure, offset: Vector<2>) -> Option<Outline<2>> {
         let (first, second, place) = self.arranged(a, b, offset);
         let common = first.overlap(second, &place)?;
         let back = if std::ptr::eq(first, self.figure(a.figure)) { a.place } else { shifted(b, a.centre + offset) };
         Some(common.transformed(&back))
     }
 
-    /// The figure with more edges, the other one, and how that lies in the coordinates of the first; `b` has its centre `offset` from `a`'s.
-    fn arranged(&self, a: &Body, b: &Body, offset: Vector<2>) -> (&Figure, &Figure, Similarity<2>) {
+    /// The figure with more edges, the other one, and how that lies in the coordinates of the first; `b` has its centre
+    /// `offset` from `a`'s.
+    fn arranged(&self, a: &PlacedFigure, b: &PlacedFigure, offset: Vector<2>) -> (&Figure, &Figure, Similarity<2>) {
         let (fa, fb) = (self.figure(a.figure), self.figure(b.figure));
         let b_place = shifted(b, a.centre + offset);
         if fa.complexity() >= fb.complexity() {
@@ -206,7 +215,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Offsets from `a` to `b` at which their circles meet: one in the plane, up to nine on a torus.
-    fn images(&self, a: &Body, b: &Body) -> impl Iterator<Item = Vector<2>> + use<> {
+    fn images(&self, a: &PlacedFigure, b: &PlacedFigure) -> impl Iterator<Item = Vector<2>> + use<> {
         let shortest = self.domain.offset(a.centre, b.centre);
         let period = self.domain.period();
         let reach = a.radius + b.radius;
@@ -219,6 +228,6 @@ impl<'a> Scene<'a> {
 }
 
 /// The placement of `body` with its centre at `centre`.
-fn shifted(body: &Body, centre: Vector<2>) -> Similarity<2> {
+fn shifted(body: &PlacedFigure, centre: Vector<2>) -> Similarity<2> {
     Similarity { translation: body.place.translation + (centre - body.centre), ..body.place }
 }

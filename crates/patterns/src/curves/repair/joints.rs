@@ -1,0 +1,136 @@
+//! False ends are joined: to what is near, across a gap, or to the stroke ahead.
+
+use arabesque_core::{
+    GridIndex, Vector,
+    pairing::{Wish, pair_up},
+};
+
+use crate::{
+    curves::repair::mend::{EXPECTED, Repair},
+    output::state::State,
+};
+
+/// How far an end looks for something to join, in sampling distances.
+const REACH: f64 = 1.7;
+
+/// Widest gap that two ends bridge when they face each other, in sampling distances.
+const SPAN: f64 = 5.0;
+
+/// They face each other when the line between them turns by less than this from either: cosine of 25 degrees.
+pub(crate) const FACING: f64 = 0.9;
+
+/// What a false end is taken on to lies ahead of it: cosine of 70 degrees.
+const AHEAD: f64 = 0.34;
+
+/// Cost of a joint that makes a new junction, in sampling distances.
+const NEW_JUNCTION: f64 = 0.6;
+
+/// Cost of a joint at a right angle to the end's direction, in sampling distances.
+const ANGLE: f64 = 0.8;
+
+impl<const D: usize> Repair<'_, D> {
+    /// Joins false ends to samples near them. Returns how many.
+    pub(crate) fn join_near(&self, state: &mut State<'_, D>) -> usize {
+        let ends = self.false_ends(state);
+        let wishes: Vec<_> = ends.iter().flat_map(|&s| self.partners(state, s)).collect();
+        pair_up(wishes, state.samples().len(), |a, b| self.link(state, a, b))
+    }
+
+    /// Joins false ends that face each other across a gap. Returns how many.
+    pub(crate) fn bridge(&self, state: &mut State<'_, D>) -> usize {
+        let ends = self.false_ends(state);
+        let places: Vec<_> = ends.iter().map(|&s| state.sample(s).position).collect();
+        let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links_of(s)[0], s))).collect();
+        let unit = self.net.spacing * state.extent.largest_spacing_scale;
+        let index = GridIndex::new(&places, SPAN * unit, state.domain());
+        let mut wishes = Vec::new();
+        for (i, &s) in ends.iter().enumerate() {
+            index.within(places[i], SPAN * unit, |j, offset| {
+                let across = direction(offset);
+                let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
+                let is_new = !state.is_frozen_edge(s, ends[j]);
+                if j > i && is_new && out > FACING && back > FACING && state.share_style(s, ends[j]) {
+                    wishes.push(Wish { cost: offset.norm() / unit + ANGLE * (2.0 - out - back), a: i, b: j });
+                }
+            });
+        }
+        pair_up(wishes, ends.len(), |i, j| self.link(state, ends[i], ends[j]))
+    }
+
+    /// Joins two samples unless the exemplar never shows the like. Returns whether it did.
+    fn link(&self, state: &mut State<'_, D>, a: u32, b: u32) -> bool {
+        let is_good = self.rules.allow(state, a, b) && !self.dangles.forbid(state, a, b);
+        if is_good {
+            state.link(a, b);
+        }
+        is_good
+    }
+
+    /// Takes false ends on to the nearest stroke ahead, where strokes branch anyway. Returns how many.
+    pub(crate) fn extend(&self, state: &mut State<'_, D>) -> usize {
+        let mut joined = 0;
+        for s in self.false_ends(state) {
+            // An earlier one may have been joined to this.
+            let &[before] = state.links_of(s) else { continue };
+            let ahead = self.ahead(state, before, s);
+            if let Some(&(_, o)) = ahead.iter().find(|(_, o)| self.rules.allow(state, s, *o)) {
+                state.link(s, o);
+                joined += 1;
+            }
+        }
+        joined
+    }
+
+    /// Samples ahead of the end `s`, which is joined to `before`; those first that are near and straight on.
+    fn ahead(&self, state: &State<'_, D>, before: u32, s: u32) -> Vec<(f64, u32)> {
+        let position = state.sample(s).position;
+        let unit = self.net.spacing * state.request.fields.frame(position).spacing_scale;
+        let way = direction(state.offset(before, s));
+        let mut ahead = Vec::new();
+        state.within(position, SPAN * unit, |o, offset| {
+            let cosine = way.dot(direction(offset));
+            let cost = offset.norm() * (2.0 - cosine);
+            let is_own = o == s || o == before || state.are_linked(before, o);
+            let may_take_one = (1..=2).contains(&state.degree(o));
+            if !is_own && !state.is_frozen_edge(s, o) && cosine > AHEAD && may_take_one && state.share_style(o, s) {
+                ahead.push((cost, o));
+            }
+        });
+        ahead.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ahead
+    }
+
+    /// What the end `s` could be joined to, with the cost in sampling distances.
+    fn partners(&self, state: &State<'_, D>, s: u32) -> Vec<Wish<u32>> {
+        let position = state.sample(s).position;
+        let unit = self.net.spacing * state.request.fields.frame(position).spacing_scale;
+        let Some(&before) = state.links_of(s).first() else { return Vec::new() };
+        let way = direction(state.offset(before, s));
+        let branches = self.net.branches();
+        // What is too long would only grow with another end of a stroke.
+        let takes_ends = self.expected(state, s) > EXPECTED || !self.dangles.has_single();
+        let mut found = Vec::new();
+        state.within(position, REACH * unit, |o, offset| {
+            let is_near = o == s || o == before || state.are_linked(before, o);
+            if is_near || state.is_frozen_edge(s, o) || !state.share_style(o, s) {
+                return;
+            }
+            let degree = state.degree(o);
+            if degree == 0 || (degree == 1 && !takes_ends) {
+                return;
+            }
+            let wants = self.expected(state, o) - degree as f64 > 0.4;
+            let turn = 1.0 - way.dot(direction(offset));
+            let cost = offset.norm() / unit + ANGLE * turn + if wants { 0.0 } else { NEW_JUNCTION };
+            let is_crowded = degree >= 4 || (!wants && (degree >= 3 || (degree == 2 && !branches)));
+            if cost <= REACH && !is_crowded {
+                found.push(Wish { cost, a: s, b: o });
+            }
+        });
+        found
+    }
+}
+
+pub(crate) fn direction<const D: usize>(v: Vector<D>) -> Vector<D> {
+    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
+}

@@ -1,0 +1,76 @@
+//! What only the plane has.
+
+use std::sync::Arc;
+
+use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Vector};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Vector<2> {}
+    impl Sealed for super::Vector<3> {}
+}
+
+/// The dimensions that patterns are made in, the plane and space, implemented for the vectors of both.
+///
+/// The engine is written once for the two. Outlines of elements, things in the way and strokes that turn at the border
+/// have a meaning in the plane alone; what handles them asks here whether it is there.
+pub trait Dimension<const D: usize>: sealed::Sealed {
+    /// An exemplar of the plane.
+    fn plane_exemplar(exemplar: &Exemplar<D>) -> Option<&Exemplar<2>>;
+
+    /// A request for the plane.
+    fn plane_request(request: &Request<D>) -> Option<&Request<2>>;
+
+    /// Placements in the plane.
+    fn plane_placements(placements: &mut Vec<Placement<D>>) -> Option<&mut Vec<Placement<2>>>;
+
+    /// Changes strokes that are in the plane; those in space stay as they are.
+    fn map_plane_strokes(strokes: Vec<Drawn<D>>, change: impl FnOnce(Vec<Drawn<2>>) -> Vec<Drawn<2>>) -> Vec<Drawn<D>>;
+
+    /// A region of the plane, as one of this dimension.
+    fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<D>>>;
+}
+
+impl Dimension<2> for Vector<2> {
+    fn plane_exemplar(exemplar: &Exemplar<2>) -> Option<&Exemplar<2>> {
+        Some(exemplar)
+    }
+
+    fn plane_request(request: &Request<2>) -> Option<&Request<2>> {
+        Some(request)
+    }
+
+    fn plane_placements(placements: &mut Vec<Placement<2>>) -> Option<&mut Vec<Placement<2>>> {
+        Some(placements)
+    }
+
+    fn map_plane_strokes(strokes: Vec<Drawn<2>>, change: impl FnOnce(Vec<Drawn<2>>) -> Vec<Drawn<2>>) -> Vec<Drawn<2>> {
+        change(strokes)
+    }
+
+    fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<2>>> {
+        Some(region)
+    }
+}
+
+impl Dimension<3> for Vector<3> {
+    fn plane_exemplar(_: &Exemplar<3>) -> Option<&Exemplar<2>> {
+        None
+    }
+
+    fn plane_request(_: &Request<3>) -> Option<&Request<2>> {
+        None
+    }
+
+    fn plane_placements(_: &mut Vec<Placement<3>>) -> Option<&mut Vec<Placement<2>>> {
+        None
+    }
+
+    fn map_plane_strokes(strokes: Vec<Drawn<3>>, _: impl FnOnce(Vec<Drawn<2>>) -> Vec<Drawn<2>>) -> Vec<Drawn<3>> {
+        strokes
+    }
+
+    fn from_plane(_: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<3>>> {
+        None
+    }
+}

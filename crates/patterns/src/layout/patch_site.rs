@@ -1,0 +1,283 @@
+//! A site of the layout with what is around it: which exemplar patch agrees best with that, and what the patch adds [Tu
+//! 2020 §4.3.2].
+//!
+//! [Ma 2011 §4.1] copies patches at random, [Tu 2020 §4.3.2] those that are most similar to what is there where they
+//! overlap. Beyond that, a patch is only tried where it puts one of its elements onto one that is there, so that both are in step:
+//! disorder starts at the seams, and iterations that see no farther than a neighbourhood do not bring two parts into
+//! step again.
+
+use arabesque_core::{Frame, Numbered, Stream, Vector};
+
+use crate::{
+    border::Extent,
+    exemplar::library::Library,
+    layout::coverage::{Cell, Coverage},
+    output::canvas::Canvas,
+};
+
+/// Share of the closest distance of their classes that a new element keeps to what is there already.
+const ROOM: f64 = 0.6;
+
+/// Share of its own nearest-neighbour distance that it keeps as well where a neighbouring patch has already been.
+const ROOM_COVERED: f64 = 0.75;
+
+/// Cost of an element of which the exemplar does not tell whether it could be there: beyond its frame.
+const UNSEEN: f64 = 0.35;
+
+/// Cost of a patch whose centre lies at the frame of the exemplar, against one from its middle.
+const RIM: f64 = 0.3;
+
+/// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
+const MEMBERS: usize = 80;
+
+/// Candidates where there is nothing to register on.
+const FREE_CANDIDATES: usize = 24;
+
+/// How patches are chosen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GrowParams {
+    /// Radius of a patch, exemplar units.
+    pub(crate) patch: f64,
+    /// Radius of the surroundings that a patch must agree with, exemplar units.
+    pub(crate) context: f64,
+    /// Cost of a patch that goes on copying where its neighbour stopped, per share of such elements.
+    pub(crate) repeat: f64,
+    /// Cost of a patch whose elements are used more often than others.
+    pub(crate) balance: f64,
+    /// Output elements that patches are registered on, for each site.
+    pub(crate) anchors: usize,
+    /// First curve sample, see [`crate::exemplar::level::Level::base`].
+    pub(crate) base: u32,
+}
+
+/// What patches are cut from.
+pub(crate) struct PatchSource<'a, const D: usize> {
+    pub(crate) library: &'a Library<D>,
+    pub(crate) extent: &'a Extent<'a, D>,
+    pub(crate) params: GrowParams,
+    /// Times each exemplar element was used.
+    pub(crate) usage: Numbered<u32>,
+}
+
+/// What is around one site.
+pub(crate) struct PatchSite<'a, const D: usize> {
+    source: &'a PatchSource<'a, D>,
+    site: Vector<D>,
+    frame: Frame<D>,
+    coverage: &'a Coverage<D>,
+    /// Elements around, nearest first.
+    around: Vec<Around<D>>,
+}
+
+/// An element near a site.
+#[derive(Clone, Copy, Debug)]
+struct Around<const D: usize> {
+    /// Exemplar element that is drawn there.
+    element: u32,
+    /// From the site, in exemplar directions.
+    offset: Vector<D>,
+    /// Weight by distance.
+    weight: f64,
+}
+
+impl<'a, const D: usize> PatchSite<'a, D> {
+    pub(crate) fn new(
+        source: &'a PatchSource<'a, D>,
+        site: Vector<D>,
+        frame: Frame<D>,
+        canvas: &Canvas<D>,
+        coverage: &'a Coverage<D>,
+    ) -> Self {
+        let context = source.params.context;
+        let mut around = Vec::new();
+        canvas.within(site, context * frame.spacing_scale, |i, offset| {
+            let offset = frame.to_exemplar(offset);
+            around.push(Around { element: canvas.items[i].source, offset, weight: fall_off(offset, context) });
+        });
+        around.sort_by(|a, b| a.offset.norm2().total_cmp(&b.offset.norm2()));
+        Self { source, site, frame, coverage, around }
+    }
+
+    /// Exemplar points that could land on the site.
+    pub(crate) fn candidates(&self, anchors: usize, random: &mut Stream) -> Vec<Vector<D>> {
+        let library = self.source.library;
+        let base = self.source.params.base;
+        let mut centres = Vec::new();
+        for Around { element, offset, .. } in self.anchors(anchors) {
+            let members = library.members(library.class[element]);
+            let usable = |i: &u32| library.view.contains(library.centre[*i] - offset);
+            if element < base || members.len() <= MEMBERS {
+                centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i] - offset));
+            } else {
+                let usable = members.iter().copied().filter(usable).collect();
+                let alike = self.most_alike(usable, element, random);
+                centres.extend(alike.into_iter().map(|i| library.centre[i] - offset));
+            }
+        }
+        let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
+        while centres.len() < wanted {
+            centres.push(library.any_place(random));
+        }
+        centres
+    }
+
+    /// What the patches are registered on: the nearest elements; for strokes also the nearest of the rarest kind, which
+    /// tell most.
+    fn anchors(&self, count: usize) -> Vec<Around<D>> {
+        let library = self.source.library;
+        let mut anchors: Vec<_> = self.around.iter().take(count).copied().collect();
+        let strokes = self.around.iter().filter(|a| a.element >= self.source.params.base);
+        let size = |element: u32| library.members(library.class[element]).len();
+        if let (Some(rarest), true) = (strokes.min_by_key(|a| size(a.element)), count > 0) {
+            anchors.push(*rarest);
+        }
+        anchors
+    }
+
+    /// Of very many elements, some of those that are most like `element`.
+    fn most_alike(&self, mut members: Vec<u32>, element: u32, random: &mut Stream) -> Vec<u32> {
+        let feature = &self.source.library.feature;
+        members.sort_by_cached_key(|&i| feature[i].distance2(&feature[element]).to_bits());
+        members.truncate((members.len() / 4).max(MEMBERS));
+        while members.len() > MEMBERS {
+            members.swap_remove(random.below(members.len()));
+        }
+        members
+    }
+
+    /// Disagreement of the patch around exemplar point `centre` with what is there.
+    pub(crate) fn cost(&self, centre: Vector<D>) -> f64 {
+        let (library, params) = (self.source.library, self.source.params);
+        let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
+        let (mut cost, mut weights, mut repeated) = (0.0, 1e-9, 0.0);
+        for &Around { element, offset, weight } in &self.around {
+            weights += weight;
+            let p = centre + offset;
+            if !library.view.contains(p) {
+                cost += UNSEEN * weight;
+                continue;
+            }
+            let class = library.class[element];
+            let alike = library.alike(class, p, &library.feature[element]);
+            match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
+                Some((i, c)) => {
+                    taken.push(i);
+                    cost += weight * f64::from(c) / library.outlier[class].powi(2);
+                    repeated += weight * f64::from(u8::from(i == element));
+                }
+                None => cost += weight,
+            }
+        }
+        let Missing { cost: missing, weights: missing_weights, usage } = self.missing(centre, &taken);
+        let total = weights + missing_weights;
+        let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
+        (cost + missing) / total + params.repeat * repeated / weights + params.balance * usage + RIM * (1.0 - known)
+    }
+
+    /// What the patch has that is not there, except the elements `taken`.
+    fn missing(&self, centre: Vector<D>, taken: &[u32]) -> Missing {
+        let (library, params) = (self.source.library, self.source.params);
+        let (mut missing, mut weights) = (0.0, 0.0);
+        let (mut used, mut fresh) = (0.0, 0.0);
+        library.within(centre, params.context, |i, offset| {
+            if taken.contains(&i) {
+                return;
+            }
+            let weight = fall_off(offset, params.context);
+            match self.coverage.at(self.site + self.frame.to_output(offset)) {
+                Cell::Covered => {
+                    missing += weight;
+                    weights += weight;
+                }
+                Cell::Open => {
+                    used += f64::from(self.source.usage[i]);
+                    fresh += 1.0;
+                }
+                Cell::Outside => {}
+            }
+        });
+        let mean = self.source.usage.iter().map(|&u| f64::from(u)).sum::<f64>() / library.len() as f64;
+        let usage = if fresh > 0.0 { (used / fresh) / (mean + 1.0) } else { 0.0 };
+        Missing { cost: missing, weights, usage }
+    }
+
+    /// `centre` moved so that matched elements coincide as well as they can.
+    pub(crate) fn registered(&self, centre: Vector<D>) -> Vector<D> {
+        let library = self.source.library;
+        let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
+        for &Around { element, offset, weight } in &self.around {
+            let class = library.class[element];
+            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[element])[0] {
+                shift += (library.centre[i] - centre - offset) * weight;
+                weights += weight;
+            }
+        }
+        centre + shift * (1.0 / weights)
+    }
+
+    /// Patch elements for the open part, with their places.
+    pub(crate) fn additions(&self, centre: Vector<D>) -> Vec<(u32, Vector<D>)> {
+        let (library, params) = (self.source.library, self.source.params);
+        let mut taken = Vec::new();
+        for &Around { element, offset, .. } in &self.around {
+            let class = library.class[element];
+            let alike = library.alike(class, centre + offset, &library.feature[element]);
+            taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
+        }
+        let mut found = Vec::new();
+        library.within(centre, params.patch, |i, offset| {
+            let p = self.site + self.frame.to_output(offset);
+            let wanted = library.copyable[i] && !taken.contains(&i);
+            if wanted && self.has_room(i, p, offset) && self.source.extent.admits(i, p) {
+                found.push((i, p));
+            }
+        });
+        found.sort_by_key(|&(i, _)| i);
+        found
+    }
+
+    /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on
+    /// something, and into a covered cell at the seam, where registration may have moved it across, only if there is a
+    /// gap of its own size.
+    fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
+        let library = self.source.library;
+        let class = library.class[i];
+        let clear = |other: &Around<D>| {
+            (other.offset - offset).norm() >= ROOM * library.closest(class, library.class[other.element])
+        };
+        if !self.around.iter().all(clear) {
+            return false;
+        }
+        match self.coverage.at(p) {
+            Cell::Open => true,
+            Cell::Covered => {
+                let own = library.nearest[i];
+                let gap = self
+                    .around
+                    .iter()
+                    .map(|other| (other.offset - offset).norm2())
+                    .fold(f64::INFINITY, f64::min)
+                    .sqrt();
+                let reach = 0.5 * own * self.frame.spacing_scale;
+                gap >= ROOM_COVERED * own && self.coverage.open_within(p, reach).0 > 0
+            }
+            Cell::Outside => false,
+        }
+    }
+}
+
+/// Elements of a patch without a counterpart in its surroundings.
+struct Missing {
+    /// Weight of those that should be there already.
+    cost: f64,
+    /// Weight of all that should be there.
+    weights: f64,
+    /// How often the others, which would be new, were used, relative to the mean.
+    usage: f64,
+}
+
+/// Weight of an element at `offset` in surroundings of `radius`: 1 in the middle, 0.1 at the rim.
+fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f64 {
+    let x = (offset.norm2() / (radius * radius)).min(1.0);
+    0.1 + 0.9 * (1.0 - x) * (1.0 - x)
+}

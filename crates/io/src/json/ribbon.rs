@@ -3,7 +3,10 @@
 use arabesque_core::{Patch, Result, Warning};
 use serde::Serialize;
 
-use crate::text::number::Decimals;
+use crate::{
+    json::warning::{WarningRecord, warning_records},
+    text::number::Decimals,
+};
 
 /// One ribbon.
 #[derive(Clone, Debug)]
@@ -78,12 +81,6 @@ struct PieceRecord {
     shift: Vec<f32>,
 }
 
-#[derive(Serialize)]
-struct WarningRecord<'a> {
-    message: &'a str,
-    advice: &'a str,
-}
-
 /// Writes ribbons as one JSON object. Corners go top left, top right, bottom right, bottom left; `texture` has the same corners in
 /// pixels of the exemplar.
 ///
@@ -101,7 +98,7 @@ pub fn write_ribbons<const D: usize>(document: &Document<'_, D>) -> Result<Strin
             .map(|&(path, [width, height])| ExemplarRecord { path, width, height })
             .collect(),
         ribbons: document.ribbons.iter().map(|line| ribbon(line, decimals)).collect(),
-        warnings: document.warnings.iter().map(|w| WarningRecord { message: &w.message, advice: &w.advice }).collect(),
+        warnings: warning_records(document.warnings),
         recipe: document.recipe,
     };
     serde_json::to_string_pretty(&file)

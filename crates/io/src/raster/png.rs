@@ -3,6 +3,11 @@
 use arabesque_core::{Error, Image, Limits, Result};
 use resvg::{tiny_skia, usvg};
 
+use crate::{
+    raster::size::checked_size,
+    text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
+};
+
 /// How large a picture is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
@@ -14,13 +19,10 @@ pub enum Resolution {
 
 impl Default for Resolution {
     fn default() -> Self {
-        Self::PerInch(96.0)
+        Self::PerInch(PIXELS_PER_INCH)
     }
 }
 
-/// CSS pixels an inch.
-const PIXELS_PER_INCH: f64 = 96.0;
-const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
 /// Keyword of the text chunk that holds the recipe.
 const RECIPE_KEYWORD: &str = "arabesque recipe";
 
@@ -55,15 +57,9 @@ pub fn write_png(plate: &Plate<'_>, limits: &Limits) -> Result<Vec<u8>> {
     // A clamp keeps NaN, which the limit below then refuses.
     let side = |k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX);
     let (width, height) = (side(0), side(1));
-    if !(width * height <= limits.pixels as f64 && width.max(height) <= f64::from(i16::MAX)) {
-        return Err(Error::Limit {
-            what: "size of the picture".into(),
-            found: format!("{width} x {height} pixels"),
-            limit: format!("{} pixels, {} a side", limits.pixels, i16::MAX),
-            advice: "ask for fewer pixels, or write SVG".into(),
-        });
-    }
-    let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no pixels".into()))?;
+    let advice = "ask for fewer pixels, or write SVG";
+    let [columns, rows] = checked_size("size of the picture", [width, height], limits, advice)?;
+    let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
     let stretch = tiny_skia::Transform::from_scale((width / page[0]) as f32, (height / page[1]) as f32);
     resvg::render(&tree, stretch, &mut pixmap.as_mut());
     let per_metre = width / page[0] * PIXELS_PER_INCH * INCHES_PER_METRE;

@@ -4,42 +4,7 @@ use std::fmt::Write as _;
 
 use arabesque_core::{Bounds, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
 
-use crate::text::{number::Decimals, path_data::path_data};
-
-/// Physical unit of a page.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unit {
-    /// CSS pixel, 96 an inch.
-    #[default]
-    Px,
-    /// Millimetre.
-    Mm,
-    /// Centimetre.
-    Cm,
-    /// Inch.
-    In,
-    /// Point, 72 an inch.
-    Pt,
-    /// Pica, 6 an inch.
-    Pc,
-    /// A quarter of a millimetre.
-    Q,
-}
-
-impl Unit {
-    /// The unit as SVG writes it after a number: nothing for pixels.
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::Px => "",
-            Self::Mm => "mm",
-            Self::Cm => "cm",
-            Self::In => "in",
-            Self::Pt => "pt",
-            Self::Pc => "pc",
-            Self::Q => "Q",
-        }
-    }
-}
+use crate::text::{number::Decimals, path_data::path_data, unit::Unit};
 
 /// Size and coordinate system of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]

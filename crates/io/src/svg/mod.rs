@@ -8,16 +8,19 @@ mod centreline;
 mod drawing;
 mod namespace;
 mod options;
+mod palette;
 mod parse;
 mod read;
 mod shape;
 mod understand;
 mod write;
 
+pub use crate::text::unit::Unit;
 pub use drawing::HostDocument as Rest;
-pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke, Unit};
+pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke};
 pub use namespace::NAMESPACE;
 pub use options::{Method, ReadOptions};
+pub use palette::PALETTE;
 pub use read::host_document::read_host_document as read_rest;
 pub use read::{
     document::Document,

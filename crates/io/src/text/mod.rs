@@ -3,4 +3,5 @@
 pub mod number;
 pub mod path_data;
 pub mod suggest;
+pub mod unit;
 pub(crate) mod xml;

@@ -5,21 +5,24 @@ use std::rc::Rc;
 use arabesque_core::{Bounds, Error, FillRule, Outline, Result, Shape};
 use kurbo::{Affine, BezPath};
 
-use crate::svg::{
-    drawing::{Page, Unit},
-    options::ReadOptions,
-    parse::{
-        meta::Part,
-        notes::Note,
-        scene::{Content, Node},
-        style::Property as P,
+use crate::{
+    svg::{
+        drawing::Page,
+        options::ReadOptions,
+        parse::{
+            meta::Part,
+            notes::Note,
+            scene::{Content, Node},
+            style::Property as P,
+        },
+        read::document::{Document, Opened, by_id, parts},
+        shape::{
+            flatten::{self, flattened},
+            painted_area::Inker,
+            subpath::is_closed,
+        },
     },
-    read::document::{Document, Opened, by_id, parts},
-    shape::{
-        flatten::{self, flattened},
-        painted_area::Inker,
-        subpath::is_closed,
-    },
+    text::unit::Unit,
 };
 
 /// Reads an area from a text of which nothing else is read.

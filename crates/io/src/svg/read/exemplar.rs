@@ -5,29 +5,32 @@ use std::rc::Rc;
 use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role};
 use kurbo::Affine;
 
-use crate::svg::{
-    drawing::{Drawing, Job, Page, Stacking, Unit},
-    options::{Method, ReadOptions},
-    parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
-    read::{
-        document::{Document, Opened, parts},
-        domain::shape,
-        flow::strokes,
+use crate::{
+    svg::{
+        drawing::{Drawing, Job, Page, Stacking},
+        options::{Method, ReadOptions},
+        parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
+        read::{
+            document::{Document, Opened, parts},
+            domain::shape,
+            flow::strokes,
+        },
+        shape::{
+            extent::{self, bounds},
+            painted_area::Inker,
+        },
+        understand::{
+            classes::{self, Classes},
+            curves::{Curves, Gatherer},
+            fragment::{fragment, push_placed},
+            frame::{self, frame_mark, is_frame_mark},
+            item::{Item, Kind, Origin, Selection},
+            outlined_lines::trace,
+            select::select,
+            surroundings::Context,
+        },
     },
-    shape::{
-        extent::{self, bounds},
-        painted_area::Inker,
-    },
-    understand::{
-        classes::{self, Classes},
-        curves::{Curves, Gatherer},
-        fragment::{fragment, push_placed},
-        frame::{self, frame_mark, is_frame_mark},
-        item::{Item, Kind, Origin, Selection},
-        outlined_lines::trace,
-        select::select,
-        surroundings::Context,
-    },
+    text::unit::Unit,
 };
 
 /// Reads an exemplar from a text of which nothing else is read.

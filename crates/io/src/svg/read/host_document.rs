@@ -11,20 +11,23 @@ use arabesque_core::{Error, Outline, Result};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
-use crate::svg::{
-    drawing::{Drawing, HostDocument, Page, Placed, Unit},
-    namespace::{INKSCAPE, NAMESPACE, SVG},
-    options::{Method, ReadOptions},
-    parse::{definitions::Definitions, source::Source},
-    read::{
-        document::{Document, Opened},
-        placed::{Kept, Matcher, Sorter},
+use crate::{
+    svg::{
+        drawing::{Drawing, HostDocument, Page, Placed},
+        namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
+        options::{Method, ReadOptions},
+        parse::{definitions::Definitions, source::Source},
+        read::{
+            document::{Document, Opened},
+            placed::{Kept, Matcher, Sorter},
+        },
+        shape::{extent::bounds, painted_area::Inker},
+        understand::{
+            fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
+            surroundings::Context,
+        },
     },
-    shape::{extent::bounds, painted_area::Inker},
-    understand::{
-        fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
-        surroundings::Context,
-    },
+    text::unit::Unit,
 };
 
 /// Reads a drawing of which a part is filled anew from a text of which nothing else is read.
@@ -181,12 +184,7 @@ fn declaration(text: &str) -> String {
 
 /// Declarations of the namespaces that new things need and the root lacks.
 fn namespaces(source: &Source<'_>) -> String {
-    let needed = [
-        (None, SVG),
-        (Some("xlink"), "http://www.w3.org/1999/xlink"),
-        (Some("inkscape"), INKSCAPE),
-        (Some("arabesque"), NAMESPACE),
-    ];
+    let needed = [(None, SVG), (Some("xlink"), XLINK), (Some("inkscape"), INKSCAPE), (Some("arabesque"), NAMESPACE)];
     let root = source.xml.root_element();
     let mut out = String::new();
     for (prefix, uri) in needed {

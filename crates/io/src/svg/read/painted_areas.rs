@@ -3,18 +3,21 @@
 use arabesque_core::{Outline, Result, Warning};
 use kurbo::Affine;
 
-use crate::svg::{
-    drawing::{Page, Unit},
-    options::ReadOptions,
-    parse::{
-        colour,
-        geometry::Painted,
-        paint::{fraction, reference},
-        scene::{Content, Node},
-        style::Property as P,
+use crate::{
+    svg::{
+        drawing::Page,
+        options::ReadOptions,
+        parse::{
+            colour,
+            geometry::Painted,
+            paint::{fraction, reference},
+            scene::{Content, Node},
+            style::Property as P,
+        },
+        read::document::{Document, Opened},
+        shape::{extent::bounds, flatten, painted_area::Inker, stroke::stroked},
     },
-    read::document::{Document, Opened},
-    shape::{extent::bounds, flatten, painted_area::Inker, stroke::stroked},
+    text::unit::Unit,
 };
 
 /// A painted area.

@@ -7,7 +7,7 @@ use kurbo::Affine;
 
 use crate::{
     svg::{
-        drawing::{Drawing, Fragment, Page, Placed, Stroke, Unit},
+        drawing::{Drawing, Fragment, Page, Placed, Stroke},
         options::{Method, ReadOptions},
         parse::{definitions::Definitions, meta::Meta},
         read::document::{Document, Opened},
@@ -26,7 +26,7 @@ use crate::{
             surroundings::Context,
         },
     },
-    text::number::Decimals,
+    text::{number::Decimals, unit::Unit},
 };
 
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.

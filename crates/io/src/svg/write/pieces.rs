@@ -5,7 +5,13 @@ use std::{collections::BTreeMap, str::FromStr};
 use arabesque_core::{Error, Result};
 use kurbo::{Affine, BezPath, Shape as _};
 
-use crate::text::xml::escape;
+use crate::{
+    svg::{
+        namespace::{INKSCAPE, SVG, XLINK},
+        parse::length::unit_of,
+    },
+    text::xml::escape,
+};
 
 /// Attributes of one node, sorted by name.
 type Attributes = BTreeMap<String, String>;
@@ -76,8 +82,7 @@ const ARC_TOLERANCE: f64 = 1e-4;
 /// `markup` as a document of its own, with the namespaces that it may use.
 pub(crate) fn wrapped(markup: &str) -> String {
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
+        "<svg xmlns=\"{SVG}\" xmlns:xlink=\"{XLINK}\" xmlns:inkscape=\"{INKSCAPE}\" \
          xmlns:sodipodi=\"http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd\">{markup}</svg>"
     )
 }
@@ -215,16 +220,7 @@ fn painted(path: &BezPath, transform: Affine, own: &Attributes, mut attributes: 
 /// A length in user units; percentages have no meaning once the element has left its page.
 fn length(text: &str) -> Option<f64> {
     let l = svgtypes::Length::from_str(text.trim()).ok()?;
-    let factor = match l.unit {
-        svgtypes::LengthUnit::None | svgtypes::LengthUnit::Px => 1.0,
-        svgtypes::LengthUnit::Mm => 96.0 / 25.4,
-        svgtypes::LengthUnit::Cm => 96.0 / 2.54,
-        svgtypes::LengthUnit::In => 96.0,
-        svgtypes::LengthUnit::Pt => 96.0 / 72.0,
-        svgtypes::LengthUnit::Pc => 16.0,
-        svgtypes::LengthUnit::Em | svgtypes::LengthUnit::Ex | svgtypes::LengthUnit::Percent => return None,
-    };
-    Some(l.number * factor)
+    Some(l.number * unit_of(l.unit)?.pixels())
 }
 
 /// The path of a basic shape in its own coordinates; `None` for everything else.

@@ -98,9 +98,12 @@ mod tests {
     use arabesque_core::{Border, Bounds, Domain, Exemplar, Placement, Similarity, Vector};
 
     use super::*;
-    use crate::svg::{
-        drawing::{Drawing, Fragment, Job, Page, Unit},
-        write::{document::recipe_of, sheet::Style, text::rectangle},
+    use crate::{
+        svg::{
+            drawing::{Drawing, Fragment, Job, Page},
+            write::{document::recipe_of, sheet::Style, text::rectangle},
+        },
+        text::unit::Unit,
     };
 
     /// Two dots at (2, 2) and (8, 8) in a 10 x 10 frame.

@@ -161,7 +161,7 @@ mod tests {
     use arabesque_core::Bounds;
 
     use super::*;
-    use crate::svg::{drawing::Unit, write::document::recipe_of};
+    use crate::{svg::write::document::recipe_of, text::unit::Unit};
 
     #[test]
     fn sides_move_outwards_whatever_the_direction() {

@@ -7,6 +7,7 @@ use arabesque_core::Role;
 use crate::{
     svg::{
         drawing::{Drawing, Page},
+        palette::PALETTE,
         write::{
             document::{PREFIXES, Root},
             text::{outline_data, rectangle},
@@ -14,9 +15,6 @@ use crate::{
     },
     text::{number::Decimals, path_data::path_data, xml::escape},
 };
-
-/// Colours of the classes; further classes start again.
-const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
 
 /// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres, every curve in the
 /// colour of its style with dots at its ends, and the frame.

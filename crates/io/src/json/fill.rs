@@ -82,8 +82,9 @@ struct EnergyRecord {
 
 /// Writes an outcome as one JSON object.
 ///
-/// `d` is SVG path data, in space with three numbers a point; `width` is that of the stroke as it is drawn, `length` that of its line.
-/// `transform` is column by column, the shift last: `[a, b, c, d, e, f]` in the plane, as SVG's `matrix()` has it.
+/// `d` is SVG path data, in space with three numbers per point; `width` is that of the stroke as it is drawn, `length`
+/// that of its line. `transform` is column by column, the shift last: `[a, b, c, d, e, f]` in the plane, as SVG's
+/// `matrix()` has it.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Input`] when a number cannot be written, which no outcome should hold.

@@ -10,7 +10,7 @@ use crate::{
 
 /// One ribbon.
 #[derive(Clone, Debug)]
-pub struct Line<'a, const D: usize> {
+pub struct RibbonLine<'a, const D: usize> {
     /// What it lies along.
     pub name: &'a str,
     /// Whether the last piece is followed by the first.
@@ -21,13 +21,15 @@ pub struct Line<'a, const D: usize> {
     pub pieces: Vec<(Patch<D>, &'a [f32])>,
 }
 
+pub use self::RibbonLine as Line;
+
 /// Everything that one file says.
 #[derive(Clone, Debug)]
 pub struct Document<'a, const D: usize> {
     /// Name, width and height of each exemplar.
     pub exemplars: Vec<(&'a str, [usize; 2])>,
     /// The ribbons.
-    pub ribbons: Vec<Line<'a, D>>,
+    pub ribbons: Vec<RibbonLine<'a, D>>,
     /// Least corner and size of the canvas.
     pub page: Option<[[f64; 2]; 2]>,
     /// Largest side of what is shown, which sets the number of digits.
@@ -81,8 +83,8 @@ struct PieceRecord {
     shift: Vec<f32>,
 }
 
-/// Writes ribbons as one JSON object. Corners go top left, top right, bottom right, bottom left; `texture` has the same corners in
-/// pixels of the exemplar.
+/// Writes ribbons as one JSON object. Corners go top left, top right, bottom right, bottom left; `texture` has the same
+/// corners in pixels of the exemplar.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Input`] when a number cannot be written, which no ribbon should hold.
@@ -106,7 +108,7 @@ pub fn write_ribbons<const D: usize>(document: &Document<'_, D>) -> Result<Strin
         .map_err(|e| arabesque_core::Error::input("writing JSON", e.to_string(), "write the ribbon in another format"))
 }
 
-fn ribbon<'a, const D: usize>(line: &Line<'a, D>, decimals: Decimals) -> RibbonRecord<'a> {
+fn ribbon<'a, const D: usize>(line: &RibbonLine<'a, D>, decimals: Decimals) -> RibbonRecord<'a> {
     let fine = Decimals::for_extent(1e3);
     let pieces = line.pieces.iter().map(|(patch, shift)| PieceRecord {
         source: patch.source,
@@ -127,7 +129,8 @@ mod tests {
     fn a_piece_has_corners_and_texture_coordinates() {
         let texture = [(0.0, 0.0), (4.0, 0.5), (4.0, 8.0), (0.0, 8.0)].map(|(x, y)| Vector::xy(x, y));
         let patch = Patch { source: 1, corners: texture.map(|p| Vector([p[0], p[1], 2.0])), texture };
-        let line = Line { name: "c.obj: line 3", closed: true, cost: 12.5, pieces: vec![(patch, &[0.5, 1.0][..])] };
+        let line =
+            RibbonLine { name: "c.obj: line 3", closed: true, cost: 12.5, pieces: vec![(patch, &[0.5, 1.0][..])] };
         let text = write_ribbons(&Document {
             exemplars: vec![("a.png", [60, 20])],
             ribbons: vec![line],

@@ -76,8 +76,8 @@ impl Buffer {
     }
 }
 
-/// Writes strips as one mesh, a primitive for each picture: unlit, seen from both sides, blended by its alpha. The picture's top is at
-/// texture coordinate 0, as the format has it. Parts without triangles are left out.
+/// Writes strips as one mesh, a primitive for each picture: unlit, seen from both sides, blended by its alpha. The
+/// picture's top is at texture coordinate 0, as the format has it. Parts without triangles are left out.
 ///
 /// # Errors
 /// [`Error::Limit`] beyond 4 GiB.

@@ -14,7 +14,7 @@ pub enum Alpha {
     Missing,
 }
 
-/// Reads a PNG picture: gray, colour or palette, up to 16 bits a channel.
+/// Reads a PNG picture: gray, colour or palette, up to 16 bits per channel.
 ///
 /// # Errors
 /// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
@@ -40,7 +40,8 @@ pub fn read_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<(Image, A
     Ok((Image { width: raw.width, height: raw.height, pixels }, alpha))
 }
 
-/// Draws an SVG text on a transparent background, `scale` pixels a user unit of its page, whose size in user units is `units`.
+/// Draws an SVG text on a transparent background, `scale` pixels per user unit of its page, whose size in user units is
+/// `units`.
 ///
 /// # Errors
 /// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`Limits::pixels`].

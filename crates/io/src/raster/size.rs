@@ -16,7 +16,7 @@ pub fn checked_size(what: &str, [width, height]: [f64; 2], limits: &Limits, advi
     Err(Error::Limit {
         what: what.to_owned(),
         found: format!("{width} x {height} pixels"),
-        limit: format!("{} pixels, {MAX_SIDE} a side", limits.pixels),
+        limit: format!("{} pixels, {MAX_SIDE} per side", limits.pixels),
         advice: advice.to_owned(),
     })
 }

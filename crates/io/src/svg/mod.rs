@@ -1,8 +1,8 @@
 //! SVG: exemplars, jobs and results.
 //!
-//! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area (`shape`) tells elements
-//! from curves and background and sorts the elements into classes (`understand`). `read` holds what callers ask for, `write` the way
-//! back to text; both speak of a [`Drawing`].
+//! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area
+//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`). `read` holds
+//! what callers ask for, `write` the way back to text; both speak of a [`Drawing`].
 
 mod centreline;
 mod drawing;

@@ -1,8 +1,8 @@
 //! CSV: points with classes, in and out.
 //!
-//! Read: a header that names the columns in any order and case (`x`, `y`, `z`, `class` and their usual aliases), or two columns without
-//! a header. Commas, semicolons, tabs or spaces separate; `#` starts a comment line; a class in double quotes may hold separators.
-//! Written: `x,y,class`, and the recipe in comment lines at the end.
+//! Read: a header that names the columns in any order and case (`x`, `y`, `z`, `class` and their usual aliases), or two
+//! columns without a header. Commas, semicolons, tabs or spaces separate; `#` starts a comment line; a class in double
+//! quotes may hold separators. Written: `x,y,class`, and the recipe in comment lines at the end.
 
 use std::collections::BTreeMap;
 
@@ -32,8 +32,8 @@ const ONLY_CLASS: &str = "point";
 /// Reads points.
 ///
 /// # Errors
-/// [`Error::Input`] with the line when a value is no finite number within the limits, a column is missing or a line has the wrong number
-/// of fields; [`Error::Limit`] for too many points.
+/// [`Error::Input`] with the line when a value is not a finite number within the limits, a column is missing or a line
+/// has the wrong number of fields; [`Error::Limit`] for too many points.
 pub fn read_points(name: &str, text: &str, limits: &Limits) -> Result<Points> {
     let table = Table::new(name, text)?;
     let count = table.rows.len();
@@ -90,7 +90,7 @@ impl<'a> Table<'a> {
     fn new(name: &'a str, text: &str) -> Result<Self> {
         let lines = || text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).filter(|(_, l)| is_data(l));
         let Some((first_line, first)) = lines().next() else {
-            return Err(Error::input(name, "no point found", "give one point a line, as x,y or x,y,class"));
+            return Err(Error::input(name, "no point found", "give one point per line, as x,y or x,y,class"));
         };
         let separator = separator_of(first);
         let head: Vec<_> = split(first, separator).iter().map(|f| f.to_ascii_lowercase()).collect();
@@ -109,7 +109,7 @@ impl<'a> Table<'a> {
             rows.push((line, fields));
         }
         if rows.is_empty() {
-            return Err(Error::input(name, "a header but no point", "give one point a line below the header"));
+            return Err(Error::input(name, "a header but no point", "give one point per line below the header"));
         }
         Ok(Self { name, header, header_line: first_line, rows })
     }
@@ -139,7 +139,7 @@ impl<'a> Table<'a> {
             let text = &fields[columns[k]];
             let place = || format!("{}: line {line}, column {}", self.name, self.header[columns[k]]);
             let v: f64 = text.parse().map_err(|_| {
-                Error::input(place(), format!("\"{text}\" is no number"), "write numbers like 12.5 or 1.25e1")
+                Error::input(place(), format!("\"{text}\" is not a number"), "write numbers like 12.5 or 1.25e1")
             })?;
             if v.is_finite() && v.abs() <= limits.coordinate {
                 return Ok(v);
@@ -209,7 +209,7 @@ fn split(line: &str, separator: Option<char>) -> Vec<String> {
     fields.iter().map(|f| f.trim().to_owned()).collect()
 }
 
-/// Writes placements as `x,y,class` (`x,y,z,class` in space), one a line, with six significant digits of `extent`.
+/// Writes placements as `x,y,class` (`x,y,z,class` in space), one per line, with six significant digits of `extent`.
 /// `recipe` follows in comment lines.
 pub fn write_points<const D: usize>(
     exemplar: &Exemplar<D>,
@@ -296,7 +296,7 @@ mod tests {
             ("x,y\n0,0\n1,nan\n", "line 3, column y"),
             ("x,y\n0,0\n1,inf\n", "line 3, column y"),
             ("x,y\n0,1e300\n", "line 2, column y"),
-            ("x,y\n0,zero\n", "\"zero\" is no number"),
+            ("x,y\n0,zero\n", "\"zero\" is not a number"),
             ("x,y\n0,0\n1\n", "line 3: 1 fields where 2"),
             ("x,class\n0,a\n", "no column y"),
             ("", "no point found"),

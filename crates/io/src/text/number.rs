@@ -6,7 +6,7 @@ pub struct Decimals(usize);
 
 impl Decimals {
     /// Six significant digits of a length `extent`: 3 decimals for a page of 720 units, 6 for one of 1 unit.
-    /// An extent that is no positive number counts as 1.
+    /// An extent that is not a positive number counts as 1.
     pub fn for_extent(extent: f64) -> Self {
         let magnitude = if extent > 0.0 && extent.is_finite() { extent.log10().ceil() } else { 0.0 };
         Self((6.0 - magnitude).clamp(0.0, 15.0) as usize)

@@ -1,8 +1,8 @@
 //! OBJ: networks of curves in space, in and out, as polylines.
 //!
-//! Read: vertices (`v`) and polylines (`l`); `o` and `g` name the style of the polylines that follow. Polylines that share a vertex, or
-//! end at the same place, meet there. `# box x0 y0 z0 x1 y1 z1` gives the frame, else it is the box around the vertices in use.
-//! Written: the same, and the recipe in comment lines at the end.
+//! Read: vertices (`v`) and polylines (`l`); `o` and `g` name the style of the polylines that follow. Polylines that
+//! share a vertex, or end at the same place, meet there. `# box x0 y0 z0 x1 y1 z1` gives the frame, else it is the box
+//! around the vertices in use. Written: the same, and the recipe in comment lines at the end.
 
 use std::collections::BTreeMap;
 
@@ -25,8 +25,9 @@ pub struct Net {
 /// Reads polylines.
 ///
 /// # Errors
-/// [`Error::Input`] with the line: a coordinate that is no finite number within the limits, a polyline to a vertex that does not exist, a
-/// broken box comment, no polyline at all, or curves that lie in one plane and no box; [`Error::Limit`] for too many vertices or lines.
+/// [`Error::Input`] with the line: a coordinate that is not a finite number within the limits, a polyline to a vertex
+/// that does not exist, a broken box comment, no polyline at all, or curves that lie in one plane and no box;
+/// [`Error::Limit`] for too many vertices or lines.
 pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
     let mut reader = Reader::new(name, limits);
     for (line, content) in logical_lines(text) {
@@ -35,10 +36,11 @@ pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
     reader.finish()
 }
 
-/// Reads polylines as lines to lay a pattern along, each with the name that messages call it by. They may lie in one plane.
+/// Reads polylines as lines to lay a pattern along, each with the name that messages call it by. They may lie in one
+/// plane.
 ///
 /// # Errors
-/// As [`read_curves`], but for the box.
+/// As [`read_curves`], except for the box.
 pub fn read_lines(name: &str, text: &str, limits: &Limits) -> Result<Vec<(String, Path<3>)>> {
     let mut reader = Reader::new(name, limits);
     for (line, content) in logical_lines(text) {
@@ -57,7 +59,8 @@ pub fn read_lines(name: &str, text: &str, limits: &Limits) -> Result<Vec<(String
     Ok(paths)
 }
 
-/// Lines without comments, joined where a backslash continues them, with the number of their first line. Box comments stay.
+/// Lines without comments, joined where a backslash continues them, with the number of their first line. Box comments
+/// stay.
 fn logical_lines(text: &str) -> Vec<(usize, String)> {
     let mut lines: Vec<(usize, String)> = Vec::new();
     let mut continues = false;
@@ -149,7 +152,7 @@ impl<'a> Reader<'a> {
                 let problem = format!("{word} where a coordinate between -{most} and {most} was expected");
                 self.fail(line, problem, "correct or remove the vertex")
             }
-            Err(_) => self.fail(line, format!("\"{word}\" is no number"), "write numbers like 12.5 or 1.25e1"),
+            Err(_) => self.fail(line, format!("\"{word}\" is not a number"), "write numbers like 12.5 or 1.25e1"),
         }
     }
 
@@ -188,7 +191,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// A vertex counted from zero: `3`, `-1` for the last one so far, `3/7` with a texture vertex. It may follow later in the file.
+    /// A vertex counted from zero: `3`, `-1` for the last one so far, `3/7` with a texture vertex. It may follow later
+    /// in the file.
     fn index(&self, line: usize, word: &str) -> Result<usize> {
         let number = word.split('/').next().and_then(|n| n.parse::<i64>().ok());
         let index = match number {
@@ -198,7 +202,7 @@ impl<'a> Reader<'a> {
         };
         let problem = || {
             let so_far = self.vertices.len();
-            format!("\"{word}\" is no vertex: expected 1, 2, ... or -1 to -{so_far} for the last ones so far")
+            format!("\"{word}\" is not a vertex: expected 1, 2, ... or -1 to -{so_far} for the last ones so far")
         };
         index.map_or_else(|| self.fail(line, problem(), "correct the number of the vertex"), Ok)
     }
@@ -387,7 +391,8 @@ mod tests {
 
     use super::*;
 
-    const CORNER: &str = "# a corner\r\no frame of wood\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 1 1 0 0.5 0.5 0.5\r\nv 0 1 1\r\nl 1 2 \\\r\n 3\r\ng strut\r\nl -1/4 1\r\nl 1 3\r\nf 1 2 3\r\nvn 0 0 1\r\n";
+    const CORNER: &str = "# a corner\r\no frame of wood\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 1 1 0 0.5 0.5 0.5\r\nv 0 1 \
+         1\r\nl 1 2 \\\r\n 3\r\ng strut\r\nl -1/4 1\r\nl 1 3\r\nf 1 2 3\r\nvn 0 0 1\r\n";
 
     fn read(text: &str) -> Result<Net> {
         read_curves("t.obj", text, &Limits::default())
@@ -430,11 +435,11 @@ mod tests {
             ("v 0 0 nan\n", "line 1"),
             ("v 0 0 1e300\n", "where a coordinate"),
             ("v 0 0\n", "a vertex of 2 numbers"),
-            ("v 0 zero 0\n", "\"zero\" is no number"),
+            ("v 0 zero 0\n", "\"zero\" is not a number"),
             ("v 0 0 0\nl 1 2\n", "line 2: vertex 2 where the file has 1"),
-            ("v 0 0 0\nl 0 1\n", "line 2: \"0\" is no vertex"),
-            ("v 0 0 0\nl -2 1\n", "\"-2\" is no vertex"),
-            ("v 0 0 0\nl 99999999999999999999 1\n", "is no vertex"),
+            ("v 0 0 0\nl 0 1\n", "line 2: \"0\" is not a vertex"),
+            ("v 0 0 0\nl -2 1\n", "\"-2\" is not a vertex"),
+            ("v 0 0 0\nl 99999999999999999999 1\n", "is not a vertex"),
             ("v 0 0 0\nl 1\n", "a line of 1 vertices"),
             ("v 0 0 0\nl 1 1\n", "no line of any length"),
             ("", "no line of any length"),

@@ -17,7 +17,7 @@ use crate::{
         notes::Note,
         paint::reference,
         source::{Source, clip_text, href},
-        style::{Own, Style, computed},
+        style::{ComputedStyle, Own, computed},
     },
     text::xml::{number, push_attribute},
 };
@@ -123,7 +123,7 @@ impl<'a, 's> Definitions<'a, 's> {
     }
 
     fn copy_root(&mut self, out: &mut String, node: Xml<'a, 'a>, name: &str, viewport: Viewport) {
-        let mut style = Rc::new(Style::default());
+        let mut style = Rc::new(ComputedStyle::default());
         let mut chain: Vec<_> = node.ancestors().skip(1).filter(Xml::is_element).collect();
         chain.reverse();
         for ancestor in chain {
@@ -177,7 +177,7 @@ impl<'a, 's> Definitions<'a, 's> {
     }
 
     fn stop(&self, out: &mut String, stop: Xml<'a, 'a>, viewport: Viewport) {
-        let mut style = Rc::new(Style::default());
+        let mut style = Rc::new(ComputedStyle::default());
         let mut own = Own::default();
         let mut chain: Vec<_> = stop.ancestors().filter(Xml::is_element).collect();
         chain.reverse();
@@ -244,7 +244,7 @@ impl<'a, 's> Definitions<'a, 's> {
         chain.into_iter().find(|n| n.children().any(|c| c.is_element())).unwrap_or(node)
     }
 
-    /// Attributes that are no properties; `None` when the element refers to something outside.
+    /// Attributes that are not properties; `None` when the element refers to something outside.
     fn attributes(&mut self, node: Xml<'a, 'a>, viewport: Viewport) -> Option<String> {
         let mut out = String::new();
         let tag = node.tag_name().name();
@@ -294,11 +294,11 @@ impl<'a, 's> Definitions<'a, 's> {
 }
 
 struct Inherited {
-    style: Rc<Style>,
+    style: Rc<ComputedStyle>,
     viewport: Viewport,
 }
 
-/// Attributes of definitions that are copied as they are, but for lengths.
+/// Attributes of definitions that are copied as they are, except for lengths.
 const KEPT: [&str; 58] = [
     "x",
     "y",

@@ -73,7 +73,7 @@ pub(crate) fn read(source: &Source<'_>, node: Xml<'_, '_>, viewport: Viewport) -
     source.count_segments(geometry.path.elements().len())?;
     let extent = geometry.path.control_box();
     if ![extent.x0, extent.y0, extent.x1, extent.y1].iter().all(|v| v.abs() <= LARGEST) {
-        return Err(reader.wrong("a coordinate is no sensible number"));
+        return Err(reader.wrong("a coordinate is not a sensible number"));
     }
     Ok(Some(geometry))
 }
@@ -182,7 +182,7 @@ impl Reader<'_, '_> {
     fn points(&self, ends: Ends) -> Result<Option<Geometry>> {
         let text = self.node.attribute("points").unwrap_or_default();
         if text.split([' ', ',', '\n', '\t']).any(|n| n.parse::<f64>().is_ok_and(|v| !v.is_finite())) {
-            return Err(self.wrong("a point is no finite number"));
+            return Err(self.wrong("a point is not a finite number"));
         }
         let points: Vec<Point> = PointsParser::from(text).map(Point::from).collect();
         if points.len() < 2 {

@@ -15,7 +15,7 @@ use crate::{
             style::Property as P,
         },
         read::document::{Document, Opened},
-        shape::{extent::bounds, flatten, painted_area::Inker, stroke::stroked},
+        shape::{extent::bounds, flatten, painted_area::Painter, stroke::stroked},
     },
     text::unit::Unit,
 };
@@ -54,13 +54,14 @@ impl Document<'_> {
     /// Takes a drawing apart. Clips are applied; a gradient or pattern becomes its mean colour, with a warning.
     ///
     /// # Errors
-    /// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+    /// [`arabesque_core::Error::Input`] when the text is not usable SVG, [`arabesque_core::Error::Limit`] when it is
+    /// too large.
     pub fn painted_areas(&self) -> Result<Areas> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
-        inker.check_all(&root, Affine::IDENTITY)?;
-        let mut taker = Taker { inker: &inker, areas: Vec::new(), gradients: 0, pictures: 0, effects: 0 };
+        let painter = Painter::new(source);
+        painter.check_all(&root, Affine::IDENTITY)?;
+        let mut taker = Taker { painter: &painter, areas: Vec::new(), gradients: 0, pictures: 0, effects: 0 };
         taker.node(&root, Affine::IDENTITY, &Inherited { opacity: 1.0, clip: None })?;
         let page = page.unwrap_or(Page { view: bounds(&root, Affine::IDENTITY), unit: Unit::Px, unit_per_user: 1.0 });
         let mut warnings = taker.warnings(source.name);
@@ -76,7 +77,7 @@ struct Inherited {
 }
 
 struct Taker<'a, 's, 'i> {
-    inker: &'i Inker<'a, 's>,
+    painter: &'i Painter<'a, 's>,
     areas: Vec<Area>,
     gradients: usize,
     pictures: usize,
@@ -92,7 +93,7 @@ impl Taker<'_, '_, '_> {
         }
         let has = |name: &str| node.own.get(name).is_some_and(|v| v != "none" && v != "normal");
         self.effects += usize::from(has("mask") || has("filter") || has("mix-blend-mode"));
-        let clip = match (&at.clip, self.inker.clip(node, world)?) {
+        let clip = match (&at.clip, self.painter.clip(node, world)?) {
             (Some(a), Some(b)) => Some(a.intersection(&b)),
             (a, b) => b.or_else(|| a.clone()),
         };
@@ -123,7 +124,7 @@ impl Taker<'_, '_, '_> {
         let paint = node.style.get(paint);
         let colour = if reference(paint).is_some() {
             self.gradients += 1;
-            let [r, g, b] = colour::of_paint(self.inker.source, paint).map(|v| (v * 255.0).round() as u8);
+            let [r, g, b] = colour::of_paint(self.painter.source, paint).map(|v| (v * 255.0).round() as u8);
             format!("#{r:02x}{g:02x}{b:02x}")
         } else {
             paint.to_owned()

@@ -11,14 +11,14 @@ const NEAR: f64 = 1e-4;
 const PLACES: usize = 24;
 
 /// A style, and a cell of the grid.
-type Cell = (usize, [i64; 2]);
+type GridCell = (usize, [i64; 2]);
 
 /// The strokes so far.
 #[derive(Debug)]
 pub(crate) struct Seen {
     near: f64,
     /// By style and by the cell in which the centre of the box around them lies.
-    cells: BTreeMap<Cell, Vec<(Bounds<2>, Measured<2>)>>,
+    cells: BTreeMap<GridCell, Vec<(Bounds<2>, Measured<2>)>>,
 }
 
 impl Seen {

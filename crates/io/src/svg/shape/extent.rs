@@ -17,7 +17,8 @@ use crate::svg::{
     },
 };
 
-/// Box around the control points of what can be seen of a node, strokes included; `parent` leads from its parent to the root.
+/// Box around the control points of what can be seen of a node, strokes included; `parent` leads from its parent to the
+/// root.
 pub(crate) fn bounds(node: &Node, parent: Affine) -> Bounds<2> {
     let world = parent * node.transform;
     match &node.content {

@@ -1,4 +1,4 @@
-//! Writing the strokes of a result: one path a stroke, those painted alike in one group.
+//! Writing the strokes of a result: one path per stroke, those painted alike in one group.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -12,7 +12,8 @@ use crate::{
 /// Widths that differ by less than this share are the same.
 const SAME_WIDTH: f64 = 1e-3;
 
-/// Markup of the strokes of a sheet that are not kept from another file; `shifts` tells under which shifts a box is seen.
+/// Markup of the strokes of a sheet that are not kept from another file; `shifts` tells under which shifts a box is
+/// seen.
 pub(crate) fn curves(
     sheet: &Sheet<'_>,
     prefix: &str,
@@ -47,7 +48,8 @@ pub(crate) fn curves(
     out
 }
 
-/// The name of the layer that strokes came from, else that of their style; names that would make the layer part of a job are not handed on.
+/// The name of the layer that strokes came from, else that of their style; names that would make the layer part of a
+/// job are not handed on.
 fn label(stroke: &Stroke, style: &str) -> String {
     let layer = stroke.layer.as_deref().filter(|name| part(name).is_none());
     layer.unwrap_or(style).to_owned()

@@ -10,7 +10,7 @@ use crate::{
         drawing::Drawing,
         write::{
             cut::{Cutter, Remainder},
-            pieces::{PaintedPath, Piece, take_apart},
+            pieces::{MarkupPiece, PaintedPath, take_apart},
             sheet::Style,
         },
     },
@@ -54,7 +54,7 @@ pub(crate) struct Flattener<'a> {
     /// Id of the clip path of the domain, where there is one.
     clip: Option<&'a str>,
     decimals: Decimals,
-    pieces: Vec<OnceCell<Vec<Piece>>>,
+    pieces: Vec<OnceCell<Vec<MarkupPiece>>>,
 }
 
 impl<'a> Flattener<'a> {
@@ -75,7 +75,7 @@ impl<'a> Flattener<'a> {
         }
     }
 
-    fn pieces(&self, source: usize) -> Result<&[Piece]> {
+    fn pieces(&self, source: usize) -> Result<&[MarkupPiece]> {
         let cell = &self.pieces[source];
         if cell.get().is_none() {
             let taken = take_apart(&self.drawing.fragments[source].markup)?;
@@ -95,10 +95,10 @@ impl<'a> Flattener<'a> {
         let mut flat = Flat::default();
         for piece in self.pieces(source)? {
             match piece {
-                Piece::Open(tag) => flat.markup.push_str(tag),
-                Piece::Close => flat.markup.push_str("</g>"),
-                Piece::Path(path) => self.path(path, warp, cutter, &mut flat.markup),
-                Piece::Whole(markup) => {
+                MarkupPiece::Open(tag) => flat.markup.push_str(tag),
+                MarkupPiece::Close => flat.markup.push_str("</g>"),
+                MarkupPiece::Path(path) => self.path(path, warp, cutter, &mut flat.markup),
+                MarkupPiece::Whole(markup) => {
                     flat.kept_whole += usize::from(style == Style::Expanded);
                     let placed = format!("<g transform=\"{}\">{markup}</g>", self.matrix(moved));
                     match (cutter, self.clip) {

@@ -1,7 +1,9 @@
-//! Writing results as SVG.
+//! A result as an SVG file: page, metadata, definitions, layers; or the file of which a part was refilled, with the new
+//! part in it.
 //!
-//! The page keeps the units of the exemplar, layers carry Inkscape's labels, each exemplar element that is used stands once in `<defs>` and
-//! is placed by `<use>`; or every element is written out in place ([`Style::Expanded`](crate::svg::Style::Expanded)). The recipe travels in `<metadata>`.
+//! The page keeps the units of the exemplar, layers carry Inkscape's labels, each exemplar element that is used stands
+//! once in `<defs>` and is placed by `<use>`; or every element is written out in place
+//! ([`Style::Expanded`](crate::svg::Style::Expanded)). The recipe travels in `<metadata>`.
 
 use std::fmt::Write as _;
 

@@ -98,7 +98,8 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
                 for cell in cells {
                     let _ = writeln!(
                         out,
-                        "      <g clip-path=\"url(#cell-{number})\"><use xlink:href=\"#exemplar-{}\" transform=\"{}\"/></g>",
+                        "      <g clip-path=\"url(#cell-{number})\"><use xlink:href=\"#exemplar-{}\" \
+                         transform=\"{}\"/></g>",
                         cell.source,
                         matrix_text(&cell.matrix, decimals)
                     );

@@ -16,8 +16,8 @@ use crate::{
     text::{number::Decimals, path_data::path_data, xml::escape},
 };
 
-/// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres, every curve in the
-/// colour of its style with dots at its ends, and the frame.
+/// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres,
+/// every curve in the colour of its style with dots at its ends, and the frame.
 pub fn write_survey(drawing: &Drawing) -> String {
     let exemplar = &drawing.exemplar;
     let view =
@@ -51,7 +51,8 @@ fn elements(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
         let (x, y) = (d.format(e.centre[0]), d.format(e.centre[1]));
         let _ = writeln!(
             out,
-            "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{}\"{dash}/><circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill=\"{colour}\"/></g>",
+            "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{}\"{dash}/><circle cx=\"{x}\" cy=\"{y}\" \
+             r=\"{}\" fill=\"{colour}\"/></g>",
             outline_data(&e.outline, d),
             d.plus(2).format(1.5 * line)
         );

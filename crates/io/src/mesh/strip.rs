@@ -24,3 +24,14 @@ impl Strip {
         self.triangles.extend([[first, first + 2, first + 1], [first + 1, first + 2, first + 3]]);
     }
 }
+
+/// A picture and the strip that shows it.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Name of the picture.
+    pub name: String,
+    /// The picture, as the bytes of a PNG file.
+    pub picture: Vec<u8>,
+    /// The triangles.
+    pub strip: Strip,
+}

@@ -1,6 +1,6 @@
 //! OBJ: ribbons as triangles with texture coordinates, and a material for each picture.
 
-use crate::{mesh::gltf::Part, table::csv, text::number::Decimals};
+use crate::{mesh::strip::Part, table::csv, text::number::Decimals};
 
 /// Comment that files of strips start with.
 pub const TITLE: &str = "# ribbons as textured strips";

@@ -74,7 +74,7 @@ pub(crate) fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Op
     let mut graph = Graph::trace(&thin);
     let border = OutlineBorder::new(outline, estimate);
     graph.tidy(estimate, |line| is_spur(line, &border, estimate), |line| line.length() < 0.75 * estimate);
-    let (mut tracks, width) = stations::centred(&graph, &border, (estimate, pixel), frame);
+    let (mut tracks, width) = stations::centred(&graph, &border, estimate, pixel, frame);
     let widths = stations::free_widths(&tracks, &graph, width, frame);
     let quantile = |share: f64| widths.get((share * widths.len() as f64) as usize).copied();
     let spread = (quantile(0.9)? - quantile(0.1)?) / width;
@@ -83,7 +83,7 @@ pub(crate) fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Op
         return None;
     }
     drop_halved(&mut graph, &mut tracks, width, frame);
-    nodes::settle(&mut graph, &mut tracks, &border, (width, frame));
+    nodes::settle(&mut graph, &mut tracks, &border, width, frame);
     let paths: Vec<Path<2>> = chains::chained(&graph, &tracks, width)
         .iter()
         .map(|(chain, closed)| fit::fitted(&corners::with_corners(chain, *closed, width), *closed, width))

@@ -71,7 +71,8 @@ pub(super) fn settle(
     graph: &mut Graph,
     tracks: &mut [Track],
     border: &OutlineBorder,
-    (width, frame): (f64, Option<&Bounds<2>>),
+    width: f64,
+    frame: Option<&Bounds<2>>,
 ) {
     for (node, lines) in graph.incidence().into_iter().enumerate() {
         let old = graph.nodes[node];

@@ -39,7 +39,8 @@ pub(super) struct Track {
 pub(super) fn centred(
     graph: &Graph,
     border: &OutlineBorder,
-    (estimate, pixel): (f64, f64),
+    estimate: f64,
+    pixel: f64,
     frame: Option<&Bounds<2>>,
 ) -> (Vec<Track>, f64) {
     let mut tracks: Vec<Track> = graph.lines.iter().map(|line| track(line, estimate, pixel)).collect();

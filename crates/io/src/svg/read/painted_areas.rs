@@ -70,6 +70,16 @@ impl Document<'_> {
     }
 }
 
+/// The properties that give an area its colour.
+#[derive(Clone, Copy)]
+struct PaintedBy {
+    paint: P,
+    opacity: P,
+}
+
+const FILL: PaintedBy = PaintedBy { paint: P::Fill, opacity: P::FillOpacity };
+const STROKE: PaintedBy = PaintedBy { paint: P::Stroke, opacity: P::StrokeOpacity };
+
 /// What holds for everything inside a node.
 struct Inherited {
     opacity: f64,
@@ -108,20 +118,20 @@ impl Taker<'_, '_, '_> {
         let style = &node.style;
         if style.fills() {
             let rule = flatten::fill_rule(style.get(P::FillRule));
-            self.add(flatten::filled(&geometry.path, world, rule), node, (P::Fill, P::FillOpacity), &inside);
+            self.add(flatten::filled(&geometry.path, world, rule), node, FILL, &inside);
         }
         if style.strokes() {
-            self.add(stroked(node, &geometry.path, world), node, (P::Stroke, P::StrokeOpacity), &inside);
+            self.add(stroked(node, &geometry.path, world), node, STROKE, &inside);
         }
         Ok(())
     }
 
-    fn add(&mut self, outline: Outline<2>, node: &Node, (paint, opacity): (P, P), at: &Inherited) {
+    fn add(&mut self, outline: Outline<2>, node: &Node, by: PaintedBy, at: &Inherited) {
         let outline = at.clip.as_ref().map_or_else(|| outline.clone(), |clip| outline.intersection(clip));
         if outline.rings.is_empty() {
             return;
         }
-        let paint = node.style.get(paint);
+        let paint = node.style.get(by.paint);
         let colour = if reference(paint).is_some() {
             self.gradients += 1;
             let [r, g, b] = colour::of_paint(self.painter.source, paint).map(|v| (v * 255.0).round() as u8);
@@ -129,7 +139,7 @@ impl Taker<'_, '_, '_> {
         } else {
             paint.to_owned()
         };
-        self.areas.push(Area { outline, colour, opacity: at.opacity * fraction(node.style.get(opacity)) });
+        self.areas.push(Area { outline, colour, opacity: at.opacity * fraction(node.style.get(by.opacity)) });
     }
 
     fn warnings(&self, name: &str) -> Vec<Warning> {

@@ -3,7 +3,6 @@
 use std::rc::Rc;
 
 use arabesque_core::{Bounds, Result};
-use kurbo::Affine;
 
 use crate::svg::{
     parse::{
@@ -14,7 +13,11 @@ use crate::svg::{
         scene::{Content, Node},
         style::Property as P,
     },
-    shape::{extent::bounds, flatten, painted_area::Painter},
+    shape::{
+        extent::{SoleShape, bounds},
+        flatten,
+        painted_area::Painter,
+    },
     understand::{
         pieces::{self, Piece},
         surroundings::Surroundings,
@@ -44,9 +47,10 @@ impl Compound {
     pub(crate) fn new(
         painter: &Painter<'_, '_>,
         node: &Rc<Node>,
-        (leaf, parent): (&Rc<Node>, Affine),
+        only: &SoleShape<'_>,
         at: &Surroundings,
     ) -> Result<Option<Self>> {
+        let &SoleShape { leaf, parent } = only;
         let Content::Shape(geometry) = &leaf.content else { return Ok(None) };
         if geometry.path.subpaths().count() < 2 {
             return Ok(None);
@@ -60,7 +64,7 @@ impl Compound {
             return Ok(None);
         }
         let mut context = at.clone();
-        let effects = unwrap(painter, (node, leaf), &mut context)?;
+        let effects = unwrap(painter, node, leaf, &mut context)?;
         context.parent = parent;
         let nameless = Meta { class: None, label: None, kind: None, shows: None, ..(*leaf.meta).clone() };
         let bare = Node { own: leaf.own.without("clip-path"), meta: Rc::new(nameless), ..(**leaf).clone() };
@@ -100,7 +104,8 @@ impl Compound {
 /// Puts what a shape's clip and the groups around it do into the context; the name of a group whose effects are lost.
 fn unwrap(
     painter: &Painter<'_, '_>,
-    (node, leaf): (&Rc<Node>, &Rc<Node>),
+    node: &Rc<Node>,
+    leaf: &Rc<Node>,
     inside: &mut Surroundings,
 ) -> Result<Option<String>> {
     let mut effects = None;

@@ -10,7 +10,7 @@ use crate::svg::{
     centreline::Centrelines,
     parse::{meta::Meta, notes::Note, scene::Node, source::Source},
     shape::{
-        extent::{bounds, longer, sole_shape},
+        extent::{SoleShape, bounds, longer, sole_shape},
         painted_area::{PaintedArea, Painter},
     },
     understand::{compound::Compound, surroundings::Surroundings},
@@ -168,7 +168,7 @@ impl Item {
 /// The names of a node, completed by those of the only shape in it.
 fn named(node: &Rc<Node>) -> Rc<Meta> {
     match sole_shape(node, Affine::IDENTITY) {
-        Some((leaf, _)) if !Rc::ptr_eq(leaf, node) => {
+        Some(SoleShape { leaf, .. }) if !Rc::ptr_eq(leaf, node) => {
             let (outer, inner) = (&*node.meta, &*leaf.meta);
             Rc::new(Meta {
                 class: outer.class.clone().or_else(|| inner.class.clone()),

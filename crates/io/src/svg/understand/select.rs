@@ -29,7 +29,7 @@ use crate::svg::{
     },
     shape::{
         adjacency::Sets,
-        extent::{bounds, clusters, longer, sole_shape},
+        extent::{SoleShape, bounds, clusters, longer, sole_shape},
         flatten,
         painted_area::Painter,
         subpath::is_all_closed,
@@ -153,8 +153,8 @@ impl Selector<'_, '_, '_> {
             None if meta.source.is_some() => return self.take(node, at, Kind::Element, Origin::Whole),
             None => {}
         }
-        if let (Some((leaf, parent)), true) = (sole_shape(node, at.parent), meta.tag != "use") {
-            return self.shape(node, leaf, parent, at);
+        if let (Some(only), true) = (sole_shape(node, at.parent), meta.tag != "use") {
+            return self.shape(node, &only, at);
         }
         let extent = self.visible(node, at)?;
         if extent.is_empty() {
@@ -199,7 +199,8 @@ impl Selector<'_, '_, '_> {
     }
 
     /// Decides about a node that is, or wraps, a single shape.
-    fn shape(&mut self, node: &Rc<Node>, leaf: &Rc<Node>, parent: Affine, at: &Surroundings) -> Result<()> {
+    fn shape(&mut self, node: &Rc<Node>, only: &SoleShape<'_>, at: &Surroundings) -> Result<()> {
+        let &SoleShape { leaf, parent } = only;
         let Content::Shape(geometry) = &leaf.content else { return Ok(()) };
         let extent = self.visible(node, at)?;
         let world = parent * leaf.transform;
@@ -212,7 +213,7 @@ impl Selector<'_, '_, '_> {
         let origin = if filled { Origin::Fill } else { Origin::Stroke };
         if filled {
             let compound = match geometry.paint {
-                Painted::Style => Compound::new(self.painter, node, (leaf, parent), at)?.map(Rc::new),
+                Painted::Style => Compound::new(self.painter, node, only, at)?.map(Rc::new),
                 Painted::Picture => None,
             };
             if let Some(compound) = compound.as_ref().filter(|compound| !self.is_compact(compound)) {

@@ -40,7 +40,7 @@ pub(crate) fn curves(
         for (index, drawn) in members {
             let bounds = drawn.path.bounds().grown(0.5 * stroke.width * drawn.scale);
             for (copy, shift) in shifts(&bounds).into_iter().enumerate() {
-                path(&mut out, (prefix, index, copy), drawn, stroke, shift, decimals);
+                path(&mut out, &CurveId { prefix, index, copy }, drawn, stroke, shift, decimals);
             }
         }
         out.push_str("</g>\n");
@@ -55,19 +55,26 @@ fn label(stroke: &Stroke, style: &str) -> String {
     layer.unwrap_or(style).to_owned()
 }
 
-fn path(
-    out: &mut String,
-    (prefix, index, copy): (&str, usize, usize),
-    drawn: &Drawn<2>,
-    stroke: &Stroke,
-    shift: Vector<2>,
-    decimals: Decimals,
-) {
+/// What the id of a path says: which stroke of the result it is, and which copy of it on a torus.
+struct CurveId<'a> {
+    prefix: &'a str,
+    index: usize,
+    copy: usize,
+}
+
+impl CurveId<'_> {
+    fn text(&self) -> String {
+        let copy = if self.copy == 0 { String::new() } else { format!("-{}", self.copy) };
+        format!("{}-curve-{}{copy}", self.prefix, self.index)
+    }
+}
+
+fn path(out: &mut String, id: &CurveId<'_>, drawn: &Drawn<2>, stroke: &Stroke, shift: Vector<2>, decimals: Decimals) {
     let moved = if shift == Vector::ZERO { drawn.path.clone() } else { drawn.path.map(|p| p + shift) };
-    let copy = if copy == 0 { String::new() } else { format!("-{copy}") };
     let _ = write!(
         out,
-        "<path id=\"{prefix}-curve-{index}{copy}\" d=\"{}\" data-arabesque-curve=\"{}\"",
+        "<path id=\"{}\" d=\"{}\" data-arabesque-curve=\"{}\"",
+        id.text(),
         path_data(&moved, decimals),
         drawn.source
     );

@@ -130,23 +130,16 @@ impl<'a> Flattener<'a> {
         match (fill, stroke) {
             (Remainder::Everything, Remainder::Everything) => self.push(out, painted, &path, scale, Paint::Both),
             (fill, stroke) => {
-                self.push_part(out, painted, (&path, &fill), scale, Paint::Fill);
-                self.push_part(out, painted, (&path, &stroke), scale, Paint::Stroke);
+                self.push_part(out, painted, &CutPath { whole: &path, rest: &fill }, scale, Paint::Fill);
+                self.push_part(out, painted, &CutPath { whole: &path, rest: &stroke }, scale, Paint::Stroke);
             }
         }
     }
 
-    fn push_part(
-        &self,
-        out: &mut String,
-        painted: &PaintedPath,
-        part: (&BezPath, &Remainder),
-        scale: f64,
-        paint: Paint,
-    ) {
-        match part.1 {
+    fn push_part(&self, out: &mut String, painted: &PaintedPath, part: &CutPath<'_>, scale: f64, paint: Paint) {
+        match part.rest {
             Remainder::Nothing => {}
-            Remainder::Everything => self.push(out, painted, part.0, scale, paint),
+            Remainder::Everything => self.push(out, painted, part.whole, scale, paint),
             Remainder::Part(rest) => self.push(out, painted, rest, scale, paint),
         }
     }
@@ -199,6 +192,12 @@ impl<'a> Flattener<'a> {
         let linear: Vec<_> = m[..4].iter().map(|&v| self.decimals.plus(3).format(v)).collect();
         format!("matrix({} {} {})", linear.join(" "), self.decimals.format(m[4]), self.decimals.format(m[5]))
     }
+}
+
+/// A path, and what the border leaves of it.
+struct CutPath<'a> {
+    whole: &'a BezPath,
+    rest: &'a Remainder,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -37,7 +37,7 @@ impl PaintedArea {
         united(&self.shapes)
     }
 
-    /// Mean colour by area; black without painted area.
+    /// Mean colour by area; black where there is none.
     pub(crate) fn colour(&self) -> [f64; 3] {
         let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
         let mean = |k: usize| self.colours.iter().map(|(c, area)| c[k] * area).sum::<f64>() / total;
@@ -65,7 +65,7 @@ impl PaintedArea {
         }
     }
 
-    /// Adds other painted area.
+    /// Adds another area.
     pub(crate) fn append(&mut self, other: Self) {
         self.shapes.extend(other.shapes);
         self.colours.extend(other.colours);

@@ -31,7 +31,7 @@ const MIN_SEAM: f64 = 5.0;
 /// Joins what abuts along seams within `tolerance` where it makes lines.
 ///
 /// # Errors
-/// As for painted area that cannot be found.
+/// As [`Painter::painted`].
 pub(crate) fn join_lines(
     items: Vec<Item>,
     painter: &Painter<'_, '_>,

@@ -105,7 +105,7 @@ impl Item {
     /// Some pieces of a compound path.
     ///
     /// # Errors
-    /// As for painted area that cannot be found.
+    /// As [`Painter::painted`].
     pub(crate) fn of_pieces(
         compound: &Rc<Compound>,
         painter: &Painter<'_, '_>,

@@ -1,4 +1,5 @@
-//! Feeds arbitrary bytes to the readers of pictures, of curves in space, and of recipes in meshes: never a panic or a hang.
+//! Feeds arbitrary bytes to the readers of pictures, of curves in space, and of recipes in meshes: never a panic or a
+//! hang.
 #![no_main]
 
 use arabesque_core::Limits;

@@ -1,5 +1,5 @@
-//! Feeds arbitrary text to every way of reading SVG, and checks what comes out: never a panic or a hang, and markup that is well formed,
-//! finite, and refers only to definitions that are there.
+//! Feeds arbitrary text to every way of reading SVG, and checks what comes out: never a panic or a hang, and markup
+//! that is well formed, finite, and refers only to definitions that are there.
 #![no_main]
 
 use std::{collections::BTreeSet, sync::LazyLock};

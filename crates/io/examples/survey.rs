@@ -1,6 +1,6 @@
 //! Reads every SVG file under a folder as an exemplar and counts what comes of it: `survey FOLDER [auto|elements]`.
-//! With a single file instead of a folder it prints what was understood; `survey FILE METHOD OUT.svg` also draws it again from the
-//! fragments, for comparison with the original.
+//! With a single file instead of a folder it prints what was understood; `survey FILE METHOD OUT.svg` also draws it
+//! again from the fragments, for comparison with the original.
 #![allow(clippy::print_stdout, reason = "the survey is a report for people")]
 
 use std::{
@@ -122,7 +122,8 @@ fn redrawn(drawing: &Drawing) -> String {
     let scale = drawing.page.unit_per_user * drawing.page.unit.pixels();
     let fragments: String = drawing.fragments.iter().map(|f| f.markup.as_str()).collect();
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"{} {} {} {}\"><defs>{}</defs>{}{fragments}</svg>",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"{} {} {} \
+         {}\"><defs>{}</defs>{}{fragments}</svg>",
         size[0] * scale,
         size[1] * scale,
         min[0],

@@ -55,7 +55,7 @@ pub fn decode_text(place: &str, bytes: &[u8]) -> Result<String> {
     let bytes = bytes.strip_prefix(&[0xEF, 0xBB, 0xBF]).unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.to_owned()),
-        Err(e) => Err(not_text(place, &format!("byte {} is no UTF-8 text", e.valid_up_to() + 1))),
+        Err(e) => Err(not_text(place, &format!("byte {} is not UTF-8 text", e.valid_up_to() + 1))),
     }
 }
 

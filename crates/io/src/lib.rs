@@ -1,7 +1,8 @@
 //! Files to core types and back: SVG, PNG, CSV, OBJ, GLB, JSON.
 //!
-//! A folder for each kind of format. Everything read is held to [`arabesque_core::Limits`]; everything written is the same bytes for the
-//! same result. Only [`mod@file`] touches the file system: the others turn bytes into values and values into bytes.
+//! A folder for each kind of format. Everything read is held to [`arabesque_core::Limits`]; everything written is the
+//! same bytes for the same result. Only [`mod@file`] touches the file system: the others turn bytes into values and
+//! values into bytes.
 
 pub mod file;
 pub mod json;

@@ -267,7 +267,8 @@ fn degenerate_strokes_are_left_out_with_a_warning() {
     let net = "<path id='p' d='M0 50H100' fill='none' stroke='red'/>";
     let dot = "<path d='M5 5h0' fill='none' stroke='red' stroke-linecap='round'/>";
     let d = read(&format!(
-        "{net}{dot}<path d='M100 50H0' fill='none' stroke='red'/><path d='M10 10L10 10L60 10L60 10' fill='none' stroke='red'/>"
+        "{net}{dot}<path d='M100 50H0' fill='none' stroke='red'/><path d='M10 10L10 10L60 10L60 10' fill='none' \
+         stroke='red'/>"
     ));
     assert_eq!(d.exemplar.curves.iter().map(|c| c.path.cubics.len()).collect::<Vec<_>>(), [1, 1]);
     assert!(warns(&d, "stroke without length") && warns(&d, "on top of one like it"));
@@ -277,7 +278,8 @@ fn degenerate_strokes_are_left_out_with_a_warning() {
 fn strokes_are_cut_by_the_clips_around_them() {
     let clip = "<clipPath id='c'><rect width='100' height='40'/></clipPath>";
     let d = read(&format!(
-        "{clip}<g inkscape:groupmode='layer' clip-path='url(#c)'><path d='M10 10V90' stroke='red'/><path d='M0 20H100' stroke='red'/></g>"
+        "{clip}<g inkscape:groupmode='layer' clip-path='url(#c)'><path d='M10 10V90' stroke='red'/><path d='M0 \
+         20H100' stroke='red'/></g>"
     ));
     let ends: Vec<_> = d.exemplar.curves.iter().map(|c| c.path.end().unwrap()).collect();
     assert_eq!(ends, [Vector::xy(10.0, 40.0), Vector::xy(100.0, 20.0)]);
@@ -381,7 +383,10 @@ fn overrides_beat_the_rules() {
     let marked = |mark: &str| format!("<rect id='r' data-arabesque='{mark}' width='9' height='9' y='80'/>");
     let stroke = "<path data-arabesque='element' d='M10 40h20' stroke='red'/>";
     assert_eq!(read(&format!("{DOTS}{stroke}{}", marked("ignore"))).exemplar.elements.len(), 7);
-    assert!(error(&page(&format!("{DOTS}{}", marked("curve")))).contains("marked as a curve but no line of one width"));
+    assert!(
+        error(&page(&format!("{DOTS}{}", marked("curve"))))
+            .contains("marked as a curve but not the outline of lines of one width")
+    );
     let outlined = format!("{DOTS}{}", marked("curve").replace("width=", "stroke='red' width="));
     assert_eq!(read(&outlined).exemplar.curves.len(), 1);
     assert!(warns(&read(&format!("{DOTS}{}", marked("thing"))), "unknown data-arabesque"));
@@ -588,8 +593,10 @@ const WEB: &str = "<path d='M0 20H100M0 60H100' fill='none' stroke='#123' stroke
 #[test]
 fn kept_strokes_are_known_by_their_paint() {
     let d = read(WEB);
-    let kept = "<g transform='translate(5 0)'><path d='M0,20 h 20 m5 7 h40' fill='none' stroke='#112233' stroke-width='2' \
-                stroke-dasharray='3 1'/></g><path d='M0 90H50' fill='none' stroke='blue'/><rect x='70' y='70' width='9' height='9'/>";
+    let kept = "<g transform='translate(5 0)'><path d='M0,20 h 20 m5 7 h40' fill='none' stroke='#112233' \
+         stroke-width='2' \
+                stroke-dasharray='3 1'/></g><path d='M0 90H50' fill='none' stroke='blue'/><rect x='70' y='70' \
+                width='9' height='9'/>";
     let placed = read_placed(&page(kept), &d, &ReadOptions::new("k.svg")).unwrap();
     assert_eq!(placed.curves.iter().map(|c| (c.source, c.scale)).collect::<Vec<_>>(), [(0, 1.0), (0, 1.0)]);
     assert_eq!(placed.curves[1].path.start(), Some(Vector::xy(30.0, 27.0)));

@@ -6,7 +6,8 @@ use arabesque_io::svg::{Drawing, Method, Page, ReadOptions, Sheet, Style, read_e
 
 const NET: &str = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'
     width='100' height='100' viewBox='0 0 100 100'><g inkscape:groupmode='layer' inkscape:label='Web'>
-    <path d='M0 20H100M0 70C30 60 60 80 100 70' fill='none' stroke='#7a4a12' stroke-width='1.7' stroke-linecap='round'/></g>
+    <path d='M0 20H100M0 70C30 60 60 80 100 70' fill='none' stroke='#7a4a12' stroke-width='1.7' \
+    stroke-linecap='round'/></g>
     <path class='thread' d='M50 0V100' fill='none' stroke='red' stroke-dasharray='4 2' opacity='.5'/>
     <circle class='thread' cx='50' cy='45' r='9' fill='none' stroke='red' stroke-dasharray='4 2' opacity='.5'/></svg>";
 

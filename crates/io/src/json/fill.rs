@@ -3,7 +3,10 @@
 use arabesque_core::{Bounds, Decimals, Drawn, EnergyPoint, Exemplar, Measured, Outcome, Placement, StopReason};
 use serde::Serialize;
 
-use crate::text::path_data::path_data;
+use crate::{
+    json::warning::{WarningRecord, warning_records},
+    text::path_data::path_data,
+};
 
 /// What the file says beside the placements.
 #[derive(Clone, Copy, Debug)]
@@ -77,16 +80,11 @@ struct EnergyRecord {
     elements: usize,
 }
 
-#[derive(Serialize)]
-struct WarningRecord<'a> {
-    message: &'a str,
-    advice: &'a str,
-}
-
 /// Writes an outcome as one JSON object.
 ///
-/// `d` is SVG path data, in space with three numbers a point; `width` is that of the stroke as it is drawn, `length` that of its line.
-/// `transform` is column by column, the shift last: `[a, b, c, d, e, f]` in the plane, as SVG's `matrix()` has it.
+/// `d` is SVG path data, in space with three numbers per point; `width` is that of the stroke as it is drawn, `length`
+/// that of its line. `transform` is column by column, the shift last: `[a, b, c, d, e, f]` in the plane, as SVG's
+/// `matrix()` has it.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Input`] when a number cannot be written, which no outcome should hold.
@@ -111,7 +109,7 @@ pub fn write_json<const D: usize>(
         styles: exemplar.styles.iter().map(|s| s.name.as_str()).collect(),
         curves: outcome.curves.iter().map(|c| curve(exemplar, c, decimals)).collect(),
         energy: outcome.energy.iter().map(energy).collect(),
-        warnings: outcome.warnings.iter().map(|w| WarningRecord { message: &w.message, advice: &w.advice }).collect(),
+        warnings: warning_records(&outcome.warnings),
         stopped: match outcome.stopped {
             StopReason::Finished => "finished",
             StopReason::Stopped => "early",

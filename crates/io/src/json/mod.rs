@@ -2,5 +2,6 @@
 
 pub mod fill;
 pub mod ribbon;
+mod warning;
 
 pub use fill::{Frame, recipe_of, write_json};

@@ -3,9 +3,11 @@
 use arabesque_core::{Decimals, Patch, Result, Warning};
 use serde::Serialize;
 
+use crate::json::warning::{WarningRecord, warning_records};
+
 /// One ribbon.
 #[derive(Clone, Debug)]
-pub struct Line<'a, const D: usize> {
+pub struct RibbonLine<'a, const D: usize> {
     /// What it lies along.
     pub name: &'a str,
     /// Whether the last piece is followed by the first.
@@ -16,13 +18,15 @@ pub struct Line<'a, const D: usize> {
     pub pieces: Vec<(Patch<D>, &'a [f32])>,
 }
 
+pub use self::RibbonLine as Line;
+
 /// Everything that one file says.
 #[derive(Clone, Debug)]
 pub struct Document<'a, const D: usize> {
     /// Name, width and height of each exemplar.
     pub exemplars: Vec<(&'a str, [usize; 2])>,
     /// The ribbons.
-    pub ribbons: Vec<Line<'a, D>>,
+    pub ribbons: Vec<RibbonLine<'a, D>>,
     /// Least corner and size of the canvas.
     pub page: Option<[[f64; 2]; 2]>,
     /// Largest side of what is shown, which sets the number of digits.
@@ -76,14 +80,8 @@ struct PieceRecord {
     shift: Vec<f32>,
 }
 
-#[derive(Serialize)]
-struct WarningRecord<'a> {
-    message: &'a str,
-    advice: &'a str,
-}
-
-/// Writes ribbons as one JSON object. Corners go top left, top right, bottom right, bottom left; `texture` has the same corners in
-/// pixels of the exemplar.
+/// Writes ribbons as one JSON object. Corners go top left, top right, bottom right, bottom left; `texture` has the same
+/// corners in pixels of the exemplar.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Input`] when a number cannot be written, which no ribbon should hold.
@@ -99,7 +97,7 @@ pub fn write_ribbons<const D: usize>(document: &Document<'_, D>) -> Result<Strin
             .map(|&(path, [width, height])| ExemplarRecord { path, width, height })
             .collect(),
         ribbons: document.ribbons.iter().map(|line| ribbon(line, decimals)).collect(),
-        warnings: document.warnings.iter().map(|w| WarningRecord { message: &w.message, advice: &w.advice }).collect(),
+        warnings: warning_records(document.warnings),
         recipe: document.recipe,
     };
     serde_json::to_string_pretty(&file)
@@ -107,7 +105,7 @@ pub fn write_ribbons<const D: usize>(document: &Document<'_, D>) -> Result<Strin
         .map_err(|e| arabesque_core::Error::input("writing JSON", e.to_string(), "write the ribbon in another format"))
 }
 
-fn ribbon<'a, const D: usize>(line: &Line<'a, D>, decimals: Decimals) -> RibbonRecord<'a> {
+fn ribbon<'a, const D: usize>(line: &RibbonLine<'a, D>, decimals: Decimals) -> RibbonRecord<'a> {
     let fine = Decimals::for_extent(1e3);
     let pieces = line.pieces.iter().map(|(patch, shift)| PieceRecord {
         source: patch.source,
@@ -128,7 +126,8 @@ mod tests {
     fn a_piece_has_corners_and_texture_coordinates() {
         let texture = [(0.0, 0.0), (4.0, 0.5), (4.0, 8.0), (0.0, 8.0)].map(|(x, y)| Vector::xy(x, y));
         let patch = Patch { source: 1, corners: texture.map(|p| Vector([p[0], p[1], 2.0])), texture };
-        let line = Line { name: "c.obj: line 3", closed: true, cost: 12.5, pieces: vec![(patch, &[0.5, 1.0][..])] };
+        let line =
+            RibbonLine { name: "c.obj: line 3", closed: true, cost: 12.5, pieces: vec![(patch, &[0.5, 1.0][..])] };
         let text = write_ribbons(&Document {
             exemplars: vec![("a.png", [60, 20])],
             ribbons: vec![line],

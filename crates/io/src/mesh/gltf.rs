@@ -3,18 +3,7 @@
 use arabesque_core::{Error, Result};
 use serde_json::{Value, json};
 
-use crate::mesh::strip::Strip;
-
-/// A picture and the strip that shows it.
-#[derive(Clone, Debug)]
-pub struct Part {
-    /// Name of the picture.
-    pub name: String,
-    /// The picture, as the bytes of a PNG file.
-    pub picture: Vec<u8>,
-    /// The triangles.
-    pub strip: Strip,
-}
+pub use crate::mesh::strip::Part;
 
 const MAGIC: &[u8; 4] = b"glTF";
 const VERSION: u32 = 2;
@@ -76,34 +65,50 @@ impl Buffer {
     }
 }
 
-/// Writes strips as one mesh, a primitive for each picture: unlit, seen from both sides, blended by its alpha. The picture's top is at
-/// texture coordinate 0, as the format has it. Parts without triangles are left out.
-///
-/// # Errors
-/// [`Error::Limit`] beyond 4 GiB.
-pub fn write_glb(parts: &[Part], recipe: Option<&str>) -> Result<Vec<u8>> {
-    let mut buffer = Buffer::default();
-    let (mut primitives, mut materials, mut textures, mut images) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (k, part) in parts.iter().filter(|part| !part.strip.triangles.is_empty()).enumerate() {
+/// Everything in the document that there is one of for each part.
+#[derive(Default)]
+struct Content {
+    buffer: Buffer,
+    primitives: Vec<Value>,
+    materials: Vec<Value>,
+    textures: Vec<Value>,
+    images: Vec<Value>,
+}
+
+impl Content {
+    /// Adds the primitive of a part with its material, texture and picture.
+    fn add(&mut self, part: &Part) {
+        let number = self.primitives.len();
         let positions: Vec<[f32; 3]> = part.strip.positions.iter().map(|p| p.map(|v| v as f32)).collect();
         let texture: Vec<[f32; 2]> = part.strip.texture.iter().map(|p| p.map(|v| v as f32)).collect();
         let attributes = json!({
-            "POSITION": buffer.vectors(&positions, true),
-            "TEXCOORD_0": buffer.vectors(&texture, false),
+            "POSITION": self.buffer.vectors(&positions, true),
+            "TEXCOORD_0": self.buffer.vectors(&texture, false),
         });
-        let indices = buffer.indices(&part.strip.triangles);
-        primitives.push(json!({ "attributes": attributes, "indices": indices, "material": k }));
-        materials.push(json!({
+        let indices = self.buffer.indices(&part.strip.triangles);
+        self.primitives.push(json!({ "attributes": attributes, "indices": indices, "material": number }));
+        self.materials.push(json!({
             "name": part.name,
-            "pbrMetallicRoughness": { "baseColorTexture": { "index": k }, "metallicFactor": 0.0 },
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": number }, "metallicFactor": 0.0 },
             "alphaMode": "BLEND",
             "doubleSided": true,
             "extensions": { "KHR_materials_unlit": {} },
         }));
-        textures.push(json!({ "sampler": 0, "source": k }));
-        let view = buffer.view(&part.picture, None);
-        images.push(json!({ "name": part.name, "mimeType": "image/png", "bufferView": view }));
+        self.textures.push(json!({ "sampler": 0, "source": number }));
+        let view = self.buffer.view(&part.picture, None);
+        self.images.push(json!({ "name": part.name, "mimeType": "image/png", "bufferView": view }));
     }
+}
+
+/// Writes strips as one mesh, a primitive for each picture: unlit, seen from both sides, blended by its alpha. The
+/// picture's top is at texture coordinate 0, as the format has it. Parts without triangles are left out.
+///
+/// # Errors
+/// [`Error::Limit`] beyond 4 GiB.
+pub fn write_glb(parts: &[Part], recipe: Option<&str>) -> Result<Vec<u8>> {
+    let mut content = Content::default();
+    parts.iter().filter(|part| !part.strip.triangles.is_empty()).for_each(|part| content.add(part));
+    let Content { buffer, primitives, materials, textures, images } = content;
     let mut asset = json!({ "version": "2.0", "generator": concat!("arabesque ", env!("CARGO_PKG_VERSION")) });
     if let Some(recipe) = recipe {
         asset["extras"] = json!({ RECIPE: recipe });
@@ -170,6 +175,7 @@ pub fn recipe_of(bytes: &[u8]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::strip::Strip;
 
     fn part() -> Part {
         let mut strip = Strip::default();

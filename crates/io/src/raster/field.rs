@@ -5,9 +5,9 @@ use arabesque_core::{Bounds, Error, Grid, Limits, Matrix, OrientationField, Resu
 use crate::raster::png::is_png;
 
 /// Fields are smooth; larger pictures are averaged down to this many nodes along the longer side.
-const MOST_NODES: usize = 512;
+const MAX_NODES: usize = 512;
 /// Colours less saturated than this have no hue worth following.
-const LEAST_CHROMA: f64 = 0.05;
+const MIN_CHROMA: f64 = 0.05;
 
 /// A picture, as colours over white.
 #[derive(Clone, Debug)]
@@ -19,7 +19,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Reads a PNG picture: gray or colour, with or without palette and alpha, up to 16 bits a channel. Transparent parts show white.
+    /// Reads a PNG picture: gray or colour, with or without palette and alpha, up to 16 bits per channel. Transparent
+    /// parts show white.
     ///
     /// # Errors
     /// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
@@ -37,13 +38,14 @@ impl Picture {
         ScalarField::Grid(Grid { bounds: grid.bounds, nodes: grid.nodes, values })
     }
 
-    /// Hue as a direction over `bounds`: red is 0 degrees, yellow 60, green 120, and so on; in a gray picture black is 0 and white 360.
-    /// Gray parts of a coloured picture have no direction of their own and follow their surroundings where these are averaged.
+    /// Hue as a direction over `bounds`: red is 0 degrees, yellow 60, green 120, and so on; in a gray picture black is
+    /// 0 and white 360. Gray parts of a coloured picture have no direction of their own and follow their surroundings
+    /// where these are averaged.
     ///
     /// # Errors
     /// [`Error::Input`] naming `place` when the picture is of one gray value, which says nothing about direction.
     pub fn orientation_field(&self, place: &str, bounds: Bounds<2>) -> Result<OrientationField<2>> {
-        let coloured = self.pixels.iter().any(|&c| chroma(c) > LEAST_CHROMA);
+        let coloured = self.pixels.iter().any(|&c| chroma(c) > MIN_CHROMA);
         let first = self.pixels.first().copied().unwrap_or_default();
         if !coloured && self.pixels.iter().all(|&c| (c[0] - first[0]).abs() < 1e-3) {
             let problem = "one gray value all over, where hue or gray was expected to give the direction";
@@ -53,7 +55,7 @@ impl Picture {
             let (s, c) = (turns * std::f64::consts::TAU).sin_cos();
             [c, s]
         };
-        let grid = self.grid(bounds, |c| match (coloured, chroma(c) > LEAST_CHROMA) {
+        let grid = self.grid(bounds, |c| match (coloured, chroma(c) > MIN_CHROMA) {
             (true, true) => unit(hue(c)),
             (true, false) => [0.0, 0.0],
             (false, _) => unit(f64::from(c[0])),
@@ -64,7 +66,7 @@ impl Picture {
 
     /// Means of `value` over the pixels of each node. Nodes are pixel centres: half a node inside the bounds.
     fn grid(&self, bounds: Bounds<2>, value: impl Fn([f32; 3]) -> [f64; 2]) -> Grid<2, [f64; 2]> {
-        let step = self.width.max(self.height).div_ceil(MOST_NODES).max(1);
+        let step = self.width.max(self.height).div_ceil(MAX_NODES).max(1);
         let nodes = [self.width.div_ceil(step), self.height.div_ceil(step)];
         let mut sums = vec![([0.0, 0.0], 0.0); nodes[0] * nodes[1]];
         for (k, &colour) in self.pixels.iter().enumerate() {

@@ -3,7 +3,7 @@
 use arabesque_core::{Error, Image, Limits, Result};
 use resvg::{tiny_skia, usvg};
 
-use crate::raster::{field, png::straight};
+use crate::raster::{field, png::straight, size::checked_size};
 
 /// Whether a picture says anything about transparency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Alpha {
     Missing,
 }
 
-/// Reads a PNG picture: gray, colour or palette, up to 16 bits a channel.
+/// Reads a PNG picture: gray, colour or palette, up to 16 bits per channel.
 ///
 /// # Errors
 /// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
@@ -40,7 +40,8 @@ pub fn read_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<(Image, A
     Ok((Image { width: raw.width, height: raw.height, pixels }, alpha))
 }
 
-/// Draws an SVG text on a transparent background, `scale` pixels a user unit of its page, whose size in user units is `units`.
+/// Draws an SVG text on a transparent background, `scale` pixels per user unit of its page, whose size in user units is
+/// `units`.
 ///
 /// # Errors
 /// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`Limits::pixels`].
@@ -48,15 +49,9 @@ pub fn draw_svg(name: &str, text: &str, (units, scale): ([f64; 2], f64), limits:
     let fail = |problem: String| Error::input(name, problem, "open the file in a drawing program and save it again");
     let tree = usvg::Tree::from_str(text, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
     let [width, height] = units.map(|u| (u * scale).round().max(1.0));
-    if !(width * height <= limits.pixels as f64 && width.max(height) <= f64::from(i16::MAX)) {
-        return Err(Error::Limit {
-            what: format!("{name}: size as a picture"),
-            found: format!("{width} x {height} pixels"),
-            limit: format!("{} pixels, {} a side", limits.pixels, i16::MAX),
-            advice: "make the page of the drawing less long and narrow".into(),
-        });
-    }
-    let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no pixels".into()))?;
+    let advice = "make the page of the drawing less long and narrow";
+    let [columns, rows] = checked_size(&format!("{name}: size as a picture"), [width, height], limits, advice)?;
+    let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
     let size = [f64::from(tree.size().width()), f64::from(tree.size().height())];
     let stretch = tiny_skia::Transform::from_scale((width / size[0]) as f32, (height / size[1]) as f32);
     resvg::render(&tree, stretch, &mut pixmap.as_mut());

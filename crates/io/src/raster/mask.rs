@@ -1,4 +1,4 @@
-//! Regions of a canvas, cell by cell.
+//! Which cells of a canvas belong to a region, from outlines and from pictures.
 
 use arabesque_core::{Bounds, Image, Outline};
 use resvg::tiny_skia;
@@ -10,7 +10,7 @@ const DARK: f64 = 127.5;
 
 /// Cells over a canvas, each in the region or not.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Region {
+pub struct MaskRaster {
     /// What the cells cover.
     pub bounds: Bounds<2>,
     /// Cells along a row.
@@ -21,7 +21,9 @@ pub struct Region {
     pub cells: Vec<bool>,
 }
 
-impl Region {
+pub use self::MaskRaster as Region;
+
+impl MaskRaster {
     /// No cell in the region.
     pub fn empty(bounds: Bounds<2>, width: usize, height: usize) -> Self {
         Self { bounds, width, height, cells: vec![false; width * height] }
@@ -48,7 +50,8 @@ impl Region {
         }
     }
 
-    /// Adds every cell on which a pixel lies that is opaque (alpha at least 128) and darker than half, where `image` is stretched over the canvas.
+    /// Adds every cell on which a pixel lies that is opaque (alpha at least 128) and darker than half, where `image` is
+    /// stretched over the canvas.
     pub fn add_picture(&mut self, image: &Image) {
         let dark: Vec<bool> = image.pixels.iter().map(|&p| is_dark(p)).collect();
         // Pixels that lie on cell `k` of `cells`, of `pixels` in all.
@@ -83,8 +86,8 @@ mod tests {
 
     use super::*;
 
-    fn region() -> Region {
-        Region::empty(Bounds::new(Vector::xy(10.0, 10.0), Vector::xy(14.0, 12.0)), 4, 2)
+    fn region() -> MaskRaster {
+        MaskRaster::empty(Bounds::new(Vector::xy(10.0, 10.0), Vector::xy(14.0, 12.0)), 4, 2)
     }
 
     #[test]

@@ -4,3 +4,4 @@ pub mod field;
 pub mod image;
 pub mod mask;
 pub mod png;
+pub mod size;

@@ -3,30 +3,32 @@
 use arabesque_core::{Error, Image, Limits, Result};
 use resvg::{tiny_skia, usvg};
 
+use crate::{
+    raster::size::checked_size,
+    text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
+};
+
 /// How large a picture is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Resolution {
-    /// Pixels an inch of the page.
+    /// Pixels per inch of the page.
     PerInch(f64),
-    /// Pixels a user unit of the page.
+    /// Pixels per user unit of the page.
     PerUnit(f64),
 }
 
 impl Default for Resolution {
     fn default() -> Self {
-        Self::PerInch(96.0)
+        Self::PerInch(PIXELS_PER_INCH)
     }
 }
 
-/// CSS pixels an inch.
-const PIXELS_PER_INCH: f64 = 96.0;
-const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
 /// Keyword of the text chunk that holds the recipe.
 const RECIPE_KEYWORD: &str = "arabesque recipe";
 
 /// What a picture is made from.
 #[derive(Clone, Copy, Debug)]
-pub struct Plate<'a> {
+pub struct RenderJob<'a> {
     /// An SVG text, as [`crate::svg::write_svg`] makes it.
     pub svg: &'a str,
     /// User units of the page along its width and height.
@@ -37,37 +39,34 @@ pub struct Plate<'a> {
     pub recipe: Option<&'a str>,
 }
 
-/// Draws an SVG text as PNG: RGBA with straight alpha, 8 bits a channel.
+pub use self::RenderJob as Plate;
+
+/// Draws an SVG text as PNG: RGBA with straight alpha, 8 bits per channel.
 ///
-/// Width and height are rounded to whole pixels and the page is stretched to fit them, by less than half a pixel: the picture of a
-/// seamless tile is exactly one period.
+/// Width and height are rounded to whole pixels and the page is stretched to fit them, by less than half a pixel: the
+/// picture of a seamless tile is exactly one period.
 ///
 /// # Errors
-/// [`Error::Limit`] when it would have more than [`Limits::pixels`] pixels, [`Error::Input`] when the text cannot be drawn.
-pub fn write_png(plate: &Plate<'_>, limits: &Limits) -> Result<Vec<u8>> {
+/// [`Error::Limit`] when it would have more than [`Limits::pixels`] pixels, [`Error::Input`] when the text cannot be
+/// drawn.
+pub fn write_png(job: &RenderJob<'_>, limits: &Limits) -> Result<Vec<u8>> {
     let fail = |problem: String| Error::input("drawing the result", problem, "write it as SVG instead");
-    let tree = usvg::Tree::from_str(plate.svg, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
+    let tree = usvg::Tree::from_str(job.svg, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
     let page = [f64::from(tree.size().width()), f64::from(tree.size().height())];
-    let scale = match plate.resolution {
+    let scale = match job.resolution {
         Resolution::PerInch(dpi) => [dpi / PIXELS_PER_INCH; 2],
-        Resolution::PerUnit(n) => [n * plate.units[0] / page[0], n * plate.units[1] / page[1]],
+        Resolution::PerUnit(n) => [n * job.units[0] / page[0], n * job.units[1] / page[1]],
     };
     // A clamp keeps NaN, which the limit below then refuses.
     let side = |k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX);
     let (width, height) = (side(0), side(1));
-    if !(width * height <= limits.pixels as f64 && width.max(height) <= f64::from(i16::MAX)) {
-        return Err(Error::Limit {
-            what: "size of the picture".into(),
-            found: format!("{width} x {height} pixels"),
-            limit: format!("{} pixels, {} a side", limits.pixels, i16::MAX),
-            advice: "ask for fewer pixels, or write SVG".into(),
-        });
-    }
-    let mut pixmap = tiny_skia::Pixmap::new(width as u32, height as u32).ok_or_else(|| fail("no pixels".into()))?;
+    let advice = "ask for fewer pixels, or write SVG";
+    let [columns, rows] = checked_size("size of the picture", [width, height], limits, advice)?;
+    let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
     let stretch = tiny_skia::Transform::from_scale((width / page[0]) as f32, (height / page[1]) as f32);
     resvg::render(&tree, stretch, &mut pixmap.as_mut());
     let per_metre = width / page[0] * PIXELS_PER_INCH * INCHES_PER_METRE;
-    encode(&straight(&pixmap), per_metre, plate.recipe).map_err(|e| fail(e.to_string()))
+    encode(&straight(&pixmap), per_metre, job.recipe).map_err(|e| fail(e.to_string()))
 }
 
 /// Writes a picture with straight alpha as PNG.
@@ -124,12 +123,13 @@ pub fn is_png(bytes: &[u8]) -> bool {
 mod tests {
     use super::*;
 
-    const SQUARE: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"25.4mm\" height=\"12.7mm\" viewBox=\"0 0 20 10\">\
+    const SQUARE: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"25.4mm\" height=\"12.7mm\" viewBox=\"0 0 \
+         20 10\">\
                           <rect width=\"10\" height=\"10\" fill=\"#ff0000\" fill-opacity=\"0.5\"/></svg>";
 
     fn picture(resolution: Resolution) -> Result<Vec<u8>> {
-        let plate = Plate { svg: SQUARE, units: [20.0, 10.0], resolution, recipe: Some("ümlaut = 1\n") };
-        write_png(&plate, &Limits::default())
+        let job = RenderJob { svg: SQUARE, units: [20.0, 10.0], resolution, recipe: Some("ümlaut = 1\n") };
+        write_png(&job, &Limits::default())
     }
 
     fn size(bytes: &[u8]) -> (u32, u32) {

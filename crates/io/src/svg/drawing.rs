@@ -1,45 +1,11 @@
-//! What an SVG file holds, understood.
+//! What reading an SVG gives and writing one takes: pages, looks of elements and strokes, exemplars, what is placed
+//! already.
 
 use std::fmt::Write as _;
 
 use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
 
-use crate::text::path_data::path_data;
-
-/// Physical unit of a page.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Unit {
-    /// CSS pixel, 96 an inch.
-    #[default]
-    Px,
-    /// Millimetre.
-    Mm,
-    /// Centimetre.
-    Cm,
-    /// Inch.
-    In,
-    /// Point, 72 an inch.
-    Pt,
-    /// Pica, 6 an inch.
-    Pc,
-    /// A quarter of a millimetre.
-    Q,
-}
-
-impl Unit {
-    /// The unit as SVG writes it after a number: nothing for pixels.
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::Px => "",
-            Self::Mm => "mm",
-            Self::Cm => "cm",
-            Self::In => "in",
-            Self::Pt => "pt",
-            Self::Pc => "pc",
-            Self::Q => "Q",
-        }
-    }
-}
+use crate::text::{path_data::path_data, unit::Unit};
 
 /// Size and coordinate system of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,15 +14,16 @@ pub struct Page {
     pub view: Bounds<2>,
     /// Unit in which the page states its width and height.
     pub unit: Unit,
-    /// How many of that unit one user unit is: 1.0 for a plain pixel page, 1.0 for `width="210mm" viewBox="0 0 210 297"`.
+    /// How many of that unit one user unit is: 1.0 for a plain pixel page, 1.0 for
+    /// `width="210mm" viewBox="0 0 210 297"`.
     pub unit_per_user: f64,
 }
 
 /// The appearance of one element: markup that draws it in the coordinates of the exemplar.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fragment {
-    /// One SVG element, usually a `<g>`: transforms, inherited presentation attributes and style rules resolved into it;
-    /// references only to [`Drawing::definitions`].
+    /// One SVG element, usually a `<g>`: transforms, inherited presentation attributes and style rules resolved into
+    /// it; references only to [`Drawing::definitions`].
     pub markup: String,
     /// Name of the layer it came from, for round trips.
     pub layer: Option<String>,
@@ -67,7 +34,7 @@ pub struct Fragment {
 /// The appearance of one curve: everything that paints a path alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
-    /// Presentation attributes for a `<path>`, each with a blank before it, but for those that scale with the stroke;
+    /// Presentation attributes for a `<path>`, each with a blank before it, except those that scale with the stroke;
     /// references only to [`Drawing::definitions`].
     pub paint: String,
     /// Attributes of the path alone, which a group around it must not have in its stead: opacity, filter, blending.
@@ -119,7 +86,8 @@ impl Stroke {
     }
 }
 
-/// References without what marks the file that they are in: `url(#exemplar-a)` and `url(#kept2-exemplar-a)` are `url(#a)`.
+/// References without what marks the file that they are in: `url(#exemplar-a)` and `url(#kept2-exemplar-a)` are
+/// `url(#a)`.
 fn without_prefixes(text: &str) -> String {
     let mut parts = text.split("url(#");
     let mut out = parts.next().unwrap_or_default().to_owned();
@@ -167,8 +135,8 @@ pub struct Drawing {
     pub strokes: Vec<Stroke>,
     /// Whether the exemplar draws curves or elements first.
     pub stacking: Stacking,
-    /// Markup that fills the frame behind everything, in exemplar coordinates: repeated over the output page as it is where it is a plain
-    /// colour. `None` without a background.
+    /// Markup that fills the frame behind everything, in exemplar coordinates: repeated over the output page as it is
+    /// where it is a plain colour. `None` without a background.
     pub background: Option<String>,
     /// Content of `<defs>` that the fragments refer to: gradients, clips, masks, patterns, filters, symbols.
     pub definitions: String,
@@ -183,11 +151,12 @@ pub struct Drawing {
 /// Elements and strokes that were placed already: a file for `--keep`.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// What matches an element of the exemplar; `frozen` is `None`. Coordinates of the kept file become output coordinates.
+    /// What matches an element of the exemplar; `frozen` is `None`. Coordinates of the kept file become output
+    /// coordinates.
     pub placements: Vec<Placement<2>>,
     /// Strokes that are painted like curves of the exemplar; `frozen` is `None`. Same coordinates.
     pub curves: Vec<Drawn<2>>,
-    /// Ink of everything else, in the same coordinates.
+    /// The painted area of everything else, in the same coordinates.
     pub obstacles: Vec<Outline<2>>,
     /// Looks of placement `i`, to be drawn unchanged: markup in the coordinates of the kept file.
     pub fragments: Vec<Fragment>,
@@ -203,7 +172,7 @@ pub struct Placed {
     pub warnings: Vec<Warning>,
 }
 
-/// A drawing of which a part is filled anew: what stays, and the text of the file around the new part.
+/// A drawing of which a part is refilled: what stays, and the text of the file around that part.
 #[derive(Clone, Debug)]
 pub struct HostDocument {
     /// What stays, for the engine to fit the new to. Its fragments are not drawn: they stand in the file.
@@ -216,7 +185,8 @@ pub struct HostDocument {
     pub(crate) head: String,
     /// The file from there on.
     pub(crate) tail: String,
-    /// What had to be written anew: the outside parts of strokes that are cut, and pieces of paths of which another piece is replaced.
+    /// What had to be rewritten: the outside parts of strokes that are cut, and pieces of paths of which another piece
+    /// is replaced.
     pub(crate) moved: String,
     /// Content of `<defs>` that this refers to.
     pub(crate) definitions: String,

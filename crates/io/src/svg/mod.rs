@@ -1,23 +1,26 @@
 //! SVG: exemplars, jobs and results.
 //!
-//! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area (`shape`) tells elements
-//! from curves and background and sorts the elements into classes (`understand`). `read` holds what callers ask for, `write` the way
-//! back to text; both speak of a [`Drawing`].
+//! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area
+//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`). `read` holds
+//! what callers ask for, `write` the way back to text; both speak of a [`Drawing`].
 
 mod centreline;
 mod drawing;
 mod namespace;
 mod options;
+mod palette;
 mod parse;
 mod read;
 mod shape;
 mod understand;
 mod write;
 
+pub use crate::text::unit::Unit;
 pub use drawing::HostDocument as Rest;
-pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke, Unit};
+pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke};
 pub use namespace::NAMESPACE;
 pub use options::{Method, ReadOptions};
+pub use palette::PALETTE;
 pub use read::host_document::read_host_document as read_rest;
 pub use read::{
     document::Document,

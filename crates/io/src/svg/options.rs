@@ -5,8 +5,8 @@ use arabesque_core::Limits;
 /// What open strokes are taken for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Filled shapes, groups and `<use>` are elements, and so are small closed strokes where no stroke is open; all other strokes are
-    /// curves.
+    /// Filled shapes, groups and `<use>` are elements, and so are small closed strokes where no stroke is open; all
+    /// other strokes are curves.
     #[default]
     Auto,
     /// Every stroke without a fill is a curve; what is filled is an element.
@@ -22,7 +22,8 @@ pub struct ReadOptions {
     pub name: String,
     /// What open strokes are taken for. Default: [`Method::Auto`].
     pub method: Method,
-    /// Ids (or labels) of items that are no part of the drawing, because they only say where something is. Default: none.
+    /// Ids (or labels) of items that are not part of the drawing, because they only say where something is. Default:
+    /// none.
     pub without: Vec<String>,
     /// Upper bounds. Default: [`Limits::default`].
     pub limits: Limits,

@@ -1,8 +1,8 @@
 //! CSV: points with classes, in and out.
 //!
-//! Read: a header that names the columns in any order and case (`x`, `y`, `z`, `class` and their usual aliases), or two columns without
-//! a header. Commas, semicolons, tabs or spaces separate; `#` starts a comment line; a class in double quotes may hold separators.
-//! Written: `x,y,class`, and the recipe in comment lines at the end.
+//! Read: a header that names the columns in any order and case (`x`, `y`, `z`, `class` and their usual aliases), or two
+//! columns without a header. Commas, semicolons, tabs or spaces separate; `#` starts a comment line; a class in double
+//! quotes may hold separators and line breaks. Written: `x,y,class`, and the recipe in comment lines at the end.
 
 use std::collections::BTreeMap;
 
@@ -30,8 +30,8 @@ const ONLY_CLASS: &str = "point";
 /// Reads points.
 ///
 /// # Errors
-/// [`Error::Input`] with the line when a value is no finite number within the limits, a column is missing or a line has the wrong number
-/// of fields; [`Error::Limit`] for too many points.
+/// [`Error::Input`] with the line when a value is not a finite number within the limits, a column is missing or a line
+/// has the wrong number of fields; [`Error::Limit`] for too many points.
 pub fn read_points(name: &str, text: &str, limits: &Limits) -> Result<Points> {
     let table = Table::new(name, text)?;
     let count = table.rows.len();
@@ -86,17 +86,18 @@ struct Table<'a> {
 
 impl<'a> Table<'a> {
     fn new(name: &'a str, text: &str) -> Result<Self> {
-        let lines = || text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).filter(|(_, l)| is_data(l));
-        let Some((first_line, first)) = lines().next() else {
-            return Err(Error::input(name, "no point found", "give one point a line, as x,y or x,y,class"));
+        let mut records = records(text).into_iter();
+        let Some((first_line, first)) = records.next() else {
+            return Err(Error::input(name, "no point found", "give one point per line, as x,y or x,y,class"));
         };
-        let separator = separator_of(first);
-        let head: Vec<_> = split(first, separator).iter().map(|f| f.to_ascii_lowercase()).collect();
+        let head: Vec<_> = first.iter().map(|f| f.to_ascii_lowercase()).collect();
         let has_header = head.iter().any(|f| f.parse::<f64>().is_err() && is_known(f));
-        let header = if has_header { head } else { made_up_header(name, first_line, &head)? };
+        let (header, first) = match has_header {
+            true => (head, None),
+            false => (made_up_header(name, first_line, &head)?, Some((first_line, first))),
+        };
         let mut rows = Vec::new();
-        for (line, content) in lines().skip(usize::from(has_header)) {
-            let fields = split(content, separator);
+        for (line, fields) in first.into_iter().chain(records) {
             if fields.len() != header.len() {
                 return Err(Error::input(
                     format!("{name}: line {line}"),
@@ -107,7 +108,7 @@ impl<'a> Table<'a> {
             rows.push((line, fields));
         }
         if rows.is_empty() {
-            return Err(Error::input(name, "a header but no point", "give one point a line below the header"));
+            return Err(Error::input(name, "a header but no point", "give one point per line below the header"));
         }
         Ok(Self { name, header, header_line: first_line, rows })
     }
@@ -137,7 +138,7 @@ impl<'a> Table<'a> {
             let text = &fields[columns[k]];
             let place = || format!("{}: line {line}, column {}", self.name, self.header[columns[k]]);
             let v: f64 = text.parse().map_err(|_| {
-                Error::input(place(), format!("\"{text}\" is no number"), "write numbers like 12.5 or 1.25e1")
+                Error::input(place(), format!("\"{text}\" is not a number"), "write numbers like 12.5 or 1.25e1")
             })?;
             if v.is_finite() && v.abs() <= limits.coordinate {
                 return Ok(v);
@@ -188,26 +189,85 @@ fn separator_of(line: &str) -> Option<char> {
     [',', ';', '\t'].into_iter().find(|c| line.contains(*c))
 }
 
-/// Cuts a line into trimmed fields; double quotes protect separators, and a doubled quote inside them is a quote.
-fn split(line: &str, separator: Option<char>) -> Vec<String> {
-    let Some(separator) = separator else {
-        return line.split_whitespace().map(str::to_owned).collect();
-    };
-    let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
-    let mut rest = line.chars().peekable();
-    while let Some(c) = rest.next() {
-        match c {
-            '"' if quoted && rest.peek() == Some(&'"') => field.extend(rest.next()),
-            '"' if quoted || field.trim().is_empty() => quoted = !quoted,
-            c if c == separator && !quoted => fields.push(std::mem::take(&mut field)),
-            c => field.push(c),
+/// The fields of every line that holds data, with its number. A line that ends inside quotes goes on in the lines after
+/// it, where one of these closes them; else it ends there.
+///
+/// The crate `csv` is not used for this: it tells the line of a record only as the line after the last record, comments
+/// included, and a quote after a blank is no quote to it.
+fn records(text: &str) -> Vec<(usize, Vec<String>)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let first = lines.iter().map(|line| line.trim()).find(|line| is_data(line));
+    let separator = first.and_then(separator_of);
+    let mut records = Vec::new();
+    let (mut at, mut is_unclosed) = (0, false);
+    while let Some(line) = lines.get(at) {
+        at += 1;
+        if !is_data(line.trim()) {
+            continue;
         }
+        let number = at;
+        let after = if is_unclosed { &[] } else { &lines[at..] };
+        let (fields, more) = fields(line, after, separator);
+        // No line after a quote that nothing closes is searched again.
+        is_unclosed |= more.is_none();
+        at += more.unwrap_or(0);
+        records.push((number, fields));
     }
-    fields.push(field);
-    fields.iter().map(|f| f.trim().to_owned()).collect()
+    records
 }
 
-/// Writes placements as `x,y,class` (`x,y,z,class` in space), one a line, with six significant digits of `extent`.
+/// The trimmed fields of a line, and how many of the lines `after` it belong to it; `None` where it ends inside quotes
+/// that none of them closes.
+fn fields(line: &str, after: &[&str], separator: Option<char>) -> (Vec<String>, Option<usize>) {
+    let Some(separator) = separator else {
+        return (line.split_whitespace().map(str::to_owned).collect(), Some(0));
+    };
+    let mut whole = Splitter { separator, ..Splitter::default() };
+    whole.feed(line.trim());
+    let mut more = 0;
+    while whole.quoted && more < after.len() {
+        whole.feed("\n");
+        whole.feed(after[more]);
+        more += 1;
+    }
+    if !whole.quoted {
+        return (whole.finish(), Some(more));
+    }
+    let mut alone = Splitter { separator, ..Splitter::default() };
+    alone.feed(line.trim());
+    (alone.finish(), None)
+}
+
+/// Cuts text into fields; double quotes protect separators, and a doubled quote inside them is a quote.
+#[derive(Default)]
+struct Splitter {
+    separator: char,
+    fields: Vec<String>,
+    field: String,
+    /// Whether the text so far ends inside quotes.
+    quoted: bool,
+}
+
+impl Splitter {
+    fn feed(&mut self, text: &str) {
+        let mut rest = text.chars().peekable();
+        while let Some(c) = rest.next() {
+            match c {
+                '"' if self.quoted && rest.peek() == Some(&'"') => self.field.extend(rest.next()),
+                '"' if self.quoted || self.field.trim().is_empty() => self.quoted = !self.quoted,
+                c if c == self.separator && !self.quoted => self.fields.push(std::mem::take(&mut self.field)),
+                c => self.field.push(c),
+            }
+        }
+    }
+
+    fn finish(mut self) -> Vec<String> {
+        self.fields.push(self.field);
+        self.fields.iter().map(|f| f.trim().to_owned()).collect()
+    }
+}
+
+/// Writes placements as `x,y,class` (`x,y,z,class` in space), one per line, with six significant digits of `extent`.
 /// `recipe` follows in comment lines.
 pub fn write_points<const D: usize>(
     exemplar: &Exemplar<D>,
@@ -294,7 +354,7 @@ mod tests {
             ("x,y\n0,0\n1,nan\n", "line 3, column y"),
             ("x,y\n0,0\n1,inf\n", "line 3, column y"),
             ("x,y\n0,1e300\n", "line 2, column y"),
-            ("x,y\n0,zero\n", "\"zero\" is no number"),
+            ("x,y\n0,zero\n", "\"zero\" is not a number"),
             ("x,y\n0,0\n1\n", "line 3: 1 fields where 2"),
             ("x,class\n0,a\n", "no column y"),
             ("", "no point found"),
@@ -306,6 +366,16 @@ mod tests {
             let message = read(text).unwrap_err().to_string();
             assert!(message.contains(expected), "{text:?}: {message}");
         }
+    }
+
+    #[test]
+    fn quotes_reach_over_lines_and_errors_still_name_the_line() {
+        let e = plane("x,y,class\n0,0,\"a\n# b \"\"c\"\"\"\n1,0, \"d,e\"\n");
+        assert_eq!(e.classes.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(), ["a\n# b \"c\"", "d,e"]);
+        let message = read("x,y,class\n0,0,\"a\nb\"\n1,no,c\n").unwrap_err().to_string();
+        assert!(message.contains("line 4, column y"), "{message}");
+        // A quote that is never closed ends with its line.
+        assert_eq!(plane("x,y,class\n0,0,\"a\n1,0,b\n").classes[0].name, "a");
     }
 
     #[test]

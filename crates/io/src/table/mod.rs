@@ -1,3 +1,3 @@
-//! Tables of points.
+//! Tables of points with classes, as CSV.
 
 pub mod csv;

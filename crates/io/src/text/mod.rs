@@ -2,4 +2,5 @@
 
 pub mod path_data;
 pub mod suggest;
+pub mod unit;
 pub(crate) mod xml;

@@ -40,7 +40,8 @@ enum Segment<const D: usize> {
 /// Points that are merged into one line at most: each is looked at again for every further one.
 const MERGED: usize = 64;
 
-/// The segments of a path, lines in one direction merged where no point between is farther than `tolerance` from the whole.
+/// The segments of a path, lines in one direction merged where no point between is farther than `tolerance` from the
+/// whole.
 fn merged<const D: usize>(path: &Path<D>, tolerance: f64) -> Vec<Segment<D>> {
     let mut segments = Vec::new();
     // Where the last line starts, and the points on it.

@@ -1,7 +1,7 @@
 //! Text in XML: attribute values, and numbers in their shortest form.
 //!
-//! What is taken over from a drawing keeps the bytes that [`push_attribute`] gives it; names and labels that a result is written with go
-//! through [`escape`], which keeps line breaks.
+//! What is taken over from a drawing keeps the bytes that [`push_attribute`] gives it; names and labels that a result
+//! is written with go through [`escape`], which keeps line breaks.
 
 use std::fmt::Write as _;
 
@@ -23,7 +23,7 @@ pub(crate) fn escaped(text: &str) -> String {
             '&' => safe.push_str("&amp;"),
             '<' => safe.push_str("&lt;"),
             '"' => safe.push_str("&quot;"),
-            // Control characters are no XML.
+            // Control characters are not XML.
             c if c.is_control() => safe.push(' '),
             c => safe.push(c),
         }

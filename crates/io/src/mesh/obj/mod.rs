@@ -1,6 +1,9 @@
 //! OBJ: networks of curves as polylines, in and out, and ribbons as textured strips.
 
+mod lexer;
 pub mod polylines;
 pub mod strips;
+pub mod write;
 
-pub use polylines::{Net, Sheet, junctions, read_curves, read_lines, recipe_of, write_curves};
+pub use polylines::{Net, junctions, read_curves, read_lines};
+pub use write::{Sheet, recipe_of, write_curves};

@@ -1,14 +1,14 @@
-//! OBJ: networks of curves in space, in and out, as polylines.
+//! OBJ: networks of curves in space, read from polylines.
 //!
-//! Read: vertices (`v`) and polylines (`l`); `o` and `g` name the style of the polylines that follow. Polylines that share a vertex, or
-//! end at the same place, meet there. `# box x0 y0 z0 x1 y1 z1` gives the frame, else it is the box around the vertices in use.
-//! Written: the same, and the recipe in comment lines at the end.
+//! Read: vertices (`v`) and polylines (`l`); `o` and `g` name the style of the polylines that follow. Polylines that
+//! share a vertex, or end at the same place, meet there. `# box x0 y0 z0 x1 y1 z1` gives the frame, else it is the box
+//! around the vertices in use. Written: the same, and the recipe in comment lines at the end.
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Class, Curve, Decimals, Drawn, Error, Exemplar, Limits, Path, Result, Vector, Warning};
+use arabesque_core::{Bounds, Class, Curve, Error, Exemplar, Limits, Path, Result, Vector, Warning};
 
-use crate::table::csv;
+use crate::mesh::obj::lexer::{Lexer, logical_lines};
 
 /// The style of polylines that no `o` or `g` precedes.
 const ONLY_STYLE: &str = "curve";
@@ -25,8 +25,9 @@ pub struct Net {
 /// Reads polylines.
 ///
 /// # Errors
-/// [`Error::Input`] with the line: a coordinate that is no finite number within the limits, a polyline to a vertex that does not exist, a
-/// broken box comment, no polyline at all, or curves that lie in one plane and no box; [`Error::Limit`] for too many vertices or lines.
+/// [`Error::Input`] with the line: a coordinate that is not a finite number within the limits, a polyline to a vertex
+/// that does not exist, a broken box comment, no polyline at all, or curves that lie in one plane and no box;
+/// [`Error::Limit`] for too many vertices or lines.
 pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
     let mut reader = Reader::new(name, limits);
     for (line, content) in logical_lines(text) {
@@ -35,10 +36,11 @@ pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
     reader.finish()
 }
 
-/// Reads polylines as lines to lay a pattern along, each with the name that messages call it by. They may lie in one plane.
+/// Reads polylines as lines to lay a pattern along, each with the name that messages call it by. They may lie in one
+/// plane.
 ///
 /// # Errors
-/// As [`read_curves`], but for the box.
+/// As [`read_curves`], except for the box.
 pub fn read_lines(name: &str, text: &str, limits: &Limits) -> Result<Vec<(String, Path<3>)>> {
     let mut reader = Reader::new(name, limits);
     for (line, content) in logical_lines(text) {
@@ -57,32 +59,6 @@ pub fn read_lines(name: &str, text: &str, limits: &Limits) -> Result<Vec<(String
     Ok(paths)
 }
 
-/// Lines without comments, joined where a backslash continues them, with the number of their first line. Box comments stay.
-fn logical_lines(text: &str) -> Vec<(usize, String)> {
-    let mut lines: Vec<(usize, String)> = Vec::new();
-    let mut continues = false;
-    // The recipe of a result has a box of its own.
-    let own = text.lines().take_while(|line| *line != csv::RECIPE_MARK);
-    for (k, raw) in own.enumerate() {
-        let content = match raw.split_once('#') {
-            Some((before, comment)) if before.trim().is_empty() && is_box(comment) => raw.trim(),
-            Some((before, _)) => before.trim(),
-            None => raw.trim(),
-        };
-        let (content, more) = content.strip_suffix('\\').map_or((content, false), |c| (c, true));
-        match lines.last_mut().filter(|_| continues) {
-            Some((_, before)) => *before = format!("{before} {content}"),
-            None => lines.push((k + 1, content.to_owned())),
-        }
-        continues = more;
-    }
-    lines
-}
-
-fn is_box(comment: &str) -> bool {
-    comment.split_whitespace().next() == Some("box")
-}
-
 #[derive(Debug)]
 struct Polyline {
     style: usize,
@@ -91,8 +67,7 @@ struct Polyline {
 
 #[derive(Debug)]
 struct Reader<'a> {
-    name: &'a str,
-    limits: &'a Limits,
+    lexer: Lexer<'a>,
     vertices: Vec<Vector<3>>,
     /// Line, style and vertices counted from one; resolved at the end, for vertices may follow.
     lines: Vec<(usize, Polyline)>,
@@ -106,8 +81,7 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn new(name: &'a str, limits: &'a Limits) -> Self {
         Self {
-            name,
-            limits,
+            lexer: Lexer { name, limits, advice: "keep a smaller part of the network as the exemplar" },
             vertices: Vec::new(),
             lines: Vec::new(),
             references: 0,
@@ -116,10 +90,6 @@ impl<'a> Reader<'a> {
             frame: None,
             ignored: BTreeMap::new(),
         }
-    }
-
-    fn fail<T>(&self, line: usize, problem: impl Into<String>, advice: &str) -> Result<T> {
-        Err(Error::input(format!("{}: line {line}", self.name), problem, advice))
     }
 
     fn statement(&mut self, line: usize, content: &str) -> Result<()> {
@@ -141,44 +111,23 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn coordinate(&self, line: usize, word: &str) -> Result<f64> {
-        let most = self.limits.coordinate;
-        match word.parse::<f64>() {
-            Ok(v) if v.is_finite() && v.abs() <= most => Ok(v),
-            Ok(_) => {
-                let problem = format!("{word} where a coordinate between -{most} and {most} was expected");
-                self.fail(line, problem, "correct or remove the vertex")
-            }
-            Err(_) => self.fail(line, format!("\"{word}\" is no number"), "write numbers like 12.5 or 1.25e1"),
-        }
-    }
-
-    /// Three coordinates; a weight or a colour after them is passed over.
     fn vertex(&mut self, line: usize, words: &[&str]) -> Result<()> {
-        if !matches!(words.len(), 3 | 4 | 6 | 7) {
-            return self.fail(line, format!("a vertex of {} numbers", words.len()), "write it as v x y z");
-        }
-        let mut p = Vector::ZERO;
-        for (k, word) in words.iter().enumerate() {
-            let v = self.coordinate(line, word)?;
-            if k < 3 {
-                p[k] = v;
-            }
-        }
-        self.check_limit("vertices", self.vertices.len() + 1, self.limits.nodes as usize)?;
-        self.vertices.push(p);
+        let vertex = self.lexer.vertex(line, words)?;
+        self.lexer.check_limit("vertices", self.vertices.len() + 1, self.lexer.limits.nodes as usize)?;
+        self.vertices.push(vertex);
         Ok(())
     }
 
     fn polyline(&mut self, line: usize, words: &[&str]) -> Result<()> {
         if words.len() < 2 {
             let problem = format!("a line of {} vertices", words.len());
-            return self.fail(line, problem, "write at least two, such as l 1 2");
+            return self.lexer.fail(line, problem, "write at least two, such as l 1 2");
         }
         self.references += words.len();
-        self.check_limit("line segments", self.references, self.limits.segments)?;
-        self.check_limit("lines", self.lines.len() + 1, self.limits.elements)?;
-        let vertices = words.iter().map(|word| self.index(line, word)).collect::<Result<Vec<_>>>()?;
+        self.lexer.check_limit("line segments", self.references, self.lexer.limits.segments)?;
+        self.lexer.check_limit("lines", self.lines.len() + 1, self.lexer.limits.elements)?;
+        let vertices =
+            words.iter().map(|word| self.lexer.index(line, word, self.vertices.len())).collect::<Result<Vec<_>>>()?;
         let name = self.style.as_deref().unwrap_or(ONLY_STYLE);
         let style = self.styles.iter().position(|s| s == name).unwrap_or_else(|| {
             self.styles.push(name.to_owned());
@@ -188,50 +137,23 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// A vertex counted from zero: `3`, `-1` for the last one so far, `3/7` with a texture vertex. It may follow later in the file.
-    fn index(&self, line: usize, word: &str) -> Result<usize> {
-        let number = word.split('/').next().and_then(|n| n.parse::<i64>().ok());
-        let index = match number {
-            Some(n) if n > 0 => usize::try_from(n - 1).ok(),
-            Some(n) if n < 0 => usize::try_from(n.unsigned_abs()).ok().and_then(|n| self.vertices.len().checked_sub(n)),
-            _ => None,
-        };
-        let problem = || {
-            let so_far = self.vertices.len();
-            format!("\"{word}\" is no vertex: expected 1, 2, ... or -1 to -{so_far} for the last ones so far")
-        };
-        index.map_or_else(|| self.fail(line, problem(), "correct the number of the vertex"), Ok)
-    }
-
     fn frame(&mut self, line: usize, content: &str) -> Result<()> {
         let words: Vec<&str> = content.trim_start_matches('#').split_whitespace().skip(1).collect();
         let expected = "write the lower and the upper corner, as # box 0 0 0 10 10 10";
         if words.len() != 6 {
-            return self.fail(line, format!("a box of {} numbers", words.len()), expected);
+            return self.lexer.fail(line, format!("a box of {} numbers", words.len()), expected);
         }
         let mut values = [0.0; 6];
         for (value, word) in values.iter_mut().zip(words) {
-            *value = self.coordinate(line, word)?;
+            *value = self.lexer.coordinate(line, word)?;
         }
         let [a, b, c, d, e, f] = values;
         let frame = Bounds::new(Vector([a, b, c]), Vector([d, e, f]));
         if frame.size().0.iter().any(|s| *s <= 0.0) {
-            return self.fail(line, "a box without volume", expected);
+            return self.lexer.fail(line, "a box without volume", expected);
         }
         self.frame = Some(frame);
         Ok(())
-    }
-
-    fn check_limit(&self, what: &str, found: usize, limit: usize) -> Result<()> {
-        if found <= limit {
-            return Ok(());
-        }
-        Err(Error::Limit {
-            what: format!("{}: number of {what}", self.name),
-            found: found.to_string(),
-            limit: limit.to_string(),
-            advice: "keep a smaller part of the network as the exemplar".into(),
-        })
     }
 
     fn finish(self) -> Result<Net> {
@@ -247,12 +169,12 @@ impl<'a> Reader<'a> {
         }
         if curves.is_empty() {
             let advice = "draw the network as lines, such as l 1 2 3";
-            return Err(Error::input(self.name, "no line of any length found", advice));
+            return Err(Error::input(self.lexer.name, "no line of any length found", advice));
         }
         let window = self.window(&curves)?;
         let warnings = self.warnings(points);
         let styles = self.styles.into_iter().map(|name| Class { name }).collect();
-        let exemplar = Exemplar::with_curves(self.name, (Vec::new(), Vec::new()), (curves, styles), window)?;
+        let exemplar = Exemplar::with_curves(self.lexer.name, (Vec::new(), Vec::new()), (curves, styles), window)?;
         Ok(Net { exemplar, warnings })
     }
 
@@ -261,13 +183,13 @@ impl<'a> Reader<'a> {
         let window = self.frame.unwrap_or(tight);
         let size = window.size();
         let largest = size.0.into_iter().fold(0.0, f64::max);
-        if size.0.iter().any(|s| *s <= 1e-9 * largest || *s < self.limits.extent) {
+        if size.0.iter().any(|s| *s <= 1e-9 * largest || *s < self.lexer.limits.extent) {
             let advice = "add a comment line that says how thick the layer is, as # box x0 y0 z0 x1 y1 z1";
-            return Err(Error::input(self.name, "the network lies in one plane, which fills no volume", advice));
+            return Err(Error::input(self.lexer.name, "the network lies in one plane, which fills no volume", advice));
         }
         if !window.intersects(&tight) {
             let advice = "correct the comment line # box x0 y0 z0 x1 y1 z1";
-            return Err(Error::input(self.name, "the network lies outside its box", advice));
+            return Err(Error::input(self.lexer.name, "the network lies outside its box", advice));
         }
         Ok(window)
     }
@@ -277,7 +199,7 @@ impl<'a> Reader<'a> {
         for &k in &polyline.vertices {
             let Some(p) = self.vertices.get(k) else {
                 let problem = format!("vertex {} where the file has {}", k + 1, self.vertices.len());
-                return self.fail(line, problem, "correct the number of the vertex");
+                return self.lexer.fail(line, problem, "correct the number of the vertex");
             };
             points.push(*p);
         }
@@ -289,13 +211,13 @@ impl<'a> Reader<'a> {
     fn warnings(&self, points: usize) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if points > 0 {
-            let message = format!("{}: {points} lines without length are left out", self.name);
+            let message = format!("{}: {points} lines without length are left out", self.lexer.name);
             warnings.push(Warning::new(message, "remove them, or move their vertices apart"));
         }
         if !self.ignored.is_empty() {
             let list: Vec<String> = self.ignored.iter().map(|(word, n)| format!("{word} ({n})")).collect();
             let message =
-                format!("{}: statements other than v, l, o and g are ignored: {}", self.name, list.join(", "));
+                format!("{}: statements other than v, l, o and g are ignored: {}", self.lexer.name, list.join(", "));
             warnings.push(Warning::new(message, "draw what should be repeated as lines"));
         }
         warnings
@@ -314,80 +236,15 @@ pub fn junctions(exemplar: &Exemplar<3>) -> usize {
     arms.values().filter(|n| **n >= 3).count()
 }
 
-/// What [`write_curves`] says beside the curves.
-#[derive(Clone, Copy, Debug)]
-pub struct Sheet<'a> {
-    /// The box that was filled; its size sets the number of digits.
-    pub frame: Bounds<3>,
-    /// How far a polyline may lie from its curve.
-    pub tolerance: f64,
-    /// The recipe, as TOML.
-    pub recipe: Option<&'a str>,
-}
-
-/// Writes curves as polylines, grouped by style, with six significant digits of the frame. Equal points are one vertex.
-pub fn write_curves(exemplar: &Exemplar<3>, curves: &[Drawn<3>], sheet: &Sheet<'_>) -> String {
-    let size = sheet.frame.size();
-    let decimals = Decimals::for_extent(size.0.into_iter().fold(0.0, f64::max));
-    let mut vertices = Vertices { decimals, numbers: BTreeMap::new(), listed: String::new() };
-    let mut lines = String::new();
-    for (style, class) in exemplar.styles.iter().enumerate() {
-        let of_style = |c: &&Drawn<3>| exemplar.curves.get(c.source).is_some_and(|s| s.style == style);
-        let members: Vec<_> = curves.iter().filter(of_style).collect();
-        if !members.is_empty() {
-            lines += &format!("g {}\n", class.name);
-        }
-        for drawn in members {
-            let mut numbers: Vec<usize> =
-                drawn.path.flatten(sheet.tolerance).into_iter().map(|p| vertices.number(p)).collect();
-            numbers.dedup();
-            if numbers.len() > 1 {
-                let list: Vec<String> = numbers.iter().map(usize::to_string).collect();
-                lines += &format!("l {}\n", list.join(" "));
-            }
-        }
-    }
-    let frame = format!("# box {} {}\n", vertices.text(sheet.frame.min), vertices.text(sheet.frame.max));
-    let recipe = sheet.recipe.map(csv::recipe_comments).unwrap_or_default();
-    format!("# curves as polylines\n{frame}{}{lines}{recipe}", vertices.listed)
-}
-
-/// The vertices of a file, numbered from one.
-struct Vertices {
-    decimals: Decimals,
-    numbers: BTreeMap<String, usize>,
-    listed: String,
-}
-
-impl Vertices {
-    fn text(&self, p: Vector<3>) -> String {
-        p.0.map(|v| self.decimals.format(v)).join(" ")
-    }
-
-    fn number(&mut self, p: Vector<3>) -> usize {
-        let text = self.text(p);
-        let next = self.numbers.len() + 1;
-        if let Some(&known) = self.numbers.get(&text) {
-            return known;
-        }
-        self.listed += &format!("v {text}\n");
-        self.numbers.insert(text, next);
-        next
-    }
-}
-
-/// The recipe in the comments of a file that [`write_curves`] wrote.
-pub fn recipe_of(text: &str) -> Option<String> {
-    csv::recipe_of(text)
-}
-
 #[cfg(test)]
 mod tests {
-    use arabesque_core::Measured;
+    use arabesque_core::{Drawn, Measured};
 
     use super::*;
+    use crate::mesh::obj::write::{Sheet, recipe_of, write_curves};
 
-    const CORNER: &str = "# a corner\r\no frame of wood\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 1 1 0 0.5 0.5 0.5\r\nv 0 1 1\r\nl 1 2 \\\r\n 3\r\ng strut\r\nl -1/4 1\r\nl 1 3\r\nf 1 2 3\r\nvn 0 0 1\r\n";
+    const CORNER: &str = "# a corner\r\no frame of wood\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 1 1 0 0.5 0.5 0.5\r\nv 0 1 \
+         1\r\nl 1 2 \\\r\n 3\r\ng strut\r\nl -1/4 1\r\nl 1 3\r\nf 1 2 3\r\nvn 0 0 1\r\n";
 
     fn read(text: &str) -> Result<Net> {
         read_curves("t.obj", text, &Limits::default())
@@ -430,11 +287,11 @@ mod tests {
             ("v 0 0 nan\n", "line 1"),
             ("v 0 0 1e300\n", "where a coordinate"),
             ("v 0 0\n", "a vertex of 2 numbers"),
-            ("v 0 zero 0\n", "\"zero\" is no number"),
+            ("v 0 zero 0\n", "\"zero\" is not a number"),
             ("v 0 0 0\nl 1 2\n", "line 2: vertex 2 where the file has 1"),
-            ("v 0 0 0\nl 0 1\n", "line 2: \"0\" is no vertex"),
-            ("v 0 0 0\nl -2 1\n", "\"-2\" is no vertex"),
-            ("v 0 0 0\nl 99999999999999999999 1\n", "is no vertex"),
+            ("v 0 0 0\nl 0 1\n", "line 2: \"0\" is not a vertex"),
+            ("v 0 0 0\nl -2 1\n", "\"-2\" is not a vertex"),
+            ("v 0 0 0\nl 99999999999999999999 1\n", "is not a vertex"),
             ("v 0 0 0\nl 1\n", "a line of 1 vertices"),
             ("v 0 0 0\nl 1 1\n", "no line of any length"),
             ("", "no line of any length"),

@@ -1,14 +1,15 @@
-//! OBJ: textured strips.
+//! OBJ: ribbons as triangles with texture coordinates, and a material for each picture.
 
 use arabesque_core::Decimals;
 
-use crate::{mesh::gltf::Part, table::csv};
+use crate::{mesh::strip::Part, table::csv};
 
 /// Comment that files of strips start with.
 pub const TITLE: &str = "# ribbons as textured strips";
 
-/// Writes strips as triangles with texture coordinates, those of each picture under a material (`usemtl exemplar-1`, ...) whose picture a
-/// comment names: an OBJ file cannot hold pictures. `extent` sets the number of digits. Parts without triangles are left out.
+/// Writes strips as triangles with texture coordinates, those of each picture under a material (`usemtl exemplar-1`,
+/// ...) whose picture a comment names: an OBJ file cannot hold pictures. `extent` sets the number of digits. Parts
+/// without triangles are left out.
 pub fn write_strips(parts: &[Part], extent: f64, recipe: Option<&str>) -> String {
     let (d, t) = (Decimals::for_extent(extent), Decimals::for_extent(1.0));
     let mut out = format!("{TITLE}\n");

@@ -7,7 +7,7 @@ const SEAM: f64 = 0.06;
 
 /// The edges of an outline in cells.
 #[derive(Debug)]
-pub(super) struct Border {
+pub(super) struct OutlineBorder {
     bounds: Bounds<2>,
     side: f64,
     columns: usize,
@@ -16,7 +16,7 @@ pub(super) struct Border {
     edges: Vec<(Vector<2>, Vector<2>)>,
 }
 
-impl Border {
+impl OutlineBorder {
     /// Sorts the edges into cells of the given side, about the width of the strokes.
     pub(super) fn new(outline: &Outline<2>, side: f64) -> Self {
         let bounds = outline.bounds();
@@ -54,7 +54,8 @@ impl Border {
             .collect()
     }
 
-    /// How far the outline reaches from `p` inside it in direction `way` (of length one); `None` if farther than `most`.
+    /// How far the outline reaches from `p` inside it in direction `way` (of length one); `None` if farther than
+    /// `most`.
     pub(super) fn reach(&self, p: Vector<2>, way: Vector<2>, most: f64) -> Option<f64> {
         let mut ids: Vec<u32> = self
             .cells_between(p, p + way * most)
@@ -97,7 +98,7 @@ mod tests {
             vec![Vector::xy(x, y), Vector::xy(x + w, y), Vector::xy(x + w, y + 1.0), Vector::xy(x, y + 1.0)]
         };
         let outline = Outline { rings: vec![bar(0.0, 0.0, 2.0), bar(2.01, 0.0, 1.0), bar(3.5, 0.0, 1.0)] };
-        let border = Border::new(&outline, 1.0);
+        let border = OutlineBorder::new(&outline, 1.0);
         let reach = border.reach(Vector::xy(0.5, 0.4), Vector::xy(1.0, 0.0), 5.0);
         assert!((reach.unwrap() - 2.51).abs() < 1e-9);
         assert!(border.reach(Vector::xy(0.5, 0.4), Vector::xy(1.0, 0.0), 1.0).is_none());

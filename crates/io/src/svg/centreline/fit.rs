@@ -11,7 +11,8 @@ const SAME_BEND: f64 = 0.15;
 /// Rounds of fitting and improving the parameters.
 const ROUNDS: usize = 6;
 
-/// The path through points whose corners are marked; a closed one does not repeat its first point. Fewer than two points have no path.
+/// The path through points whose corners are marked; a closed one does not repeat its first point. Fewer than two
+/// points have no path.
 pub(super) fn fitted(points: &[(Vector<2>, bool)], closed: bool, width: f64) -> Path<2> {
     if points.len() < 2 {
         return Path { cubics: Vec::new(), closed };

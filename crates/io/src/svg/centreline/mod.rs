@@ -1,11 +1,12 @@
-//! Centre lines of filled outlines that are strokes of constant width in truth: networks, closed rings and lines that a drawing program
-//! has turned into outlines.
+//! Centre lines of filled outlines that are strokes of constant width, really: networks, closed rings and lines that a
+//! drawing program has turned into outlines.
 //!
-//! The outline is drawn as pixels, thinned to lines of one pixel and traced to a graph of nodes and lines (`graph`). What thinning
-//! leaves of caps and corners is pruned, junctions that are one are merged. Then the pixels have done their work: places along the lines
-//! move to the middle between the borders of the true outline (`stations`), nodes to where their lines meet (`nodes`), corners to
-//! where the lines before and after them cross (`corners`). Smooth cubics and exactly straight segments are laid through (`fit`).
-//! A shape is refused when its width is not constant or when strokes along the lines would not cover it.
+//! The outline is drawn as pixels, thinned to lines of one pixel and traced to a graph of nodes and lines (`graph`).
+//! What thinning leaves of caps and corners is pruned, junctions that are one are merged. Then the pixels have done
+//! their work: places along the lines move to the middle between the borders of the true outline (`stations`), nodes to
+//! where their lines meet (`nodes`), corners to where the lines before and after them cross (`corners`). Smooth cubics
+//! and exactly straight segments are laid through (`fit`). A shape is refused when its width is not constant or when
+//! strokes along the lines would not cover it.
 
 mod border;
 mod chains;
@@ -19,28 +20,28 @@ mod stations;
 use arabesque_core::{Bounds, Outline, Path, Vector};
 
 use self::{
-    border::Border,
+    border::OutlineBorder,
     graph::{Graph, Line},
     raster::Raster,
     stations::Track,
 };
 
-/// Pixels a width that are tried in turn, until the picture is small enough.
+/// Pixels per width that are tried in turn, until the picture is small enough.
 const PIXELS: [f64; 3] = [9.0, 7.0, 5.0];
 /// Most pixels of a picture.
-const MOST_PIXELS: f64 = 6e7;
+const MAX_PIXELS: f64 = 6e7;
 /// Largest spread of the width.
-const MOST_SPREAD: f64 = 0.18;
+const MAX_SPREAD: f64 = 0.18;
 /// Least length of all lines together, in widths.
-const LEAST_LENGTH: f64 = 3.0;
+const MIN_LENGTH: f64 = 3.0;
 /// Most length of all lines together, in widths: more are slivers that rounding has left.
-const MOST_LENGTH: f64 = 2e5;
+const MAX_LENGTH: f64 = 2e5;
 /// Largest share of the ink that strokes of the common width may leave open, and of what is theirs that may be no ink.
-const MOST_OPEN: f64 = 0.03;
+const MAX_OPEN: f64 = 0.03;
 /// Radius in widths around a place on a line that holds nothing but ink: less than half, for what the pixels leave out.
 const CORE: f64 = 0.35;
-/// Distance in widths from the sides of the frame within which the middle of a line along them is only that of the part that the frame has
-/// left of it.
+/// Distance in widths from the sides of the frame within which the middle of a line along them is only that of the part
+/// that the frame has left of it.
 const HALVED: f64 = 0.45;
 /// Distance in widths from the sides of the frame up to which ink may be such a part.
 const RIM: f64 = 0.75;
@@ -50,7 +51,8 @@ const COVER: f64 = 0.85;
 /// Strokes with round caps and mitred corners that cover an outline.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Centrelines {
-    /// Long strokes through the junctions, in the order of their first pixels; smooth between corners, straight runs one segment.
+    /// Long strokes through the junctions, in the order of their first pixels; smooth between corners, straight runs
+    /// one segment.
     pub(crate) paths: Vec<Path<2>>,
     /// Common width of the strokes.
     pub(crate) width: f64,
@@ -58,29 +60,30 @@ pub(crate) struct Centrelines {
     pub(crate) spread: f64,
 }
 
-/// The centre lines of an outline; `None` where the outline is no set of strokes of one width, is degenerate or too vast.
+/// The centre lines of an outline; `None` where the outline is not a set of strokes of one width, is degenerate or too
+/// vast.
 ///
-/// Strokes that end on the side of `frame` run up to it; all others end half a width before the tip, where a round cap begins. What is left
-/// of strokes that run along a side of it is dropped.
+/// Strokes that end on the side of `frame` run up to it; all others end half a width before the tip, where a round cap
+/// begins. What is left of strokes that run along a side of it is dropped.
 pub(crate) fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Option<Centrelines> {
     let estimate = estimated_width(outline)?;
     let (raster, pixel) =
-        PIXELS.iter().find_map(|n| Some((Raster::new(outline, estimate / n, MOST_PIXELS)?, estimate / n)))?;
+        PIXELS.iter().find_map(|n| Some((Raster::new(outline, estimate / n, MAX_PIXELS)?, estimate / n)))?;
     let mut thin = raster.clone();
     thin.thin();
     let mut graph = Graph::trace(&thin);
-    let border = Border::new(outline, estimate);
+    let border = OutlineBorder::new(outline, estimate);
     graph.tidy(estimate, |line| is_spur(line, &border, estimate), |line| line.length() < 0.75 * estimate);
-    let (mut tracks, width) = stations::centred(&graph, &border, (estimate, pixel), frame);
+    let (mut tracks, width) = stations::centred(&graph, &border, estimate, pixel, frame);
     let widths = stations::free_widths(&tracks, &graph, width, frame);
     let quantile = |share: f64| widths.get((share * widths.len() as f64) as usize).copied();
     let spread = (quantile(0.9)? - quantile(0.1)?) / width;
     let length: f64 = graph.lines.iter().map(Line::length).sum();
-    if !spread.is_finite() || spread > MOST_SPREAD || !(LEAST_LENGTH..MOST_LENGTH).contains(&(length / width)) {
+    if !spread.is_finite() || spread > MAX_SPREAD || !(MIN_LENGTH..MAX_LENGTH).contains(&(length / width)) {
         return None;
     }
     drop_halved(&mut graph, &mut tracks, width, frame);
-    nodes::settle(&mut graph, &mut tracks, &border, (width, frame));
+    nodes::settle(&mut graph, &mut tracks, &border, width, frame);
     let paths: Vec<Path<2>> = chains::chained(&graph, &tracks, width)
         .iter()
         .map(|(chain, closed)| fit::fitted(&corners::with_corners(chain, *closed, width), *closed, width))
@@ -93,8 +96,9 @@ pub(crate) fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Op
     })
 }
 
-/// Whether a line from a junction to a free end only points into a corner of a cap or a mitre: it is short, or it tapers.
-fn is_spur(line: &Line, border: &Border, width: f64) -> bool {
+/// Whether a line from a junction to a free end only points into a corner of a cap or a mitre: it is short, or it
+/// tapers.
+fn is_spur(line: &Line, border: &OutlineBorder, width: f64) -> bool {
     let length = line.length();
     let (Some(&start), Some(&end)) = (line.points.first(), line.points.last()) else { return true };
     if length < 0.8 * width || length > 2.0 * width || (end - start).norm() < 0.5 * length {
@@ -127,7 +131,7 @@ fn fits(paths: &[Path<2>], raster: &Raster, width: f64) -> bool {
             all += pixels;
         }
     }
-    blank as f64 <= MOST_OPEN * all as f64
+    blank as f64 <= MAX_OPEN * all as f64
 }
 
 /// Whether strokes along the paths leave next to no ink open.
@@ -143,7 +147,7 @@ fn covers(paths: &[Path<2>], mut raster: Raster, width: f64, frame: Option<&Boun
             raster.erase_disc(at, COVER * width);
         }
     }
-    ink(&raster) <= MOST_OPEN * all
+    ink(&raster) <= MAX_OPEN * all
 }
 
 /// Takes away lines of which the frame has left less than one side.

@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Vector, segment};
 
 use super::{
-    border::Border,
+    border::OutlineBorder,
     graph::Graph,
     stations::{Station, Track},
 };
@@ -65,12 +65,14 @@ fn approach(track: &Track, from_end: bool, node: Vector<2>, width: f64) -> Vec<V
     }
 }
 
-/// Moves every node to where its lines meet, and free ends to half a width before the tip; the stations near them follow.
+/// Moves every node to where its lines meet, and free ends to half a width before the tip; the stations near them
+/// follow.
 pub(super) fn settle(
     graph: &mut Graph,
     tracks: &mut [Track],
-    border: &Border,
-    (width, frame): (f64, Option<&Bounds<2>>),
+    border: &OutlineBorder,
+    width: f64,
+    frame: Option<&Bounds<2>>,
 ) {
     for (node, lines) in graph.incidence().into_iter().enumerate() {
         let old = graph.nodes[node];
@@ -92,7 +94,7 @@ pub(super) fn settle(
 }
 
 /// The end of a stroke with a round cap that reaches as far as the outline does; at the frame the stroke runs through.
-fn tip(line: Straight, border: &Border, width: f64, frame: Option<&Bounds<2>>) -> Option<Vector<2>> {
+fn tip(line: Straight, border: &OutlineBorder, width: f64, frame: Option<&Bounds<2>>) -> Option<Vector<2>> {
     let (from, outward) = (line.0, -line.1);
     let reach = border.reach(from, outward, 4.0 * width)?;
     let end = from + outward * reach;
@@ -102,7 +104,8 @@ fn tip(line: Straight, border: &Border, width: f64, frame: Option<&Bounds<2>>) -
     (reach > 0.5 * width).then(|| from + outward * (reach - 0.5 * width))
 }
 
-/// Puts the end of a track at its node, and leaves out the stations that are nearer than half a width to it or beyond it.
+/// Puts the end of a track at its node, and leaves out the stations that are nearer than half a width to it or beyond
+/// it.
 fn trim(track: &mut Track, from_end: bool, node: Vector<2>, width: f64) {
     if from_end {
         track.stations.reverse();

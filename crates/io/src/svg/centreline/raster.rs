@@ -116,7 +116,8 @@ impl Raster {
             .collect()
     }
 
-    /// Thins the ink to lines of one pixel with the same connections: Zhang and Suen's parallel thinning, then single redundant pixels.
+    /// Thins the ink to lines of one pixel with the same connections: Zhang and Suen's parallel thinning, then single
+    /// redundant pixels.
     pub(super) fn thin(&mut self) {
         let mut active = self.pixels();
         // Every round takes a layer off, so the rounds are bounded by the size of the picture.
@@ -155,7 +156,8 @@ impl Raster {
         (0..8).filter(|&k| !n[k] && n[(k + 1) % 8]).count()
     }
 
-    /// Whether taking a pixel away leaves all connections among its neighbours (the connectivity number of eight neighbours is one).
+    /// Whether taking a pixel away leaves all connections among its neighbours (the connectivity number of eight
+    /// neighbours is one).
     fn is_redundant(&self, pixel: usize) -> bool {
         let empty = self.around(pixel).map(|p| !self.ink[p]);
         let number = (0..8).step_by(2).filter(|&k| empty[k] && !(empty[(k + 1) % 8] && empty[(k + 2) % 8])).count();

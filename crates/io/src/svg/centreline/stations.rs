@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Vector, polyline_length};
 
 use super::{
-    border::Border,
+    border::OutlineBorder,
     graph::{Graph, Line},
 };
 
@@ -22,7 +22,7 @@ const BENT: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Station {
     pub(super) at: Vector<2>,
-    /// Width of the outline across the line, at most [`SIGHT`] widths a side.
+    /// Width of the outline across the line, at most [`SIGHT`] widths to each side.
     pub(super) width: f64,
     /// Whether that is the common width: then `at` is the middle.
     pub(super) is_sound: bool,
@@ -38,8 +38,9 @@ pub(super) struct Track {
 /// Stations along all lines, and the common width of the strokes.
 pub(super) fn centred(
     graph: &Graph,
-    border: &Border,
-    (estimate, pixel): (f64, f64),
+    border: &OutlineBorder,
+    estimate: f64,
+    pixel: f64,
     frame: Option<&Bounds<2>>,
 ) -> (Vec<Track>, f64) {
     let mut tracks: Vec<Track> = graph.lines.iter().map(|line| track(line, estimate, pixel)).collect();
@@ -151,7 +152,7 @@ impl Track {
     }
 
     /// Width and offset of the middle at a station.
-    fn look(&self, k: usize, border: &Border, width: f64) -> (f64, Vector<2>) {
+    fn look(&self, k: usize, border: &OutlineBorder, width: f64) -> (f64, Vector<2>) {
         let way = self.way(k);
         let side = Vector::xy(-way[1], way[0]);
         let at = self.stations[k].at;
@@ -159,7 +160,7 @@ impl Track {
         (left + right, side * (0.5 * (left - right)))
     }
 
-    fn measure(&mut self, border: &Border, width: f64) {
+    fn measure(&mut self, border: &OutlineBorder, width: f64) {
         let looks: Vec<_> = (0..self.stations.len()).map(|k| self.look(k, border, width)).collect();
         for (station, (across, _)) in self.stations.iter_mut().zip(looks) {
             station.width = across;
@@ -172,7 +173,7 @@ impl Track {
         }
     }
 
-    fn measure_and_move(&mut self, border: &Border, width: f64) {
+    fn measure_and_move(&mut self, border: &OutlineBorder, width: f64) {
         let looks: Vec<_> = (0..self.stations.len()).map(|k| self.look(k, border, width)).collect();
         for (station, (_, offset)) in self.stations.iter_mut().zip(looks) {
             if station.is_sound {

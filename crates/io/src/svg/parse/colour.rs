@@ -1,4 +1,4 @@
-//! Colours of paints.
+//! The colour of a paint, and the mean colour of a gradient.
 
 use roxmltree::Node as Xml;
 use svgtypes::Color;

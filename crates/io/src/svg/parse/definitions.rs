@@ -17,7 +17,7 @@ use crate::{
         notes::Note,
         paint::reference,
         source::{Source, clip_text, href},
-        style::{Own, Style, computed},
+        style::{ComputedStyle, Own, computed},
     },
     text::xml::{number, push_attribute},
 };
@@ -123,7 +123,7 @@ impl<'a, 's> Definitions<'a, 's> {
     }
 
     fn copy_root(&mut self, out: &mut String, node: Xml<'a, 'a>, name: &str, viewport: Viewport) {
-        let mut style = Rc::new(Style::default());
+        let mut style = Rc::new(ComputedStyle::default());
         let mut chain: Vec<_> = node.ancestors().skip(1).filter(Xml::is_element).collect();
         chain.reverse();
         for ancestor in chain {
@@ -146,26 +146,11 @@ impl<'a, 's> Definitions<'a, 's> {
         for attribute in ["gradientUnits", "gradientTransform", "spreadMethod"] {
             find(attribute).into_iter().for_each(|value| push_attribute(out, attribute, value));
         }
-        let geometry: &[(&str, Axis, Option<&str>)] = match tag {
-            "linearGradient" => &[
-                ("x1", Axis::X, Some("0%")),
-                ("y1", Axis::Y, None),
-                ("x2", Axis::X, Some("100%")),
-                ("y2", Axis::Y, None),
-            ],
-            _ => &[
-                ("cx", Axis::X, Some("50%")),
-                ("cy", Axis::Y, Some("50%")),
-                ("r", Axis::Both, Some("50%")),
-                ("fx", Axis::X, None),
-                ("fy", Axis::Y, None),
-                ("fr", Axis::Both, None),
-            ],
-        };
-        for (attribute, axis, initial) in geometry {
-            let value = chain.iter().filter(|n| n.tag_name().name() == tag).find_map(|n| n.attribute(*attribute));
-            if let Some(value) = value.or(if in_user_space { *initial } else { None }) {
-                push_attribute(out, attribute, &in_space(value, *axis, viewport, in_user_space));
+        let geometry: &[Coordinate] = if tag == "linearGradient" { &LINEAR } else { &RADIAL };
+        for &Coordinate { attribute, axis, initial } in geometry {
+            let value = chain.iter().filter(|n| n.tag_name().name() == tag).find_map(|n| n.attribute(attribute));
+            if let Some(value) = value.or(if in_user_space { initial } else { None }) {
+                push_attribute(out, attribute, &in_space(value, axis, viewport, in_user_space));
             }
         }
         out.push('>');
@@ -177,7 +162,7 @@ impl<'a, 's> Definitions<'a, 's> {
     }
 
     fn stop(&self, out: &mut String, stop: Xml<'a, 'a>, viewport: Viewport) {
-        let mut style = Rc::new(Style::default());
+        let mut style = Rc::new(ComputedStyle::default());
         let mut own = Own::default();
         let mut chain: Vec<_> = stop.ancestors().filter(Xml::is_element).collect();
         chain.reverse();
@@ -244,7 +229,7 @@ impl<'a, 's> Definitions<'a, 's> {
         chain.into_iter().find(|n| n.children().any(|c| c.is_element())).unwrap_or(node)
     }
 
-    /// Attributes that are no properties; `None` when the element refers to something outside.
+    /// Attributes that are not properties; `None` when the element refers to something outside.
     fn attributes(&mut self, node: Xml<'a, 'a>, viewport: Viewport) -> Option<String> {
         let mut out = String::new();
         let tag = node.tag_name().name();
@@ -293,12 +278,40 @@ impl<'a, 's> Definitions<'a, 's> {
     }
 }
 
+/// A coordinate that a gradient states.
+struct Coordinate {
+    attribute: &'static str,
+    axis: Axis,
+    /// What it is in user space where it is absent and not 0.
+    initial: Option<&'static str>,
+}
+
+const fn coordinate(attribute: &'static str, axis: Axis, initial: Option<&'static str>) -> Coordinate {
+    Coordinate { attribute, axis, initial }
+}
+
+const LINEAR: [Coordinate; 4] = [
+    coordinate("x1", Axis::X, Some("0%")),
+    coordinate("y1", Axis::Y, None),
+    coordinate("x2", Axis::X, Some("100%")),
+    coordinate("y2", Axis::Y, None),
+];
+
+const RADIAL: [Coordinate; 6] = [
+    coordinate("cx", Axis::X, Some("50%")),
+    coordinate("cy", Axis::Y, Some("50%")),
+    coordinate("r", Axis::Both, Some("50%")),
+    coordinate("fx", Axis::X, None),
+    coordinate("fy", Axis::Y, None),
+    coordinate("fr", Axis::Both, None),
+];
+
 struct Inherited {
-    style: Rc<Style>,
+    style: Rc<ComputedStyle>,
     viewport: Viewport,
 }
 
-/// Attributes of definitions that are copied as they are, but for lengths.
+/// Attributes of definitions that are copied as they are, except for lengths.
 const KEPT: [&str; 58] = [
     "x",
     "y",

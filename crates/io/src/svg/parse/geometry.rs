@@ -73,7 +73,7 @@ pub(crate) fn read(source: &Source<'_>, node: Xml<'_, '_>, viewport: Viewport) -
     source.count_segments(geometry.path.elements().len())?;
     let extent = geometry.path.control_box();
     if ![extent.x0, extent.y0, extent.x1, extent.y1].iter().all(|v| v.abs() <= LARGEST) {
-        return Err(reader.wrong("a coordinate is no sensible number"));
+        return Err(reader.wrong("a coordinate is not a sensible number"));
     }
     Ok(Some(geometry))
 }
@@ -145,7 +145,7 @@ impl Reader<'_, '_> {
         if rx > 0.0 && ry > 0.0 {
             markup += &attributes("", &[("rx", rx), ("ry", ry)]);
         }
-        Ok(Geometry::new(rounded_rect(x, y, (w, h), (rx, ry)), markup))
+        Ok(Geometry::new(rounded_rect(kurbo::Rect::new(x, y, x + w, y + h), rx, ry), markup))
     }
 
     fn ellipse(&self) -> Result<Option<Geometry>> {
@@ -182,7 +182,7 @@ impl Reader<'_, '_> {
     fn points(&self, ends: Ends) -> Result<Option<Geometry>> {
         let text = self.node.attribute("points").unwrap_or_default();
         if text.split([' ', ',', '\n', '\t']).any(|n| n.parse::<f64>().is_ok_and(|v| !v.is_finite())) {
-            return Err(self.wrong("a point is no finite number"));
+            return Err(self.wrong("a point is not a finite number"));
         }
         let points: Vec<Point> = PointsParser::from(text).map(Point::from).collect();
         if points.len() < 2 {
@@ -239,14 +239,14 @@ fn attributes(tag: &str, values: &[(&str, f64)]) -> String {
     })
 }
 
-fn rounded_rect(x: f64, y: f64, (w, h): (f64, f64), (rx, ry): (f64, f64)) -> BezPath {
+fn rounded_rect(rect: kurbo::Rect, rx: f64, ry: f64) -> BezPath {
     if rx <= 0.0 || ry <= 0.0 {
-        return kurbo::Rect::new(x, y, x + w, y + h).to_path(0.1);
+        return rect.to_path(0.1);
     }
     // Distance of the handles of a quarter ellipse, as a share of its radius.
     const HANDLE: f64 = 0.552_284_749_8;
     let (hx, hy) = (rx * (1.0 - HANDLE), ry * (1.0 - HANDLE));
-    let (r, b) = (x + w, y + h);
+    let kurbo::Rect { x0: x, y0: y, x1: r, y1: b } = rect;
     let mut path = BezPath::new();
     path.move_to((x + rx, y));
     path.line_to((r - rx, y));

@@ -4,13 +4,16 @@ use arabesque_core::{Bounds, Error, Result, Vector};
 use roxmltree::Node as Xml;
 use svgtypes::{AspectRatio, Length, LengthUnit, ViewBox};
 
-use crate::svg::{
-    drawing::{Page, Unit},
-    namespace::INKSCAPE,
-    parse::{
-        notes::Note,
-        source::{Source, clip_text},
+use crate::{
+    svg::{
+        drawing::Page,
+        namespace::INKSCAPE,
+        parse::{
+            notes::Note,
+            source::{Source, clip_text},
+        },
     },
+    text::unit::Unit,
 };
 
 /// Width and height that percentages refer to, in user units.
@@ -40,32 +43,25 @@ impl Viewport {
     /// A length in user units. `font` is the font size that `em` refers to.
     pub(crate) fn resolve(&self, length: Length, axis: Axis, font: f64) -> f64 {
         let n = length.number;
-        match length.unit {
-            LengthUnit::None | LengthUnit::Px => n,
-            LengthUnit::Em => n * font,
-            LengthUnit::Ex => n * font * 0.5,
-            LengthUnit::In => n * 96.0,
-            LengthUnit::Cm => n * 96.0 / 2.54,
-            LengthUnit::Mm => n * 96.0 / 25.4,
-            LengthUnit::Pt => n * 96.0 / 72.0,
-            LengthUnit::Pc => n * 16.0,
-            LengthUnit::Percent => n / 100.0 * self.extent(axis),
+        match (unit_of(length.unit), length.unit) {
+            (Some(unit), _) => unit.in_pixels(n),
+            (None, LengthUnit::Em) => n * font,
+            (None, LengthUnit::Ex) => n * font * 0.5,
+            (None, _) => n / 100.0 * self.extent(axis),
         }
     }
 }
 
-impl Unit {
-    /// CSS pixels in one of this unit.
-    pub fn pixels(self) -> f64 {
-        match self {
-            Self::Px => 1.0,
-            Self::Mm => 96.0 / 25.4,
-            Self::Cm => 96.0 / 2.54,
-            Self::In => 96.0,
-            Self::Pt => 96.0 / 72.0,
-            Self::Pc => 16.0,
-            Self::Q => 96.0 / 101.6,
-        }
+/// The unit of a length; `None` for those that are relative to something else.
+pub(crate) fn unit_of(unit: LengthUnit) -> Option<Unit> {
+    match unit {
+        LengthUnit::None | LengthUnit::Px => Some(Unit::Px),
+        LengthUnit::Mm => Some(Unit::Mm),
+        LengthUnit::Cm => Some(Unit::Cm),
+        LengthUnit::In => Some(Unit::In),
+        LengthUnit::Pt => Some(Unit::Pt),
+        LengthUnit::Pc => Some(Unit::Pc),
+        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => None,
     }
 }
 
@@ -82,15 +78,10 @@ fn stated(source: &Source<'_>, root: Xml<'_, '_>, name: &str) -> Result<Option<(
         return number.trim().parse().map(|n| Some((n, Unit::Q))).map_err(|_| wrong());
     }
     let length: Length = text.parse().map_err(|_| wrong())?;
-    let unit = match length.unit {
-        LengthUnit::Percent => return Ok(None),
-        LengthUnit::None | LengthUnit::Px => Unit::Px,
-        LengthUnit::Mm => Unit::Mm,
-        LengthUnit::Cm => Unit::Cm,
-        LengthUnit::In => Unit::In,
-        LengthUnit::Pt => Unit::Pt,
-        LengthUnit::Pc => Unit::Pc,
-        LengthUnit::Em | LengthUnit::Ex => return Ok(Some((length.number * 16.0, Unit::Px))),
+    let unit = match (unit_of(length.unit), length.unit) {
+        (Some(unit), _) => unit,
+        (None, LengthUnit::Percent) => return Ok(None),
+        (None, _) => return Ok(Some((length.number * 16.0, Unit::Px))),
     };
     if !length.number.is_finite() || length.number < 0.0 {
         return Err(wrong());

@@ -9,7 +9,7 @@ use crate::{
         definitions::Definitions,
         paint::reference,
         scene::{Content, Node},
-        style::Style,
+        style::ComputedStyle,
     },
     text::xml::{number, push_attribute},
 };
@@ -53,7 +53,7 @@ fn push_own(out: &mut String, node: &Node, definitions: &mut Definitions<'_, '_>
 }
 
 /// Appends the inherited properties that are not initial.
-fn push_style(out: &mut String, style: &Style, node: &Node, definitions: &mut Definitions<'_, '_>) {
+fn push_style(out: &mut String, style: &ComputedStyle, node: &Node, definitions: &mut Definitions<'_, '_>) {
     for (name, value) in style.attributes() {
         match reference(value) {
             Some(_) => push_attribute(out, name, &definitions.paint(value, node.viewport)),

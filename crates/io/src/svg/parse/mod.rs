@@ -1,7 +1,7 @@
 //! From the text of a file to a tree of what is drawn: styles computed, `<use>` resolved, structure kept.
 //!
-//! `guard` checks the raw text, `source` holds the parsed file, `css` and `style` compute properties, `scene` builds the tree. `markup`
-//! and `definitions` turn a part of the tree back into markup that stands by itself.
+//! `guard` checks the raw text, `source` holds the parsed file, `css` and `style` compute properties, `scene` builds
+//! the tree. `markup` and `definitions` turn a part of the tree back into markup that stands by itself.
 
 pub(crate) mod colour;
 pub(crate) mod css;

@@ -56,19 +56,19 @@ pub(crate) enum Note {
     /// A stroke of no width.
     NoWidth,
     /// A stroke on top of one like it.
-    Twice,
+    Duplicate,
     /// A stroke whose transform stretches it unevenly.
     UnevenWidth,
     /// The fill of a shape that is marked as a curve.
     CurveFill,
     /// A mask on a curve.
     CurveMask,
-    /// An outline that was taken for the strokes that it is in truth.
+    /// An outline that was taken for the strokes that it really is.
     Traced,
 }
 
 impl Note {
-    fn words(self) -> (&'static str, &'static str) {
+    fn message(self) -> (&'static str, &'static str) {
         match self {
             Self::External => ("reference to something outside the file, not fetched", "embed it in the file"),
             Self::Missing => ("reference to an id that does not exist", "remove it, or restore what it refers to"),
@@ -113,7 +113,7 @@ impl Note {
             Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
             Self::ZeroLength => ("stroke without length ignored", "delete it, or draw a dot as a filled circle"),
             Self::NoWidth => ("stroke of no width ignored", "give it a stroke-width above 0"),
-            Self::Twice => ("stroke exactly on top of one like it ignored", "delete one of the two"),
+            Self::Duplicate => ("stroke exactly on top of one like it ignored", "delete one of the two"),
             Self::UnevenWidth => (
                 "stroke that is stretched more one way than the other; its mean width is used",
                 "apply the transform to the path, or convert the stroke to a path",
@@ -152,16 +152,16 @@ impl Notes {
         }
     }
 
-    /// The kinds of trouble so far that may explain why nothing was found, in few words.
+    /// The kinds of trouble so far that may explain why nothing was found, in few message.
     pub(crate) fn summary(&self) -> String {
         let all = self.0.borrow();
-        let telling =
+        let is_relevant =
             |note: &Note| !matches!(note, Note::Corner | Note::NoSize | Note::OldInkscape | Note::NoNamespace);
-        let told = all.iter().filter(|(note, _)| telling(note));
-        told.map(|(note, (count, _))| format!("{} ({count}x)", note.words().0)).collect::<Vec<_>>().join(", ")
+        let told = all.iter().filter(|(note, _)| is_relevant(note));
+        told.map(|(note, (count, _))| format!("{} ({count}x)", note.message().0)).collect::<Vec<_>>().join(", ")
     }
 
-    /// One warning a kind.
+    /// One warning per kind.
     pub(crate) fn warnings(&self, file: &str) -> Vec<Warning> {
         let all = self.0.borrow();
         all.iter().map(|(&note, (count, examples))| warning(file, note, *count, examples)).collect()
@@ -169,7 +169,7 @@ impl Notes {
 }
 
 fn warning(file: &str, note: Note, count: usize, examples: &[String]) -> Warning {
-    let (what, advice) = note.words();
+    let (what, advice) = note.message();
     let named: Vec<_> = examples.iter().filter(|e| !e.is_empty()).map(String::as_str).collect();
     let times = if count > 1 { format!(" ({count} times)") } else { String::new() };
     let list = if named.is_empty() { String::new() } else { format!(": {}", named.join(", ")) };

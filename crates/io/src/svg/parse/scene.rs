@@ -14,7 +14,7 @@ use crate::svg::parse::{
     meta::{Meta, meta},
     notes::Note,
     source::{Source, clip_text},
-    style::{Own, Property, Style, computed},
+    style::{ComputedStyle, Own, Property, computed},
 };
 
 /// One thing of the drawing.
@@ -23,7 +23,7 @@ pub(crate) struct Node {
     /// From its coordinates to those of its parent.
     pub(crate) transform: Affine,
     /// Computed inherited properties.
-    pub(crate) style: Rc<Style>,
+    pub(crate) style: Rc<ComputedStyle>,
     /// Properties of its own: opacity, clip, mask, filter.
     pub(crate) own: Own,
     /// What percentages refer to.
@@ -57,8 +57,8 @@ impl Node {
 
 /// Where the walk is.
 #[derive(Clone)]
-struct Place<'u> {
-    style: Rc<Style>,
+struct Position<'u> {
+    style: Rc<ComputedStyle>,
     viewport: Viewport,
     depth: usize,
     /// The `<use>` targets that the walk is inside of.
@@ -79,8 +79,8 @@ impl Used<'_> {
 /// The whole drawing, in user coordinates of the root.
 pub(crate) fn build(source: &Source<'_>, viewport: Viewport) -> Result<Node> {
     let root = source.xml.root_element();
-    let (style, _) = computed(source, root, &Rc::new(Style::default()), viewport);
-    let place = Place { style: Rc::clone(&style), viewport, depth: 0, uses: None };
+    let (style, _) = computed(source, root, &Rc::new(ComputedStyle::default()), viewport);
+    let place = Position { style: Rc::clone(&style), viewport, depth: 0, uses: None };
     let node = Node {
         transform: transform(source, root),
         style,
@@ -96,21 +96,21 @@ pub(crate) fn build(source: &Source<'_>, viewport: Viewport) -> Result<Node> {
 /// The content of a definition such as `<clipPath>`, as a group.
 pub(crate) fn build_definition(source: &Source<'_>, xml: Xml<'_, '_>, viewport: Viewport) -> Result<Option<Rc<Node>>> {
     let Some(xml) = source.xml.get_node(xml.id()) else { return Ok(None) };
-    let mut style = Rc::new(Style::default());
+    let mut style = Rc::new(ComputedStyle::default());
     let mut chain: Vec<_> = xml.ancestors().filter(Xml::is_element).collect();
     chain.reverse();
     let mut own = Own::default();
     for node in chain {
         (style, own) = computed(source, node, &style, viewport);
     }
-    let place = Place { style: Rc::clone(&style), viewport, depth: 1, uses: None };
+    let place = Position { style: Rc::clone(&style), viewport, depth: 1, uses: None };
     let content = Content::Group(children(source, xml, &place)?);
     let meta = Rc::new(meta(source, xml, "g"));
     let transform = transform(source, xml);
     Ok(Some(Rc::new(Node { transform, style, own, viewport, viewport_clip: None, meta, content })))
 }
 
-fn children<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>) -> Result<Vec<Rc<Node>>> {
+fn children<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>) -> Result<Vec<Rc<Node>>> {
     let mut nodes = Vec::new();
     for child in xml.children() {
         nodes.extend(node(source, child, place)?);
@@ -118,7 +118,7 @@ fn children<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>) -> Res
     Ok(nodes)
 }
 
-fn node<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>) -> Result<Option<Rc<Node>>> {
+fn node<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>) -> Result<Option<Rc<Node>>> {
     if !source.is_svg(xml) {
         return Ok(None);
     }
@@ -132,7 +132,7 @@ fn node<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>) -> Result<
     if own.get("display") == Some("none") {
         return Ok(None);
     }
-    let inside = Place { style: Rc::clone(&style), depth: place.depth + 1, ..place.clone() };
+    let inside = Position { style: Rc::clone(&style), depth: place.depth + 1, ..place.clone() };
     let mut built = Node {
         transform: own_transform(source, xml, &own),
         style,
@@ -183,7 +183,7 @@ fn shape(source: &Source<'_>, xml: Xml<'_, '_>, node: &Node) -> Result<Option<Ge
 }
 
 /// The first child of a `<switch>` that asks for nothing special.
-fn choice<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>) -> Result<Vec<Rc<Node>>> {
+fn choice<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>) -> Result<Vec<Rc<Node>>> {
     let accepts = |child: &Xml<'a, 'a>| {
         let language = child.attribute("systemLanguage");
         let extension = child.attribute("requiredExtensions");
@@ -198,7 +198,7 @@ fn choice<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>) -> Resul
 }
 
 /// Fills in what a `<use>` shows.
-fn reuse<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>, built: &mut Node) -> Result<()> {
+fn reuse<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>, built: &mut Node) -> Result<()> {
     let Some(target) = source.target(xml) else { return Ok(()) };
     let inside_itself = xml.ancestors().any(|a| a.id() == target.id());
     if inside_itself || place.uses.is_some_and(|uses| uses.contains(target.id())) {
@@ -206,7 +206,7 @@ fn reuse<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>, built: &m
         return Ok(());
     }
     let used = Used { id: target.id(), outer: place.uses };
-    let inside = Place { uses: Some(&used), ..place.clone() };
+    let inside = Position { uses: Some(&used), ..place.clone() };
     let at = |name, axis| offset(xml, place.viewport, name, axis).unwrap_or(0.0);
     built.transform *= Affine::translate((at("x", Axis::X), at("y", Axis::Y)));
     let name = target.tag_name().name();
@@ -220,7 +220,7 @@ fn reuse<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Place<'_>, built: &m
     });
     source.count_node()?;
     let (style, own) = computed(source, target, &inside.style, inside.viewport);
-    let inside = Place { style: Rc::clone(&style), depth: inside.depth + 1, ..inside };
+    let inside = Position { style: Rc::clone(&style), depth: inside.depth + 1, ..inside };
     let mut content = Node {
         transform: own_transform(source, target, &own),
         style,
@@ -246,7 +246,7 @@ fn offset(xml: Xml<'_, '_>, viewport: Viewport, name: &str, axis: Axis) -> Optio
 fn nested<'a>(
     source: &Source<'a>,
     xml: Xml<'a, 'a>,
-    place: &Place<'_>,
+    place: &Position<'_>,
     built: &mut Node,
     size: [Option<f64>; 2],
 ) -> Result<()> {
@@ -258,7 +258,7 @@ fn nested<'a>(
     }
     let fit = length::fit(source, xml, width, height)?;
     let corner = if built.meta.tag == "svg" { (at("x", Axis::X), at("y", Axis::Y)) } else { (None, None) };
-    let place = Place { viewport: fit.viewport, ..place.clone() };
+    let place = Position { viewport: fit.viewport, ..place.clone() };
     built.transform *= Affine::translate((corner.0.unwrap_or(0.0), corner.1.unwrap_or(0.0)))
         * Affine::new([fit.scale[0], 0.0, 0.0, fit.scale[1], fit.shift[0], fit.shift[1]]);
     if !matches!(built.own.get("overflow"), Some("visible" | "auto")) && fit.scale[0] > 0.0 && fit.scale[1] > 0.0 {
@@ -310,7 +310,8 @@ mod tests {
 
     fn boxes(svg: &str) -> Vec<String> {
         let text = format!(
-            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' viewBox='0 0 100 100'>{svg}</svg>"
+            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' viewBox='0 0 100 \
+             100'>{svg}</svg>"
         );
         with_source(&text, &ReadOptions::new("s.svg"), |source| {
             let root = build(source, Viewport { width: 100.0, height: 100.0 })?;
@@ -343,9 +344,11 @@ mod tests {
 
     #[test]
     fn hidden_things_are_left_out() {
-        let svg = "<g style='display:none'><rect width='1' height='1'/></g><rect visibility='hidden' width='1' height='1'/>
+        let svg = "<g style='display:none'><rect width='1' height='1'/></g><rect visibility='hidden' width='1' \
+             height='1'/>
             <g visibility='hidden'><rect visibility='visible' width='2' height='2'/></g>
-            <switch><foreignObject requiredExtensions='x'/><rect width='3' height='3'/><rect width='4' height='4'/></switch>";
+            <switch><foreignObject requiredExtensions='x'/><rect width='3' height='3'/><rect width='4' \
+            height='4'/></switch>";
         assert_eq!(boxes(svg), ["0 0 2 2", "0 0 3 3"]);
     }
 

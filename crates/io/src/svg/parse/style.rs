@@ -93,9 +93,9 @@ const OWN: [&str; 15] = [
 
 /// The inherited properties of an element, computed. Absent values are initial.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Style([Option<Rc<str>>; PROPERTIES.len()]);
+pub(crate) struct ComputedStyle([Option<Rc<str>>; PROPERTIES.len()]);
 
-impl Style {
+impl ComputedStyle {
     /// The computed value.
     pub(crate) fn get(&self, property: Property) -> &str {
         let (_, _, initial) = PROPERTIES[property as usize];
@@ -157,7 +157,7 @@ impl Own {
         self.0.iter().find(|(n, _)| *n == name).map(|(_, value)| &**value)
     }
 
-    /// The same properties but for one.
+    /// The same properties except one.
     pub(crate) fn without(&self, name: &str) -> Self {
         Self(self.0.iter().filter(|(n, _)| *n != name).cloned().collect())
     }
@@ -172,9 +172,9 @@ impl Own {
 pub(crate) fn computed<'a>(
     source: &Source<'a>,
     node: Xml<'a, 'a>,
-    parent: &Rc<Style>,
+    parent: &Rc<ComputedStyle>,
     viewport: Viewport,
-) -> (Rc<Style>, Own) {
+) -> (Rc<ComputedStyle>, Own) {
     let mut set = Setter { source, parent, viewport, style: Rc::clone(parent), own: Own::default() };
     let declared = declarations(source, node);
     // `color` and `font-size` first: other values refer to them.
@@ -189,7 +189,8 @@ pub(crate) fn computed<'a>(
     (set.style, set.own)
 }
 
-/// All declarations of an element, weakest first: presentation attributes, style sheets, the style attribute, important ones.
+/// All declarations of an element, weakest first: presentation attributes, style sheets, the style attribute, important
+/// ones.
 fn declarations<'a>(source: &Source<'a>, node: Xml<'a, 'a>) -> Vec<(&'a str, String)> {
     let mut all: Vec<(&str, String)> = Vec::new();
     let known = |name: &str| PROPERTIES.iter().any(|(_, n, _)| *n == name) || OWN.contains(&name);
@@ -228,9 +229,9 @@ fn static_name(name: &str) -> Option<&'static str> {
 
 struct Setter<'a, 's> {
     source: &'s Source<'a>,
-    parent: &'s Rc<Style>,
+    parent: &'s Rc<ComputedStyle>,
     viewport: Viewport,
-    style: Rc<Style>,
+    style: Rc<ComputedStyle>,
     own: Own,
 }
 
@@ -318,10 +319,10 @@ mod tests {
     use super::*;
     use crate::svg::{options::ReadOptions, parse::source::with_source};
 
-    fn style_of_last(svg: &str) -> (Rc<Style>, Own) {
+    fn style_of_last(svg: &str) -> (Rc<ComputedStyle>, Own) {
         let text = format!("<svg xmlns='http://www.w3.org/2000/svg'>{svg}</svg>");
         with_source(&text, &ReadOptions::new("s.svg"), |source| {
-            let mut style = Rc::new(Style::default());
+            let mut style = Rc::new(ComputedStyle::default());
             let mut own = Own::default();
             let last = source.xml.descendants().rfind(Xml::is_element).unwrap();
             let mut chain: Vec<_> = last.ancestors().filter(Xml::is_element).collect();
@@ -348,7 +349,8 @@ mod tests {
     #[test]
     fn inheritance_and_current_colour() {
         let (style, own) = style_of_last(
-            "<g color='teal' opacity='.5' stroke-width='10%' fill='none'><path stroke='currentColor' fill='inherit'/></g>",
+            "<g color='teal' opacity='.5' stroke-width='10%' fill='none'><path stroke='currentColor' \
+             fill='inherit'/></g>",
         );
         assert_eq!((style.get(P::Stroke), style.get(P::Fill)), ("#008080", "none"));
         assert!((style.number(P::StrokeWidth) - 35.3553391).abs() < 1e-6);

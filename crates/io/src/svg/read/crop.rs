@@ -5,8 +5,8 @@ use arabesque_core::{Bounds, Class, Exemplar, Result, Role};
 use crate::svg::drawing::Drawing;
 
 impl Drawing {
-    /// The drawing seen through a smaller window: elements with their centre in it, those that reach in as context only, and the curves
-    /// that meet it. Elements with their centre in the `hole` are left out. The page stays.
+    /// The drawing seen through a smaller window: elements with their centre in it, those that reach in as context
+    /// only, and the curves that meet it. Elements with their centre in the `hole` are left out. The page stays.
     ///
     /// # Errors
     /// As [`Exemplar::with_curves`], naming `place`.

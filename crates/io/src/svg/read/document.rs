@@ -19,8 +19,9 @@ use crate::{
     text::suggest::nearest,
 };
 
-/// An SVG file, parsed once for everything that is read of it: the text is checked and parsed, styles and `<use>` are resolved, and each
-/// reader ([`Document::exemplar`], [`Document::shape`] and so on) starts from there. Every reader reports its own warnings.
+/// An SVG file, parsed once for everything that is read of it: the text is checked and parsed, styles and `<use>` are
+/// resolved, and each reader ([`Document::exemplar`], [`Document::shape`] and so on) starts from there. Every reader
+/// reports its own warnings.
 pub struct Document<'a> {
     source: Source<'a>,
     pub(crate) options: &'a ReadOptions,
@@ -42,7 +43,7 @@ impl<'a> Document<'a> {
     /// Parses `text` and hands it to `work`: what was parsed borrows the text, so it cannot outlive this call.
     ///
     /// # Errors
-    /// [`Error::Input`] when the text is no usable SVG, [`Error::Limit`] when it is too large; those of `work`.
+    /// [`Error::Input`] when the text is not usable SVG, [`Error::Limit`] when it is too large; those of `work`.
     pub fn with<T>(text: &str, options: &ReadOptions, work: impl FnOnce(&Document<'_>) -> Result<T>) -> Result<T> {
         with_source(text, options, |source| work(&Document { source: source.clone(), options, drawn: OnceCell::new() }))
     }

@@ -5,21 +5,24 @@ use std::rc::Rc;
 use arabesque_core::{Bounds, Error, FillRule, Outline, Result, Shape};
 use kurbo::{Affine, BezPath};
 
-use crate::svg::{
-    drawing::{Page, Unit},
-    options::ReadOptions,
-    parse::{
-        meta::Part,
-        notes::Note,
-        scene::{Content, Node},
-        style::Property as P,
+use crate::{
+    svg::{
+        drawing::Page,
+        options::ReadOptions,
+        parse::{
+            meta::Part,
+            notes::Note,
+            scene::{Content, Node},
+            style::Property as P,
+        },
+        read::document::{Document, Opened, by_id, parts},
+        shape::{
+            flatten::{self, flattened},
+            painted_area::Painter,
+            subpath::is_closed,
+        },
     },
-    read::document::{Document, Opened, by_id, parts},
-    shape::{
-        flatten::{self, flattened},
-        painted_area::Inker,
-        subpath::is_closed,
-    },
+    text::unit::Unit,
 };
 
 /// Reads an area from a text of which nothing else is read.
@@ -31,18 +34,19 @@ pub fn read_shape(text: &str, id: Option<&str>, options: &ReadOptions) -> Result
 }
 
 impl Document<'_> {
-    /// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with the given id.
+    /// Reads the area enclosed by all shapes of the file (of its layer "Domain" where it has one), or by the item with
+    /// the given id.
     ///
-    /// Stroke widths do not count. A shape without fill encloses by the even-odd rule, any other by its own rule. Where one shape covers
-    /// the whole page and others do not, it is taken for a background.
+    /// Stroke widths do not count. A shape without fill encloses by the even-odd rule, any other by its own rule. Where
+    /// one shape covers the whole page and others do not, it is taken for a background.
     ///
     /// # Errors
-    /// [`Error::Input`] when the text is no usable SVG, nothing has that id, a line is open, or no area is enclosed;
+    /// [`Error::Input`] when the text is not usable SVG, nothing has that id, a line is open, or no area is enclosed;
     /// [`Error::Limit`] when the file is too large.
     pub fn shape(&self, id: Option<&str>) -> Result<(Shape, Page)> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
+        let painter = Painter::new(source);
         let layers = parts(&root, Part::Domain);
         let (place, nodes) = match id {
             Some(id) => (format!("{}#{id}", source.name), vec![by_id(source, &root, id)?]),
@@ -50,14 +54,14 @@ impl Document<'_> {
             None => (source.name.to_owned(), vec![(Affine::IDENTITY, Rc::clone(&root))]),
         };
         let frame = page.filter(|_| id.is_none()).map(|p| p.view);
-        let shape = shape(&inker, &place, &nodes, frame)?;
+        let shape = shape(&painter, &place, &nodes, frame)?;
         let view = page.unwrap_or(Page { view: shape.outline().bounds(), unit: Unit::Px, unit_per_user: 1.0 });
         Ok((shape, view))
     }
 }
 
 /// A path with the transform to the root and the rule by which it encloses area.
-struct Border {
+struct DomainPath {
     path: BezPath,
     rule: FillRule,
     clip: Option<Outline<2>>,
@@ -65,16 +69,17 @@ struct Border {
     name: String,
 }
 
-/// The area that all shapes in some nodes enclose, `place` for messages; what covers the `frame` is left out where there are others.
+/// The area that all shapes in some nodes enclose, `place` for messages; what covers the `frame` is left out where
+/// there are others.
 pub(crate) fn shape(
-    inker: &Inker<'_, '_>,
+    painter: &Painter<'_, '_>,
     place: &str,
     nodes: &[(Affine, Rc<Node>)],
     frame: Option<Bounds<2>>,
 ) -> Result<Shape> {
     let mut borders = Vec::new();
     for (parent, node) in nodes {
-        collect(inker, node, *parent, None, &mut borders)?;
+        collect(painter, node, *parent, None, &mut borders)?;
     }
     let mut areas = Vec::new();
     let mut open = Vec::new();
@@ -88,7 +93,7 @@ pub(crate) fn shape(
         areas.push(area);
     }
     areas.retain(|a| !a.rings.is_empty());
-    leave_background(inker, &mut areas, frame);
+    leave_background(painter, &mut areas, frame);
     let rings: Vec<_> = areas.iter().flat_map(|a| a.rings.iter().cloned()).collect();
     if let Some(shape) = Shape::new(&rings, FillRule::NonZero) {
         return Ok(shape);
@@ -101,38 +106,38 @@ pub(crate) fn shape(
 }
 
 /// Drops shapes that cover the page where there are others.
-fn leave_background(inker: &Inker<'_, '_>, areas: &mut Vec<Outline<2>>, frame: Option<Bounds<2>>) {
+fn leave_background(painter: &Painter<'_, '_>, areas: &mut Vec<Outline<2>>, frame: Option<Bounds<2>>) {
     let Some(frame) = frame else { return };
     let covers = |a: &Outline<2>| a.area() >= 0.95 * frame.measure() && a.bounds().grown(0.05).contains(frame.centre());
     if areas.iter().any(|a| !covers(a)) && areas.iter().any(covers) {
         areas.retain(|a| !covers(a));
-        inker.source.notes.add(Note::DomainBackground, String::new);
+        painter.source.notes.add(Note::DomainBackground, String::new);
     }
 }
 
 fn collect(
-    inker: &Inker<'_, '_>,
+    painter: &Painter<'_, '_>,
     node: &Node,
     parent: Affine,
     clip: Option<&Outline<2>>,
-    borders: &mut Vec<Border>,
+    borders: &mut Vec<DomainPath>,
 ) -> Result<()> {
     let world = parent * node.transform;
-    let own = inker.clip(node, world)?;
+    let own = painter.clip(node, world)?;
     let both = match (clip, own) {
         (Some(a), Some(b)) => Some(a.intersection(&b)),
         (a, b) => b.or_else(|| a.cloned()),
     };
     if let Content::Shape(geometry) = &node.content {
-        inker.check(node, geometry, world)?;
+        painter.check(node, geometry, world)?;
         let path = world * geometry.path.clone();
         let is_filled = node.style.get(P::Fill) != "none";
         let rule = if is_filled { flatten::fill_rule(node.style.get(P::FillRule)) } else { FillRule::EvenOdd };
         let name = node.meta.label.clone().or_else(|| node.meta.id.clone()).unwrap_or_else(|| node.meta.tag.to_owned());
         let is_open = !is_filled && !path.subpaths().any(is_nearly_closed);
-        borders.push(Border { path, rule, clip: both.clone(), is_open, name });
+        borders.push(DomainPath { path, rule, clip: both.clone(), is_open, name });
     }
-    node.children().iter().try_for_each(|child| collect(inker, child, world, both.as_ref(), borders))
+    node.children().iter().try_for_each(|child| collect(painter, child, world, both.as_ref(), borders))
 }
 
 /// Whether a subpath ends at its start, or so near that it was meant to.

@@ -1,33 +1,37 @@
-//! Reading an exemplar.
+//! The exemplar in a file: what is selected of the drawing, as elements and curves with their looks, and the other
+//! layers of a job.
 
 use std::rc::Rc;
 
 use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role};
 use kurbo::Affine;
 
-use crate::svg::{
-    drawing::{Drawing, Job, Page, Stacking, Unit},
-    options::{Method, ReadOptions},
-    parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
-    read::{
-        document::{Document, Opened, parts},
-        domain::shape,
-        flow::strokes,
+use crate::{
+    svg::{
+        drawing::{Drawing, Job, Page, Stacking},
+        options::{Method, ReadOptions},
+        parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
+        read::{
+            document::{Document, Opened, parts},
+            domain::shape,
+            flow::strokes,
+        },
+        shape::{
+            extent::{self, bounds},
+            painted_area::Painter,
+        },
+        understand::{
+            classes::{self, Classes},
+            curves::{Curves, Gatherer},
+            fragment::{fragment, push_placed},
+            frame::{self, frame_mark, is_frame_mark},
+            item::{Item, Kind, Origin, Selection},
+            outlined_lines::trace,
+            select::select,
+            surroundings::Surroundings,
+        },
     },
-    shape::{
-        extent::{self, bounds},
-        painted_area::Inker,
-    },
-    understand::{
-        classes::{self, Classes},
-        curves::{Curves, Gatherer},
-        fragment::{fragment, push_placed},
-        frame::{self, frame_mark, is_frame_mark},
-        item::{Item, Kind, Origin, Selection},
-        outlined_lines::trace,
-        select::select,
-        surroundings::Context,
-    },
+    text::unit::Unit,
 };
 
 /// Reads an exemplar from a text of which nothing else is read.
@@ -42,20 +46,21 @@ impl Document<'_> {
     /// Reads an exemplar, and the rest of the job where the file holds one.
     ///
     /// # Errors
-    /// [`Error::Input`] when the text is no usable SVG or holds neither a whole element nor a curve, [`Error::Limit`] when it is too large,
-    /// [`Error::Unsupported`] when it holds a network of lines turned into an outline and the method is not [`Method::Elements`].
+    /// [`Error::Input`] when the text is not usable SVG or holds neither a whole element nor a curve, [`Error::Limit`]
+    /// when it is too large, [`Error::Unsupported`] when it holds a network of lines turned into an outline and the
+    /// method is not [`Method::Elements`].
     pub fn exemplar(&self) -> Result<Drawing> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
-        inker.check_all(&root, Affine::IDENTITY)?;
-        let mut scope = scope(&inker, &root, page.as_ref())?;
+        let painter = Painter::new(source);
+        painter.check_all(&root, Affine::IDENTITY)?;
+        let mut scope = scope(&painter, &root, page.as_ref())?;
         scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
-        let mut found = select(&inker, scope.frame, self.options.method, &scope.roots)?;
+        let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
         settle(source, &mut found.items, window, self.options.method)?;
-        let job = job(&inker, &root)?;
+        let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
@@ -63,7 +68,7 @@ impl Document<'_> {
         let stacking = stacking(&found.items, is_curve);
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
-        let mut gatherer = Gatherer::new(&inker, &mut definitions, window);
+        let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
         lines.iter().try_for_each(|item| gatherer.add(item))?;
         let Curves { curves, styles, strokes } = gatherer.finish();
         let (elements, classes) = elements(source, &items, scope.window.as_ref());
@@ -88,7 +93,7 @@ fn stacking(items: &[Item], is_curve: impl Fn(&Item) -> bool) -> Stacking {
 
 /// Where the elements are looked for.
 struct Scope {
-    roots: Vec<(Context, Rc<Node>)>,
+    roots: Vec<(Surroundings, Rc<Node>)>,
     /// What sizes are compared with.
     frame: Bounds<2>,
     /// The frame of the exemplar, where it is known before the elements are.
@@ -100,25 +105,25 @@ const CORNER: f64 = 0.4;
 /// The same for a layer that is the exemplar by name.
 const LAYER: f64 = 0.7;
 
-fn scope(inker: &Inker<'_, '_>, root: &Rc<Node>, page: Option<&Page>) -> Result<Scope> {
+fn scope(painter: &Painter<'_, '_>, root: &Rc<Node>, page: Option<&Page>) -> Result<Scope> {
     let layers = parts(root, Part::Exemplar);
     let by_layer = !layers.is_empty();
     let roots = if by_layer { layers } else { vec![(Affine::IDENTITY, Rc::clone(root))] };
     let content = roots.iter().fold(Bounds::EMPTY, |all, (parent, node)| all.union(&content(node, *parent)));
     let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
     let share = page.map_or(0.0, |p| content.measure() / p.view.measure());
-    // The box around a straight line is no frame, whatever its share of the page.
+    // The box around a straight line is not a frame, whatever its share of the page.
     let fits = page.is_some() && (frame::is_thin(&content) || share >= if by_layer { LAYER } else { CORNER });
     if !fits && marked.is_none() && page.is_some() && !by_layer && !content.is_empty() {
-        inker.source.notes.add(Note::Corner, String::new);
+        painter.source.notes.add(Note::Corner, String::new);
     }
     if page.is_none() {
-        inker.source.notes.add(Note::NoSize, String::new);
+        painter.source.notes.add(Note::NoSize, String::new);
     }
     let window = marked.or_else(|| page.map(|p| p.view).filter(|_| fits));
     let frame = window.unwrap_or(content);
     let frame = if frame.measure() > 0.0 { frame } else { page.map_or(frame, |p| p.view) };
-    let roots = roots.into_iter().map(|(parent, node)| (Context::new(parent), node)).collect();
+    let roots = roots.into_iter().map(|(parent, node)| (Surroundings::new(parent), node)).collect();
     Ok(Scope { roots, frame, window })
 }
 
@@ -168,7 +173,8 @@ fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> R
     Err(Error::Unsupported {
         what: format!("{}: {count} outline{s} of a whole network of lines ({}{more})", source.name, named.join(", ")),
         advice:
-            "draw the lines as strokes or with one width, use --method elements to treat every connected piece as one element, or mark \
+            "draw the lines as strokes or with one width, use --method elements to treat every connected piece as one \
+             element, or mark \
                  items with data-arabesque=\"element\" or \"ignore\""
                 .into(),
     })
@@ -204,7 +210,7 @@ fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> 
         centre: item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre()),
         pose,
         outline: item.outline.clone(),
-        colour: item.ink.colour(),
+        colour: item.painted.colour(),
         role,
     };
     (items.iter().zip(roles).zip(&classes.members).map(element).collect(), classes)
@@ -219,15 +225,15 @@ fn background(found: &Selection, definitions: &mut Definitions<'_, '_>) -> Optio
 }
 
 /// The layers of a whole job beside the exemplar.
-fn job(inker: &Inker<'_, '_>, root: &Rc<Node>) -> Result<Job> {
+fn job(painter: &Painter<'_, '_>, root: &Rc<Node>) -> Result<Job> {
     let area = |part, name| {
         let nodes = parts(root, part);
-        let place = format!("{}: layer \"{name}\"", inker.source.name);
-        if nodes.is_empty() { Ok(None) } else { shape(inker, &place, &nodes, None).map(Some) }
+        let place = format!("{}: layer \"{name}\"", painter.source.name);
+        if nodes.is_empty() { Ok(None) } else { shape(painter, &place, &nodes, None).map(Some) }
     };
     Ok(Job {
         domain: area(Part::Domain, "Domain")?,
         avoid: area(Part::Avoid, "Avoid")?,
-        flow: strokes(inker, &parts(root, Part::Flow))?,
+        flow: strokes(painter, &parts(root, Part::Flow))?,
     })
 }

@@ -12,7 +12,7 @@ use crate::svg::{
         scene::{Content, Node},
     },
     read::document::{Document, Opened, parts},
-    shape::{flatten::flattened, painted_area::Inker, subpath::is_closed},
+    shape::{flatten::flattened, painted_area::Painter, subpath::is_closed},
 };
 
 /// Reads directed strokes from a text of which nothing else is read.
@@ -24,17 +24,19 @@ pub fn read_flow(text: &str, options: &ReadOptions) -> Result<Vec<FlowStroke>> {
 }
 
 impl Document<'_> {
-    /// Reads every path of the file, or of its layer "Flow" where it has one, as a directed stroke in the file's user coordinates.
+    /// Reads every path of the file, or of its layer "Flow" where it has one, as a directed stroke in the file's user
+    /// coordinates.
     ///
     /// # Errors
-    /// [`Error::Input`] when the text is no usable SVG or holds no path with a length, [`Error::Limit`] when it is too large.
+    /// [`Error::Input`] when the text is not usable SVG or holds no path with a length, [`Error::Limit`] when it is too
+    /// large.
     pub fn flow(&self) -> Result<Vec<FlowStroke>> {
         let Opened { source, root, .. } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
+        let painter = Painter::new(source);
         let layers = parts(&root, Part::Flow);
         let nodes = if layers.is_empty() { vec![(Affine::IDENTITY, root)] } else { layers };
-        let strokes = strokes(&inker, &nodes)?;
+        let strokes = strokes(&painter, &nodes)?;
         if strokes.is_empty() {
             return Err(Error::input(
                 source.name,
@@ -47,11 +49,11 @@ impl Document<'_> {
 }
 
 /// The strokes in some nodes.
-pub(crate) fn strokes(inker: &Inker<'_, '_>, nodes: &[(Affine, Rc<Node>)]) -> Result<Vec<FlowStroke>> {
-    fn walk(inker: &Inker<'_, '_>, node: &Node, parent: Affine, found: &mut Vec<FlowStroke>) -> Result<()> {
+pub(crate) fn strokes(painter: &Painter<'_, '_>, nodes: &[(Affine, Rc<Node>)]) -> Result<Vec<FlowStroke>> {
+    fn walk(painter: &Painter<'_, '_>, node: &Node, parent: Affine, found: &mut Vec<FlowStroke>) -> Result<()> {
         let world = parent * node.transform;
         if let Content::Shape(geometry) = &node.content {
-            inker.check(node, geometry, world)?;
+            painter.check(node, geometry, world)?;
             let path = world * geometry.path.clone();
             for elements in path.subpaths() {
                 let mut points = flattened(elements);
@@ -59,16 +61,16 @@ pub(crate) fn strokes(inker: &Inker<'_, '_>, nodes: &[(Affine, Rc<Node>)]) -> Re
                     points.extend(points.first().copied());
                 }
                 let length = polyline_length(&points);
-                if length > inker.source.limits.extent {
+                if length > painter.source.limits.extent {
                     found.push(points);
                 }
             }
         }
-        node.children().iter().try_for_each(|child| walk(inker, child, world, found))
+        node.children().iter().try_for_each(|child| walk(painter, child, world, found))
     }
     let mut found = Vec::new();
     for (parent, node) in nodes {
-        walk(inker, node, *parent, &mut found)?;
+        walk(painter, node, *parent, &mut found)?;
     }
     Ok(found)
 }

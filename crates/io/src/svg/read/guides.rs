@@ -17,7 +17,7 @@ use crate::svg::{
     read::document::{Document, Opened, by_id},
     shape::{
         extent::bounds,
-        painted_area::Inker,
+        painted_area::Painter,
         subpath::{is_closed, line},
     },
 };
@@ -42,20 +42,22 @@ pub fn read_lines(text: &str, id: Option<&str>, options: &ReadOptions) -> Result
 }
 
 impl Document<'_> {
-    /// Reads every path and shape of the file, or of the item (a shape, a group or a layer) with the given id or label. Each subpath is a
-    /// line of its own; paint does not count. A fill that covers the whole page is a background, where the file holds anything else.
+    /// Reads every path and shape of the file, or of the item (a shape, a group or a layer) with the given id or label.
+    /// Each subpath is a line of its own; paint does not count. A fill that covers the whole page is a background,
+    /// where the file holds anything else.
     ///
     /// # Errors
-    /// [`Error::Input`] when the text is no usable SVG, nothing has that id, or no line has a length; [`Error::Limit`] when it is too large.
+    /// [`Error::Input`] when the text is not usable SVG, nothing has that id, or no line has a length; [`Error::Limit`]
+    /// when it is too large.
     pub fn guides(&self, id: Option<&str>) -> Result<Lines> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
+        let painter = Painter::new(source);
         let (place, start) = match id {
             Some(id) => (format!("{}#{id}", source.name), by_id(source, &root, id)?),
             None => (source.name.to_owned(), (Affine::IDENTITY, Rc::clone(&root))),
         };
-        let mut finder = Finder { inker: &inker, page, whole: id.is_none(), found: Vec::new(), covers: Vec::new() };
+        let mut finder = Finder { painter: &painter, page, whole: id.is_none(), found: Vec::new(), covers: Vec::new() };
         finder.walk(&start.1, start.0)?;
         let mut warnings = finder.leave_background();
         let (paths, points) = finder.lines();
@@ -77,7 +79,7 @@ impl Document<'_> {
 
 /// Walks a drawing and gathers its paths.
 struct Finder<'a, 's, 'i> {
-    inker: &'i Inker<'a, 's>,
+    painter: &'i Painter<'a, 's>,
     page: Option<Page>,
     /// Whether the whole file is looked at.
     whole: bool,
@@ -93,7 +95,7 @@ impl Finder<'_, '_, '_> {
         }
         let world = parent * node.transform;
         if let Content::Shape(geometry) = &node.content {
-            self.inker.check(node, geometry, world)?;
+            self.painter.check(node, geometry, world)?;
             let covers = self.page.is_some_and(|page| {
                 let own = bounds(node, parent);
                 let slack = page.view.size() * 0.025;
@@ -102,7 +104,7 @@ impl Finder<'_, '_, '_> {
                 node.style.get(P::Fill) != "none" && reaches
             });
             self.covers.push(covers);
-            self.found.push((name(self.inker.source, &node.meta, self.found.len()), world * geometry.path.clone()));
+            self.found.push((name(self.painter.source, &node.meta, self.found.len()), world * geometry.path.clone()));
         }
         node.children().iter().try_for_each(|child| self.walk(child, world))
     }
@@ -128,7 +130,7 @@ impl Finder<'_, '_, '_> {
     /// The subpaths that have a length, and the number of those that have none.
     fn lines(&self) -> (Vec<(String, Path<2>)>, usize) {
         let (mut lines, mut points) = (Vec::new(), 0);
-        let least = self.inker.source.limits.extent;
+        let least = self.painter.source.limits.extent;
         for (name, path) in &self.found {
             let parts: Vec<Path<2>> = path
                 .subpaths()

@@ -1,4 +1,4 @@
-//! A drawing of which a part is made anew: everything else stays as the file has it, to the last byte.
+//! A drawing of which a part is refilled: everything else stays as the file has it, to the last byte.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -11,23 +11,26 @@ use arabesque_core::{Error, Outline, Result};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
-use crate::svg::{
-    drawing::{Drawing, HostDocument, Page, Placed, Unit},
-    namespace::{INKSCAPE, NAMESPACE, SVG},
-    options::{Method, ReadOptions},
-    parse::{definitions::Definitions, source::Source},
-    read::{
-        document::{Document, Opened},
-        placed::{Kept, Matcher, Sorter},
+use crate::{
+    svg::{
+        drawing::{Drawing, HostDocument, Page, Placed},
+        namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
+        options::{Method, ReadOptions},
+        parse::{definitions::Definitions, source::Source},
+        read::{
+            document::{Document, Opened},
+            placed::{Matcher, Sorted, Sorter},
+        },
+        shape::{extent::bounds, painted_area::Painter},
+        understand::{
+            fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
+            surroundings::Surroundings,
+        },
     },
-    shape::{extent::bounds, painted_area::Inker},
-    understand::{
-        fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
-        surroundings::Context,
-    },
+    text::unit::Unit,
 };
 
-/// Reads a drawing of which a part is filled anew from a text of which nothing else is read.
+/// Reads a drawing of which a part is refilled from a text of which nothing else is read.
 ///
 /// # Errors
 /// As for [`Document::with`] and [`Document::host`].
@@ -41,25 +44,27 @@ pub fn read_host_document(
 }
 
 impl Document<'_> {
-    /// Reads a drawing of which everything in `area` is made anew: elements with their centre in it go, strokes are cut at its border.
+    /// Reads a drawing of which everything in `area` is refilled: elements with their centre in it go, strokes are cut
+    /// at its border.
     ///
     /// # Errors
-    /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that draws other things too.
+    /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that
+    /// draws other things too.
     pub fn host(&self, drawing: &Drawing, area: &Outline<2>) -> Result<HostDocument> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
-        inker.check_all(&root, Affine::IDENTITY)?;
+        let painter = Painter::new(source);
+        painter.check_all(&root, Affine::IDENTITY)?;
         let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
-        let roots = [(Context::new(Affine::IDENTITY).without(&self.options.without), Rc::clone(&root))];
-        let mut found = select(&inker, page.view, self.options.method, &roots)?;
+        let roots = [(Surroundings::new(Affine::IDENTITY).without(&self.options.without), Rc::clone(&root))];
+        let mut found = select(&painter, page.view, self.options.method, &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         if self.options.method != Method::Elements {
             trace(source, &mut found.items, &page.view)?;
         }
         let mut sorter = Sorter {
-            inker: &inker,
+            painter: &painter,
             matcher: Matcher::of_itself(drawing),
             area: Some(area),
             window: content.union(&page.view),
@@ -77,16 +82,16 @@ impl Document<'_> {
     }
 }
 
-fn is_changed(kept: &Kept) -> bool {
+fn is_changed(kept: &Sorted) -> bool {
     match kept {
-        Kept::Removed => true,
-        Kept::Element(_) => false,
-        Kept::Strokes { is_touched, .. } | Kept::Obstacle { is_touched, .. } => *is_touched,
+        Sorted::Removed => true,
+        Sorted::Element(_) => false,
+        Sorted::Strokes { is_touched, .. } | Sorted::Obstacle { is_touched, .. } => *is_touched,
     }
 }
 
 /// The nodes of the file that go: those of changed items, and of items that share a node with them.
-fn affected(source: &Source<'_>, items: &[Item], kept: &[Kept]) -> Result<BTreeSet<u32>> {
+fn affected(source: &Source<'_>, items: &[Item], kept: &[Sorted]) -> Result<BTreeSet<u32>> {
     let nodes = |item: &Item| item.parts.iter().map(|(_, node)| node.meta.xml.get()).collect::<Vec<_>>();
     let changed = items.iter().zip(kept).filter(|(_, kept)| is_changed(kept));
     let mut affected: BTreeSet<u32> = changed.flat_map(|(item, _)| nodes(item)).collect();
@@ -131,9 +136,9 @@ fn rewritten<'a, 's>(
     let mut moved = String::new();
     for item in items.iter().filter(|item| item.parts.iter().any(|(_, node)| affected.contains(&node.meta.xml.get()))) {
         let cut = match sorter.sort(item, &mut definitions)? {
-            Kept::Removed => continue,
-            Kept::Element(_) => None,
-            Kept::Strokes { cut, .. } | Kept::Obstacle { cut, .. } => cut,
+            Sorted::Removed => continue,
+            Sorted::Element(_) => None,
+            Sorted::Strokes { cut, .. } | Sorted::Obstacle { cut, .. } => cut,
         };
         moved.push_str(&cut.unwrap_or_else(|| fragment(item, &mut definitions).markup));
         moved.push('\n');
@@ -181,12 +186,7 @@ fn declaration(text: &str) -> String {
 
 /// Declarations of the namespaces that new things need and the root lacks.
 fn namespaces(source: &Source<'_>) -> String {
-    let needed = [
-        (None, SVG),
-        (Some("xlink"), "http://www.w3.org/1999/xlink"),
-        (Some("inkscape"), INKSCAPE),
-        (Some("arabesque"), NAMESPACE),
-    ];
+    let needed = [(None, SVG), (Some("xlink"), XLINK), (Some("inkscape"), INKSCAPE), (Some("arabesque"), NAMESPACE)];
     let root = source.xml.root_element();
     let mut out = String::new();
     for (prefix, uri) in needed {
@@ -258,7 +258,7 @@ mod tests {
         let holes: String = (0..16).map(|k| format!("M{} {}v20h20v-20z", 4 + 24 * (k % 4), 4 + 24 * (k / 4))).collect();
         let rest = rest(&format!("<path fill='red' fill-rule='evenodd' d='M0 0H100V100H0Z{holes}M105 105h1v1h-1z'/>"))
             .unwrap();
-        // The piece beside the page is all that is no line.
+        // The piece beside the page is all that is not a line.
         assert!(rest.placed.obstacles.len() == 1 && rest.placed.curves.len() > 6);
         assert!(rest.moved.contains("stroke=\"#ff0000\""), "{}", rest.moved);
         let area = Bounds::new(Vector::xy(40.0, 40.0), Vector::xy(60.0, 60.0)).grown(-1e-6);
@@ -268,7 +268,8 @@ mod tests {
 
     #[test]
     fn parts_of_clones_cannot_be_replaced() {
-        let net = "<defs><g id='n'><path d='M0 50H100M0 20H100M50 0V100' stroke='red' fill='none'/></g></defs><use href='#n'/>";
+        let net = "<defs><g id='n'><path d='M0 50H100M0 20H100M50 0V100' stroke='red' fill='none'/></g></defs><use \
+             href='#n'/>";
         assert!(rest(net).unwrap_err().to_string().contains("Unlink Clone"));
     }
 }

@@ -1,5 +1,5 @@
-//! What is read of a file, one reader for each use: exemplar, domain, flow, guides, painted areas, what is placed already, and the
-//! file that a result is written into.
+//! What is read of a file, one reader for each use: exemplar, domain, flow, guides, painted areas, what is placed
+//! already, and the file that a result is written into.
 
 pub(crate) mod crop;
 pub(crate) mod document;

@@ -3,18 +3,21 @@
 use arabesque_core::{Outline, Result, Warning};
 use kurbo::Affine;
 
-use crate::svg::{
-    drawing::{Page, Unit},
-    options::ReadOptions,
-    parse::{
-        colour,
-        geometry::Painted,
-        paint::{fraction, reference},
-        scene::{Content, Node},
-        style::Property as P,
+use crate::{
+    svg::{
+        drawing::Page,
+        options::ReadOptions,
+        parse::{
+            colour,
+            geometry::Painted,
+            paint::{fraction, reference},
+            scene::{Content, Node},
+            style::Property as P,
+        },
+        read::document::{Document, Opened},
+        shape::{extent::bounds, flatten, painted_area::Painter, stroke::stroked},
     },
-    read::document::{Document, Opened},
-    shape::{extent::bounds, flatten, painted_area::Inker, stroke::stroked},
+    text::unit::Unit,
 };
 
 /// A painted area.
@@ -51,13 +54,14 @@ impl Document<'_> {
     /// Takes a drawing apart. Clips are applied; a gradient or pattern becomes its mean colour, with a warning.
     ///
     /// # Errors
-    /// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+    /// [`arabesque_core::Error::Input`] when the text is not usable SVG, [`arabesque_core::Error::Limit`] when it is
+    /// too large.
     pub fn painted_areas(&self) -> Result<Areas> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
-        inker.check_all(&root, Affine::IDENTITY)?;
-        let mut taker = Taker { inker: &inker, areas: Vec::new(), gradients: 0, pictures: 0, effects: 0 };
+        let painter = Painter::new(source);
+        painter.check_all(&root, Affine::IDENTITY)?;
+        let mut taker = Taker { painter: &painter, areas: Vec::new(), gradients: 0, pictures: 0, effects: 0 };
         taker.node(&root, Affine::IDENTITY, &Inherited { opacity: 1.0, clip: None })?;
         let page = page.unwrap_or(Page { view: bounds(&root, Affine::IDENTITY), unit: Unit::Px, unit_per_user: 1.0 });
         let mut warnings = taker.warnings(source.name);
@@ -66,6 +70,16 @@ impl Document<'_> {
     }
 }
 
+/// The properties that give an area its colour.
+#[derive(Clone, Copy)]
+struct PaintedBy {
+    paint: P,
+    opacity: P,
+}
+
+const FILL: PaintedBy = PaintedBy { paint: P::Fill, opacity: P::FillOpacity };
+const STROKE: PaintedBy = PaintedBy { paint: P::Stroke, opacity: P::StrokeOpacity };
+
 /// What holds for everything inside a node.
 struct Inherited {
     opacity: f64,
@@ -73,7 +87,7 @@ struct Inherited {
 }
 
 struct Taker<'a, 's, 'i> {
-    inker: &'i Inker<'a, 's>,
+    painter: &'i Painter<'a, 's>,
     areas: Vec<Area>,
     gradients: usize,
     pictures: usize,
@@ -89,7 +103,7 @@ impl Taker<'_, '_, '_> {
         }
         let has = |name: &str| node.own.get(name).is_some_and(|v| v != "none" && v != "normal");
         self.effects += usize::from(has("mask") || has("filter") || has("mix-blend-mode"));
-        let clip = match (&at.clip, self.inker.clip(node, world)?) {
+        let clip = match (&at.clip, self.painter.clip(node, world)?) {
             (Some(a), Some(b)) => Some(a.intersection(&b)),
             (a, b) => b.or_else(|| a.clone()),
         };
@@ -104,28 +118,28 @@ impl Taker<'_, '_, '_> {
         let style = &node.style;
         if style.fills() {
             let rule = flatten::fill_rule(style.get(P::FillRule));
-            self.add(flatten::filled(&geometry.path, world, rule), node, (P::Fill, P::FillOpacity), &inside);
+            self.add(flatten::filled(&geometry.path, world, rule), node, FILL, &inside);
         }
         if style.strokes() {
-            self.add(stroked(node, &geometry.path, world), node, (P::Stroke, P::StrokeOpacity), &inside);
+            self.add(stroked(node, &geometry.path, world), node, STROKE, &inside);
         }
         Ok(())
     }
 
-    fn add(&mut self, outline: Outline<2>, node: &Node, (paint, opacity): (P, P), at: &Inherited) {
+    fn add(&mut self, outline: Outline<2>, node: &Node, by: PaintedBy, at: &Inherited) {
         let outline = at.clip.as_ref().map_or_else(|| outline.clone(), |clip| outline.intersection(clip));
         if outline.rings.is_empty() {
             return;
         }
-        let paint = node.style.get(paint);
+        let paint = node.style.get(by.paint);
         let colour = if reference(paint).is_some() {
             self.gradients += 1;
-            let [r, g, b] = colour::of_paint(self.inker.source, paint).map(|v| (v * 255.0).round() as u8);
+            let [r, g, b] = colour::of_paint(self.painter.source, paint).map(|v| (v * 255.0).round() as u8);
             format!("#{r:02x}{g:02x}{b:02x}")
         } else {
             paint.to_owned()
         };
-        self.areas.push(Area { outline, colour, opacity: at.opacity * fraction(node.style.get(opacity)) });
+        self.areas.push(Area { outline, colour, opacity: at.opacity * fraction(node.style.get(by.opacity)) });
     }
 
     fn warnings(&self, name: &str) -> Vec<Warning> {

@@ -7,25 +7,28 @@ use arabesque_core::{
 };
 use kurbo::Affine;
 
-use crate::svg::{
-    drawing::{Drawing, Fragment, Page, Placed, Stroke, Unit},
-    options::{Method, ReadOptions},
-    parse::{definitions::Definitions, meta::Meta},
-    read::document::{Document, Opened},
-    shape::{
-        cut_path::{Side, cut},
-        extent::bounds,
-        painted_area::Inker,
+use crate::{
+    svg::{
+        drawing::{Drawing, Fragment, Page, Placed, Stroke},
+        options::{Method, ReadOptions},
+        parse::{definitions::Definitions, meta::Meta},
+        read::document::{Document, Opened},
+        shape::{
+            cut_path::{Side, cut},
+            extent::bounds,
+            painted_area::Painter,
+        },
+        understand::{
+            classes::{self, WOBBLE},
+            curves::{Curves, Gatherer},
+            fragment::fragment,
+            item::{Item, Kind},
+            select::select,
+            signature::Signature,
+            surroundings::Surroundings,
+        },
     },
-    understand::{
-        classes::{self, WOBBLE},
-        curves::{Curves, Gatherer},
-        fragment::fragment,
-        item::{Item, Kind},
-        select::select,
-        signature::Signature,
-        surroundings::Context,
-    },
+    text::unit::Unit,
 };
 
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.
@@ -42,26 +45,31 @@ pub fn read_placed(text: &str, drawing: &Drawing, options: &ReadOptions) -> Resu
 impl Document<'_> {
     /// Reads what stays where it is, and matches it to the elements and curves of `drawing`.
     ///
-    /// Copies made by arabesque say what they are copies of (`data-arabesque-source`, `data-arabesque-curve`); other elements are matched by
-    /// name, colour and outline, other strokes by their paint. What matches nothing becomes an obstacle. Nothing at all in the file is no
-    /// error: there is nothing to keep.
+    /// Copies made by arabesque say what they are copies of (`data-arabesque-source`, `data-arabesque-curve`); other
+    /// elements are matched by name, colour and outline, other strokes by their paint. What matches nothing becomes an
+    /// obstacle. Nothing at all in the file is no error: there is nothing to keep.
     ///
     /// # Errors
-    /// [`arabesque_core::Error::Input`] when the text is no usable SVG, [`arabesque_core::Error::Limit`] when it is too large.
+    /// [`arabesque_core::Error::Input`] when the text is not usable SVG, [`arabesque_core::Error::Limit`] when it is
+    /// too large.
     pub fn placed(&self, drawing: &Drawing) -> Result<Placed> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
-        let inker = Inker::new(source);
-        inker.check_all(&root, Affine::IDENTITY)?;
+        let painter = Painter::new(source);
+        painter.check_all(&root, Affine::IDENTITY)?;
         let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let mut definitions = Definitions::new(source, "kept");
         let mut placed = Placed::on(page);
         if page.view.measure() > 0.0 && page.view.size().is_finite() {
             let method = if drawing.exemplar.curves.is_empty() { Method::Elements } else { Method::Curves };
-            let found = select(&inker, page.view, method, &[(Context::new(Affine::IDENTITY), root)])?;
-            let mut sorter =
-                Sorter { inker: &inker, matcher: Matcher::new(drawing), area: None, window: content.union(&page.view) };
+            let found = select(&painter, page.view, method, &[(Surroundings::new(Affine::IDENTITY), root)])?;
+            let mut sorter = Sorter {
+                painter: &painter,
+                matcher: Matcher::new(drawing),
+                area: None,
+                window: content.union(&page.view),
+            };
             for item in &found.items {
                 let kept = sorter.sort(item, &mut definitions)?;
                 placed.add(item, kept, &mut definitions);
@@ -90,23 +98,23 @@ impl Placed {
     }
 
     /// Adds what stays, without its looks.
-    pub(crate) fn freeze(&mut self, kept: Kept) {
+    pub(crate) fn freeze(&mut self, kept: Sorted) {
         match kept {
-            Kept::Removed => {}
-            Kept::Element(placement) => self.placements.push(placement),
-            Kept::Strokes { drawn, .. } => self.curves.extend(drawn),
-            Kept::Obstacle { outline, .. } => self.obstacles.push(outline),
+            Sorted::Removed => {}
+            Sorted::Element(placement) => self.placements.push(placement),
+            Sorted::Strokes { drawn, .. } => self.curves.extend(drawn),
+            Sorted::Obstacle { outline, .. } => self.obstacles.push(outline),
         }
     }
 
-    fn add(&mut self, item: &Item, kept: Kept, definitions: &mut Definitions<'_, '_>) {
+    fn add(&mut self, item: &Item, kept: Sorted, definitions: &mut Definitions<'_, '_>) {
         match kept {
-            Kept::Removed => {}
-            Kept::Element(placement) => {
+            Sorted::Removed => {}
+            Sorted::Element(placement) => {
                 self.placements.push(placement);
                 self.fragments.push(fragment(item, definitions));
             }
-            Kept::Strokes { drawn, cut, .. } => {
+            Sorted::Strokes { drawn, cut, .. } => {
                 let extent = drawn.iter().fold(Bounds::EMPTY, |all, d| all.union(&d.path.bounds()));
                 self.curves.extend(drawn);
                 let whole = fragment(item, definitions);
@@ -114,7 +122,7 @@ impl Placed {
                 let width = item.outline.bounds();
                 self.curve_fragments.push((Fragment { markup, ..whole }, extent.union(&width)));
             }
-            Kept::Obstacle { outline, .. } => {
+            Sorted::Obstacle { outline, .. } => {
                 self.obstacles.push(outline);
                 self.obstacle_fragments.push(fragment(item, definitions));
             }
@@ -123,13 +131,13 @@ impl Placed {
 }
 
 /// What becomes of an item.
-pub(crate) enum Kept {
-    /// It lies where everything is made anew.
+pub(crate) enum Sorted {
+    /// It lies where everything is refilled.
     Removed,
     /// It is an element of the exemplar.
     Element(Placement<2>),
-    /// It is one or more strokes of the exemplar's styles; `cut` is their markup where they are not whole, and `is_touched` says whether
-    /// what is made anew takes something away from them.
+    /// It is one or more strokes of the exemplar's styles; `cut` is their markup where they are not whole, and
+    /// `is_touched` says whether what is refilled takes something away from them.
     Strokes { drawn: Vec<Drawn<2>>, cut: Option<String>, is_touched: bool },
     /// It is nothing that the exemplar knows; the rest as for strokes.
     Obstacle { outline: Outline<2>, cut: Option<String>, is_touched: bool },
@@ -137,32 +145,32 @@ pub(crate) enum Kept {
 
 /// Decides what becomes of items.
 pub(crate) struct Sorter<'a, 's, 'i, 'd> {
-    pub(crate) inker: &'i Inker<'a, 's>,
+    pub(crate) painter: &'i Painter<'a, 's>,
     pub(crate) matcher: Matcher<'d>,
-    /// What is made anew; nothing when everything stays.
+    /// What is refilled; nothing when everything stays.
     pub(crate) area: Option<&'i Outline<2>>,
     /// Box around everything.
     pub(crate) window: Bounds<2>,
 }
 
 impl<'a, 's> Sorter<'a, 's, '_, '_> {
-    pub(crate) fn sort(&mut self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Kept> {
+    pub(crate) fn sort(&mut self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
         if item.kind == Kind::Curve && !self.matcher.drawing.exemplar.curves.is_empty() {
             return self.strokes(item, definitions);
         }
         let centre = item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre());
         if self.area.is_some_and(|area| area.contains(centre)) {
-            return Ok(Kept::Removed);
+            return Ok(Sorted::Removed);
         }
-        let names = classes::names_of(&item.meta, &self.inker.source.sheet);
+        let names = classes::names_of(&item.meta, &self.painter.source.sheet);
         Ok(match self.matcher.place(item, &names) {
-            Some(placement) => Kept::Element(placement),
-            None => Kept::Obstacle { outline: item.outline.clone(), cut: None, is_touched: false },
+            Some(placement) => Sorted::Element(placement),
+            None => Sorted::Obstacle { outline: item.outline.clone(), cut: None, is_touched: false },
         })
     }
 
-    fn strokes(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Kept> {
-        let mut gatherer = Gatherer::new(self.inker, definitions, self.window);
+    fn strokes(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
+        let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
         gatherer.add(item)?;
         let Curves { curves, strokes, .. } = gatherer.finish();
         // A clip takes something away as well: then the line alone is not what the file shows.
@@ -175,7 +183,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
             );
         }
         if rest.is_empty() {
-            return Ok(Kept::Removed);
+            return Ok(Sorted::Removed);
         }
         let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1]));
         let markup = rest.iter().map(|(path, _, stroke)| stroke.markup(path, decimals)).collect::<String>();
@@ -183,10 +191,10 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
             (is_touched || item.is_cut).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
         let drawn = rest.iter().map(|(path, curve, stroke)| self.matcher.stroke(path, curve.width, stroke, &item.meta));
         match drawn.collect::<Option<Vec<_>>>() {
-            Some(drawn) => Ok(Kept::Strokes { drawn, cut: markup, is_touched }),
+            Some(drawn) => Ok(Sorted::Strokes { drawn, cut: markup, is_touched }),
             None => {
                 let outline = self.area.map_or_else(|| item.outline.clone(), |area| item.outline.difference(area));
-                Ok(Kept::Obstacle { outline, cut: markup, is_touched })
+                Ok(Sorted::Obstacle { outline, cut: markup, is_touched })
             }
         }
     }
@@ -210,7 +218,8 @@ impl<'d> Matcher<'d> {
         Self { is_origin: true, ..Self::of_itself(drawing) }
     }
 
-    /// For the file that `drawing` was read from: what it says of copies is about the exemplar that it was made from itself.
+    /// For the file that `drawing` was read from: what it says of copies is about the exemplar that it was made from
+    /// itself.
     pub(crate) fn of_itself(drawing: &'d Drawing) -> Self {
         let elements = drawing.exemplar.elements.as_slice();
         let signature = |e: &Element<2>| (e.role == Role::Source).then(|| Signature::new(&e.outline)).flatten();
@@ -229,8 +238,8 @@ impl<'d> Matcher<'d> {
         }
     }
 
-    /// The stroke as one painted like a curve of the exemplar: the one that it says where that is painted so but for its width, else
-    /// the first that is painted exactly so.
+    /// The stroke as one painted like a curve of the exemplar: the one that it says where that is painted so except for
+    /// its width, else the first that is painted exactly so.
     fn stroke(&self, path: &Path<2>, width: f64, stroke: &Stroke, meta: &Meta) -> Option<Drawn<2>> {
         let stated = meta.curve.filter(|_| self.is_origin).filter(|&k| {
             let known = self.drawing.strokes.get(k);
@@ -244,12 +253,13 @@ impl<'d> Matcher<'d> {
 
     fn place(&self, item: &Item, names: &[String]) -> Option<Placement<2>> {
         // A clip around everything takes nothing away from what an element is.
-        let whole = if item.is_cut { item.ink.outline() } else { item.outline.clone() };
+        let whole = if item.is_cut { item.painted.outline() } else { item.outline.clone() };
         let (source, transform) = self.stated(item, &whole).or_else(|| self.alike(item, &whole, names))?;
         Some(Placement { source, transform, control: Vec::new(), frozen: None })
     }
 
-    /// The element that a copy says it is: by its transform when its ink then lies where it should, else by its outline.
+    /// The element that a copy says it is: by its transform when its painted area then lies where it should, else by
+    /// its outline.
     fn stated(&self, item: &Item, whole: &Outline<2>) -> Option<(usize, Similarity<2>)> {
         let source = item.meta.source.filter(|_| self.is_origin)?;
         let element = self.elements.get(source).filter(|e| e.role == Role::Source)?;
@@ -267,7 +277,7 @@ impl<'d> Matcher<'d> {
     /// The element that looks most like the item.
     fn alike(&self, item: &Item, whole: &Outline<2>, names: &[String]) -> Option<(usize, Similarity<2>)> {
         let signature = Signature::new(whole)?;
-        let colour = item.ink.colour();
+        let colour = item.painted.colour();
         let named = |e: &Element<2>| names.iter().any(|n| n == self.class_names[e.class]);
         let any_named = self.elements.iter().any(named);
         let mut best: Option<(f64, usize, Similarity<2>)> = None;

@@ -28,8 +28,8 @@ pub(crate) type Edge = Segment<2>;
 pub(crate) struct Budget(pub(crate) u64);
 
 impl Budget {
-    /// Whether `test` holds for an edge of `a` and one of `b` whose boxes come within `tolerance` of those of the other side; `None` when
-    /// the budget is spent.
+    /// Whether `test` holds for an edge of `a` and one of `b` whose boxes come within `tolerance` of those of the other
+    /// side; `None` when the budget is spent.
     pub(crate) fn any(
         &mut self,
         a: &[Edge],

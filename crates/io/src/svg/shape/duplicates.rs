@@ -11,14 +11,21 @@ const NEAR: f64 = 1e-4;
 const PLACES: usize = 24;
 
 /// A style, and a cell of the grid.
-type Cell = (usize, [i64; 2]);
+type GridCell = (usize, [i64; 2]);
+
+/// A stroke, with the box around it.
+#[derive(Debug)]
+struct Known {
+    bounds: Bounds<2>,
+    line: Measured<2>,
+}
 
 /// The strokes so far.
 #[derive(Debug)]
 pub(crate) struct Seen {
     near: f64,
     /// By style and by the cell in which the centre of the box around them lies.
-    cells: BTreeMap<Cell, Vec<(Bounds<2>, Measured<2>)>>,
+    cells: BTreeMap<GridCell, Vec<Known>>,
 }
 
 impl Seen {
@@ -36,23 +43,26 @@ impl Seen {
         let around =
             (-1..=1).flat_map(|x| (-1..=1).map(move |y| [cell[0].saturating_add(x), cell[1].saturating_add(y)]));
         let known = around.filter_map(|cell| self.cells.get(&(style, cell))).flatten();
-        if known.into_iter().any(|(box_, other)| self.is_same((box_, other), (&bounds, &measured))) {
+        let new = Known { bounds, line: measured };
+        if known.into_iter().any(|other| self.is_same(other, &new)) {
             return false;
         }
-        self.cells.entry((style, cell)).or_default().push((bounds, measured));
+        self.cells.entry((style, cell)).or_default().push(new);
         true
     }
 
-    fn is_same(&self, a: (&Bounds<2>, &Measured<2>), b: (&Bounds<2>, &Measured<2>)) -> bool {
+    fn is_same(&self, a: &Known, b: &Known) -> bool {
         let same = |p: Vector<2>, q: Vector<2>| (p - q).norm() <= self.near;
-        let alike = same(a.0.min, b.0.min) && same(a.0.max, b.0.max) && a.1.is_closed() == b.1.is_closed();
-        let length = a.1.length();
-        if !alike || (length - b.1.length()).abs() > self.near.max(1e-3 * length) {
+        let alike = same(a.bounds.min, b.bounds.min)
+            && same(a.bounds.max, b.bounds.max)
+            && a.line.is_closed() == b.line.is_closed();
+        let length = a.line.length();
+        if !alike || (length - b.line.length()).abs() > self.near.max(1e-3 * length) {
             return false;
         }
         let places = |m: &Measured<2>| (0..=PLACES).map(|k| m.point(m.length() * k as f64 / PLACES as f64)).collect();
         let on = |places: Vec<Vector<2>>, line: &Measured<2>| places.iter().all(|p| distance(*p, line) <= self.near);
-        on(places(b.1), a.1) && on(places(a.1), b.1)
+        on(places(&b.line), &a.line) && on(places(&a.line), &b.line)
     }
 }
 

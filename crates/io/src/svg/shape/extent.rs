@@ -14,7 +14,8 @@ use crate::svg::{
     shape::{adjacency::meeting, stroke::growth},
 };
 
-/// Box around the control points of what can be seen of a node, strokes included; `parent` leads from its parent to the root.
+/// Box around the control points of what can be seen of a node, strokes included; `parent` leads from its parent to the
+/// root.
 pub(crate) fn bounds(node: &Node, parent: Affine) -> Bounds<2> {
     let world = parent * node.transform;
     match &node.content {
@@ -70,12 +71,19 @@ pub(crate) fn clusters(boxes: &[Bounds<2>], share: f64) -> usize {
     sets.groups().into_iter().filter(|g| g.iter().any(|&i| !boxes[i].is_empty())).count()
 }
 
-/// The only shape inside a node, with the transform from the root to the parent of that shape.
-pub(crate) fn sole_shape(node: &Rc<Node>, parent: Affine) -> Option<(&Rc<Node>, Affine)> {
+/// The only shape inside a node.
+pub(crate) struct SoleShape<'n> {
+    pub(crate) leaf: &'n Rc<Node>,
+    /// From the parent of the shape to the root.
+    pub(crate) parent: Affine,
+}
+
+/// The shape that a node is, or the only one inside it; `parent` leads from the parent of the node to the root.
+pub(crate) fn sole_shape(node: &Rc<Node>, parent: Affine) -> Option<SoleShape<'_>> {
     let (mut at, mut transform) = (node, parent);
     loop {
         match &at.content {
-            Content::Shape(_) => return Some((at, transform)),
+            Content::Shape(_) => return Some(SoleShape { leaf: at, parent: transform }),
             Content::Group(children) => {
                 let [child] = children.as_slice() else { return None };
                 if child.meta.mark.is_some() {

@@ -41,7 +41,7 @@ pub(crate) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
     }
 }
 
-/// Whether all points lie on a line but for rounding: such rings enclose nothing, and cost a union dearly.
+/// Whether all points lie on a line except for rounding: such rings enclose nothing, and cost a union dearly.
 fn is_thin(ring: &[Vector<2>]) -> bool {
     let n = ring.len().max(1) as f64;
     let mean = ring.iter().fold(Vector::ZERO, |sum, &p| sum + p) * (1.0 / n);

@@ -1,4 +1,4 @@
-//! Ink: the area that shapes cover once they are painted, and its colours.
+//! The area that shapes cover once they are painted, and its colours.
 
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
@@ -24,27 +24,28 @@ use crate::svg::{
 
 /// Area covered by something, in user coordinates of the root.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Ink {
+pub(crate) struct PaintedArea {
     /// The covered area shape by shape; shapes may overlap.
     shapes: Vec<Outline<2>>,
     /// Colours with the area that they cover.
     pub(crate) colours: Vec<([f64; 3], f64)>,
 }
 
-impl Ink {
+impl PaintedArea {
     /// The covered area as disjoint polygons.
     pub(crate) fn outline(&self) -> Outline<2> {
         united(&self.shapes)
     }
 
-    /// Mean colour by area; black without ink.
+    /// Mean colour by area; black where there is none.
     pub(crate) fn colour(&self) -> [f64; 3] {
         let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
         let mean = |k: usize| self.colours.iter().map(|(c, area)| c[k] * area).sum::<f64>() / total;
         if total > 0.0 { std::array::from_fn(mean) } else { [0.0; 3] }
     }
 
-    /// The colours that cover at least a tenth of the ink each, rounded, as text: items alike in paint have the same.
+    /// The colours that cover at least a tenth of the painted area each, rounded, as text: items alike in paint have
+    /// the same.
     pub(crate) fn colours_key(&self) -> String {
         let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
         let mut shares: BTreeMap<String, f64> = BTreeMap::new();
@@ -64,7 +65,7 @@ impl Ink {
         }
     }
 
-    /// Adds other ink.
+    /// Adds another area.
     pub(crate) fn append(&mut self, other: Self) {
         self.shapes.extend(other.shapes);
         self.colours.extend(other.colours);
@@ -80,7 +81,8 @@ impl Ink {
 /// Shapes that are united at once.
 const AT_ONCE: usize = 8;
 
-/// The union of shapes. Many are united by halves: where they lie on top of each other, as in blends, most borders vanish early.
+/// The union of shapes. Many are united by halves: where they lie on top of each other, as in blends, most borders
+/// vanish early.
 fn united(shapes: &[Outline<2>]) -> Outline<2> {
     match shapes {
         [] => Outline::default(),
@@ -96,30 +98,30 @@ fn united(shapes: &[Outline<2>]) -> Outline<2> {
     }
 }
 
-/// Finds the ink of nodes.
-pub(crate) struct Inker<'a, 's> {
+/// Finds the painted area of nodes.
+pub(crate) struct Painter<'a, 's> {
     pub(crate) source: &'s Source<'a>,
     clips: RefCell<BTreeMap<String, Option<Rc<Node>>>>,
 }
 
-impl<'a, 's> Inker<'a, 's> {
+impl<'a, 's> Painter<'a, 's> {
     pub(crate) fn new(source: &'s Source<'a>) -> Self {
         Self { source, clips: RefCell::default() }
     }
 
-    /// Ink of a node whose parent has the transform `parent` to the root.
-    pub(crate) fn ink(&self, node: &Node, parent: Affine) -> Result<Ink> {
-        let mut ink = Ink::default();
-        self.collect(node, parent, &mut ink)?;
-        Ok(ink)
+    /// The painted area of a node whose parent has the transform `parent` to the root.
+    pub(crate) fn painted(&self, node: &Node, parent: Affine) -> Result<PaintedArea> {
+        let mut painted = PaintedArea::default();
+        self.collect(node, parent, &mut painted)?;
+        Ok(painted)
     }
 
-    fn collect(&self, node: &Node, parent: Affine, ink: &mut Ink) -> Result<()> {
+    fn collect(&self, node: &Node, parent: Affine, painted: &mut PaintedArea) -> Result<()> {
         if node.own.get("opacity").is_some_and(|o| fraction(o) == 0.0) {
             return Ok(());
         }
         let world = parent * node.transform;
-        let mut own = Ink::default();
+        let mut own = PaintedArea::default();
         match &node.content {
             Content::Group(children) => {
                 for child in children {
@@ -131,27 +133,27 @@ impl<'a, 's> Inker<'a, 's> {
         if let Some(clip) = self.clip(node, world)? {
             own = own.clipped(&clip);
         }
-        ink.append(own);
+        painted.append(own);
         Ok(())
     }
 
-    fn shape(&self, node: &Node, geometry: &Geometry, world: Affine, ink: &mut Ink) -> Result<()> {
+    fn shape(&self, node: &Node, geometry: &Geometry, world: Affine, painted: &mut PaintedArea) -> Result<()> {
         self.check(node, geometry, world)?;
         if flattens(world) {
             return Ok(());
         }
         if geometry.paint == Painted::Picture {
-            ink.add(filled(&geometry.path, world, FillRule::NonZero), [0.5; 3]);
+            painted.add(filled(&geometry.path, world, FillRule::NonZero), [0.5; 3]);
             return Ok(());
         }
         let style = &node.style;
         if style.fills() {
             let rule = fill_rule(style.get(P::FillRule));
-            ink.add(filled(&geometry.path, world, rule), colour::of_paint(self.source, style.get(P::Fill)));
+            painted.add(filled(&geometry.path, world, rule), colour::of_paint(self.source, style.get(P::Fill)));
         }
         if style.strokes() {
             let outline = stroked(node, &geometry.path, world);
-            ink.add(outline, colour::of_paint(self.source, style.get(P::Stroke)));
+            painted.add(outline, colour::of_paint(self.source, style.get(P::Stroke)));
         }
         Ok(())
     }
@@ -285,7 +287,7 @@ mod tests {
         let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{svg}</svg>");
         with_source(&text, &ReadOptions::new("i.svg"), |source| {
             let root = scene::build(source, Viewport { width: 100.0, height: 100.0 })?;
-            Ok(Inker::new(source).ink(&root, Affine::IDENTITY)?.outline().area())
+            Ok(Painter::new(source).painted(&root, Affine::IDENTITY)?.outline().area())
         })
         .unwrap()
     }
@@ -333,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn clips_cut_ink() {
+    fn clips_cut_the_painted_area() {
         let clip = "<clipPath id='c'><rect width='5' height='100'/></clipPath>";
         is_near(&format!("{clip}<rect clip-path='url(#c)' width='10' height='10'/>"), 50.0);
         is_near(
@@ -348,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn no_visible_paint_is_no_ink() {
+    fn no_visible_paint_is_no_area() {
         assert_eq!(area("<rect width='9' height='9' fill='none'/><rect width='9' height='9' fill-opacity='0'/>"), 0.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Fewer nodes for the same line: what lies between two corners is fitted anew.
+//! Fewer nodes for the same line: what lies between two corners is fitted again.
 
 use arabesque_core::{Cubic, Path, Vector, cubic_at, segment, straight};
 use kurbo::{BezPath, CubicBez, PathSeg, Point, fit_to_cubic, simplify::SimplifyBezPath};

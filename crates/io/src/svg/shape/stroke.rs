@@ -6,13 +6,13 @@ use kurbo::{Affine, BezPath, Cap, Join, PathEl, Shape as _, Stroke, StrokeOpts};
 use crate::svg::{
     parse::{
         scene::Node,
-        style::{Property as P, Style},
+        style::{ComputedStyle, Property as P},
     },
     shape::flatten::{DEVIATION, FINEST, control_box, covered, rings},
 };
 
 /// Longest spike of a join, in stroke widths.
-const LONGEST_MITER: f64 = 100.0;
+const MAX_MITER: f64 = 100.0;
 
 /// Dashes of one stroke beyond which it is taken as unbroken.
 const DASHES: f64 = 20_000.0;
@@ -47,7 +47,7 @@ pub(crate) fn stroked(node: &Node, path: &BezPath, world: Affine) -> Outline<2> 
     covered(&rings, FillRule::NonZero)
 }
 
-fn pen(style: &Style, width: f64, path: &BezPath) -> Stroke {
+fn pen(style: &ComputedStyle, width: f64, path: &BezPath) -> Stroke {
     let cap = match style.get(P::StrokeLinecap) {
         "round" => Cap::Round,
         "square" => Cap::Square,
@@ -61,7 +61,7 @@ fn pen(style: &Style, width: f64, path: &BezPath) -> Stroke {
     let pen = Stroke::new(width)
         .with_caps(cap)
         .with_join(join)
-        .with_miter_limit(style.number(P::StrokeMiterlimit).min(LONGEST_MITER));
+        .with_miter_limit(style.number(P::StrokeMiterlimit).min(MAX_MITER));
     let dashes: Vec<f64> = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse().ok()).collect();
     let period: f64 = dashes.iter().sum();
     if dashes.is_empty() || period <= 0.0 || rough_length(path) / period * dashes.len() as f64 > DASHES {

@@ -1,8 +1,10 @@
-//! Fills that abut along a seam: a pattern of copied tiles cuts its lines at the border of each tile, and no eye sees where.
+//! Fills that abut along a seam: a pattern of copied tiles cuts its lines at the border of each tile, and no eye sees
+//! where.
 //!
-//! Shapes of one colour whose borders run along one another are joined where all of them together are lines of one width over most of
-//! the frame, or where pieces of them are, once compound paths are taken apart: a net with motifs in its cells, or outlines of leaves. Everything
-//! else stays as it is drawn: tiles of one colour side by side may well be separate elements.
+//! Shapes of one colour whose borders run along one another are joined where all of them together are lines of one
+//! width over most of the frame, or where pieces of them are, once compound paths are taken apart: a net with motifs in
+//! its cells, or outlines of leaves. Everything else stays as it is drawn: tiles of one colour side by side may well be
+//! separate elements.
 
 use std::{collections::BTreeMap, rc::Rc};
 
@@ -12,7 +14,7 @@ use crate::svg::{
     centreline::centrelines,
     shape::{
         adjacency::{Budget, Edge, edge_distance, meeting},
-        painted_area::Inker,
+        painted_area::Painter,
     },
     understand::item::{Item, Kind, Origin},
 };
@@ -20,19 +22,19 @@ use crate::svg::{
 /// Pairs of edges that are looked at in one file.
 const EDGE_PAIRS: u64 = 200_000_000;
 
-/// Share of the ink of tiles that lines make up where tiles without a net are put together.
+/// Share of the painted area of tiles that lines make up where tiles without a net are put together.
 const NEARLY_ALL: f64 = 0.9;
 
 /// Borders run along one another when they do so for at least this many tolerances.
-const LEAST: f64 = 5.0;
+const MIN_SEAM: f64 = 5.0;
 
 /// Joins what abuts along seams within `tolerance` where it makes lines.
 ///
 /// # Errors
-/// As for ink that cannot be found.
+/// As [`Painter::painted`].
 pub(crate) fn join_lines(
     items: Vec<Item>,
-    inker: &Inker<'_, '_>,
+    painter: &Painter<'_, '_>,
     frame: Bounds<2>,
     tolerance: f64,
 ) -> Result<Vec<Item>> {
@@ -41,14 +43,14 @@ pub(crate) fn join_lines(
         let tiles: Vec<Item> = group.iter().map(|&i| items[i].clone()).collect();
         match tiles.len() {
             1 => joined.extend(tiles),
-            _ => joined.extend(whole(&tiles, inker, frame, tolerance)?.unwrap_or(tiles)),
+            _ => joined.extend(whole(&tiles, painter, frame, tolerance)?.unwrap_or(tiles)),
         }
     }
     Ok(joined)
 }
 
 /// What tiles show together: one net, or, where they are taken apart, lines and other things.
-fn whole(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>, tolerance: f64) -> Result<Option<Vec<Item>>> {
+fn whole(tiles: &[Item], painter: &Painter<'_, '_>, frame: Bounds<2>, tolerance: f64) -> Result<Option<Vec<Item>>> {
     let all: Vec<usize> = (0..tiles.len()).collect();
     if let Some(net) = lined(Item::merged(tiles, &all, frame), frame).filter(|net| net.kind == Kind::Large) {
         return Ok(Some(vec![net]));
@@ -56,8 +58,8 @@ fn whole(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>, tolerance: f64
     if tiles.iter().all(|tile| tile.compound.is_none()) {
         return Ok(None);
     }
-    let Pieces { items, homes } = apart(tiles, inker, frame)?;
-    let (mut has_net, mut ink, mut lines) = (false, 0.0, 0.0);
+    let Pieces { items, homes } = apart(tiles, painter, frame)?;
+    let (mut has_net, mut painted, mut lines) = (false, 0.0, 0.0);
     let mut found = Vec::new();
     let mut place = vec![0; items.len()];
     for group in touching(&items, tolerance) {
@@ -65,18 +67,18 @@ fn whole(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>, tolerance: f64
         let one = Item::merged(&items, &group, frame);
         let area = one.outline.area();
         let item = lined(one.clone(), frame).inspect(|_| lines += area).unwrap_or(one);
-        // What is no net now is a thing of its own, and no scrap of one.
+        // What is not a net now is a thing of its own, and not a scrap of one.
         let origin = if item.lines.is_some() { item.origin } else { Origin::Whole };
         let item = Item { origin, ..item };
         has_net |= item.lines.is_some();
-        ink += area;
+        painted += area;
         found.push(item);
     }
     let homes: Vec<_> = homes.into_iter().map(|(i, home)| (place[i], place[home])).collect();
-    Ok((has_net || lines >= NEARLY_ALL * ink).then(|| nested(&found, &homes, frame)))
+    Ok((has_net || lines >= NEARLY_ALL * painted).then(|| nested(&found, &homes, frame)))
 }
 
-/// An item with its lines; `None` where it is no set of lines of one width.
+/// An item with its lines; `None` where it is not a set of lines of one width.
 fn lined(item: Item, frame: Bounds<2>) -> Option<Item> {
     let lines = centrelines(&item.outline, Some(&frame))?;
     Some(Item { lines: (item.kind == Kind::Large).then(|| Rc::new(lines)), ..item })
@@ -89,17 +91,17 @@ struct Pieces {
     homes: Vec<(usize, usize)>,
 }
 
-fn apart(tiles: &[Item], inker: &Inker<'_, '_>, frame: Bounds<2>) -> Result<Pieces> {
+fn apart(tiles: &[Item], painter: &Painter<'_, '_>, frame: Bounds<2>) -> Result<Pieces> {
     let mut pieces = Pieces { items: Vec::new(), homes: Vec::new() };
     for tile in tiles {
         let Some((compound, which)) = &tile.compound else {
             pieces.items.push(tile.clone());
             continue;
         };
-        compound.note_losses(inker);
+        compound.note_losses(painter);
         let mut place = BTreeMap::new();
         for &k in which {
-            if let Some(item) = Item::of_pieces(compound, inker, vec![k], frame)? {
+            if let Some(item) = Item::of_pieces(compound, painter, vec![k], frame)? {
                 place.insert(k, pieces.items.len());
                 pieces.items.push(item);
             }
@@ -146,7 +148,7 @@ fn touching(items: &[Item], tolerance: f64) -> Vec<Vec<usize>> {
 /// Fills of one colour in groups, connected where a test holds for an edge of either.
 fn grouped(items: &[Item], tolerance: f64, test: impl Fn(Edge, Edge) -> bool) -> Vec<Vec<usize>> {
     let is_fill = |item: &Item| matches!(item.origin, Origin::Fill | Origin::Piece) && item.kind != Kind::Curve;
-    let colours: Vec<String> = items.iter().map(|item| item.ink.colours_key()).collect();
+    let colours: Vec<String> = items.iter().map(|item| item.painted.colours_key()).collect();
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
     let mut sets = DisjointSets::new(items.len());
@@ -173,13 +175,13 @@ fn grouped(items: &[Item], tolerance: f64, test: impl Fn(Edge, Edge) -> bool) ->
 fn is_seam(p: Edge, q: Edge, tolerance: f64) -> bool {
     let way = p.1 - p.0;
     let length = way.norm();
-    if length <= LEAST * tolerance || way.dot(q.1 - q.0) > 0.0 {
+    if length <= MIN_SEAM * tolerance || way.dot(q.1 - q.0) > 0.0 {
         return false;
     }
     let way = way * (1.0 / length);
     let off = |v: Vector<2>| way.cross(v - p.0).abs();
     let along = |v: Vector<2>| way.dot(v - p.0).clamp(0.0, length);
-    off(q.0) <= tolerance && off(q.1) <= tolerance && (along(q.0) - along(q.1)).abs() > LEAST * tolerance
+    off(q.0) <= tolerance && off(q.1) <= tolerance && (along(q.0) - along(q.1)).abs() > MIN_SEAM * tolerance
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Which elements are the same kind of thing.
 //!
-//! By name where the file gives one to several elements; else by paint, and by outline after the best similarity. Where nearly
-//! every outline is one of its own, as with hand-cut chips, paint and size alone decide.
+//! By name where the file gives one to several elements; else by paint, and by outline after the best similarity. Where
+//! nearly every outline is one of its own, as with hand-cut chips, paint and size alone decide.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::svg::{
 pub(crate) const WOBBLE: f64 = 0.08;
 
 /// Shapes of one paint beyond which outlines tell nothing.
-const MOST_SHAPES: usize = 64;
+const MAX_SHAPES: usize = 64;
 
 /// Class and pose of every element.
 #[derive(Debug, Default)]
@@ -32,7 +32,7 @@ pub(crate) fn classify(items: &[Item], is_whole: &[bool], sheet: &StyleRules<'_>
     let names = shared_names(items, sheet);
     let mut labels: Vec<Option<Label>> = names.into_iter().map(|n| n.map(Label::Name)).collect();
     let unnamed: Vec<usize> = (0..items.len()).filter(|&i| labels[i].is_none() && is_whole[i]).collect();
-    let paints: Vec<String> = items.iter().map(|item| item.ink.colours_key()).collect();
+    let paints: Vec<String> = items.iter().map(|item| item.painted.colours_key()).collect();
     for (i, label) in by_paint_and_outline(&unnamed, &paints, &signatures) {
         labels[i] = Some(label);
     }
@@ -111,7 +111,7 @@ fn by_paint_and_outline(items: &[usize], paints: &[String], signatures: &[Option
 /// Numbers the shapes among `members`: by outline, or by size where hardly any two outlines are alike.
 fn shapes(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     let alike = |a: &Signature, b: &Signature| a.may_match(b) && a.fit(b).distance <= WOBBLE;
-    let outlines = greedy(members, signatures, MOST_SHAPES, alike);
+    let outlines = greedy(members, signatures, MAX_SHAPES, alike);
     let told = outlines.filter(|(_, count)| members.len() < 3 || 2 * count <= members.len());
     if let Some((shapes, _)) = told.filter(|(shapes, _)| is_clear_cut(members, shapes, signatures)) {
         return shapes;
@@ -142,8 +142,8 @@ fn by_size(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
 /// Share of the distance between shapes that members may be off their own shape, in the mean.
 const CLEAR: f64 = 0.3;
 
-/// Whether members are much nearer to the first of their shape than the shapes are to each other. Where they are not, the shapes are
-/// accidents of cutting one cloud of outlines into pieces.
+/// Whether members are much nearer to the first of their shape than the shapes are to each other. Where they are not,
+/// the shapes are accidents of cutting one cloud of outlines into pieces.
 fn is_clear_cut(members: &[usize], shapes: &[usize], signatures: &[Option<Signature>]) -> bool {
     let mut firsts: Vec<Option<&Signature>> = Vec::new();
     let mut off = Vec::new();

@@ -3,7 +3,6 @@
 use std::rc::Rc;
 
 use arabesque_core::{Bounds, Result};
-use kurbo::Affine;
 
 use crate::svg::{
     parse::{
@@ -14,10 +13,14 @@ use crate::svg::{
         scene::{Content, Node},
         style::Property as P,
     },
-    shape::{extent::bounds, flatten, painted_area::Inker},
+    shape::{
+        extent::{SoleShape, bounds},
+        flatten,
+        painted_area::Painter,
+    },
     understand::{
         pieces::{self, Piece},
-        surroundings::Context,
+        surroundings::Surroundings,
     },
 };
 
@@ -27,7 +30,7 @@ pub(crate) struct Compound {
     /// The shape without its own clip and without the groups around it.
     bare: Node,
     /// What these and the containers around them do.
-    pub(crate) context: Context,
+    pub(crate) context: Surroundings,
     pub(crate) pieces: Vec<Piece>,
     /// Box around each piece.
     pub(crate) boxes: Vec<Bounds<2>>,
@@ -36,30 +39,32 @@ pub(crate) struct Compound {
 }
 
 impl Compound {
-    /// The compound path that a node is or wraps; `None` where it has one piece only or is too tangled, with a note, to be taken apart.
+    /// The compound path that a node is or wraps; `None` where it has one piece only or is too tangled, with a note, to
+    /// be taken apart.
     ///
     /// # Errors
     /// As for clips that cannot be read.
     pub(crate) fn new(
-        inker: &Inker<'_, '_>,
+        painter: &Painter<'_, '_>,
         node: &Rc<Node>,
-        (leaf, parent): (&Rc<Node>, Affine),
-        at: &Context,
+        only: &SoleShape<'_>,
+        at: &Surroundings,
     ) -> Result<Option<Self>> {
+        let &SoleShape { leaf, parent } = only;
         let Content::Shape(geometry) = &leaf.content else { return Ok(None) };
         if geometry.path.subpaths().count() < 2 {
             return Ok(None);
         }
         let rule = flatten::fill_rule(leaf.style.get(P::FillRule));
         let Some(pieces) = pieces::pieces(&geometry.path, rule) else {
-            inker.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
+            painter.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
             return Ok(None);
         };
         if pieces.len() < 2 {
             return Ok(None);
         }
         let mut context = at.clone();
-        let effects = unwrap(inker, (node, leaf), &mut context)?;
+        let effects = unwrap(painter, node, leaf, &mut context)?;
         context.parent = parent;
         let nameless = Meta { class: None, label: None, kind: None, shows: None, ..(*leaf.meta).clone() };
         let bare = Node { own: leaf.own.without("clip-path"), meta: Rc::new(nameless), ..(**leaf).clone() };
@@ -85,8 +90,8 @@ impl Compound {
     }
 
     /// Notes what is lost when its pieces become separate.
-    pub(crate) fn note_losses(&self, inker: &Inker<'_, '_>) {
-        let notes = &inker.source.notes;
+    pub(crate) fn note_losses(&self, painter: &Painter<'_, '_>) {
+        let notes = &painter.source.notes;
         if self.bare.style.get(P::Fill).starts_with("url(") {
             notes.add(Note::SplitGradient, || self.bare.meta.id.clone().unwrap_or_default());
         }
@@ -97,13 +102,18 @@ impl Compound {
 }
 
 /// Puts what a shape's clip and the groups around it do into the context; the name of a group whose effects are lost.
-fn unwrap(inker: &Inker<'_, '_>, (node, leaf): (&Rc<Node>, &Rc<Node>), inside: &mut Context) -> Result<Option<String>> {
+fn unwrap(
+    painter: &Painter<'_, '_>,
+    node: &Rc<Node>,
+    leaf: &Rc<Node>,
+    inside: &mut Surroundings,
+) -> Result<Option<String>> {
     let mut effects = None;
     let mut at = node;
     let mut world = inside.parent;
     loop {
         world *= at.transform;
-        if let Some(clip) = inker.clip(at, world)? {
+        if let Some(clip) = painter.clip(at, world)? {
             let both = inside.clip.as_ref().map_or_else(|| clip.clone(), |outer| outer.intersection(&clip));
             inside.clip = Some(Rc::new(both));
         }

@@ -22,7 +22,7 @@ use crate::{
         shape::{
             cut_path::{Side, cut},
             duplicates::Seen,
-            painted_area::Inker,
+            painted_area::Painter,
             stroke::growth,
             subpath::{is_closed, line},
         },
@@ -50,7 +50,7 @@ struct Inside {
 
 /// Gathers the curves of a file.
 pub(crate) struct Gatherer<'a, 's, 'i, 'd> {
-    pub(crate) inker: &'i Inker<'a, 's>,
+    pub(crate) painter: &'i Painter<'a, 's>,
     pub(crate) definitions: &'d mut Definitions<'a, 's>,
     /// Nothing outside of it is of interest.
     pub(crate) window: Bounds<2>,
@@ -62,9 +62,13 @@ pub(crate) struct Gatherer<'a, 's, 'i, 'd> {
 }
 
 impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
-    pub(crate) fn new(inker: &'i Inker<'a, 's>, definitions: &'d mut Definitions<'a, 's>, window: Bounds<2>) -> Self {
+    pub(crate) fn new(
+        painter: &'i Painter<'a, 's>,
+        definitions: &'d mut Definitions<'a, 's>,
+        window: Bounds<2>,
+    ) -> Self {
         let (found, style_of, seen) = (Curves::default(), BTreeMap::new(), Seen::new(&window));
-        Self { inker, definitions, window, found, style_of, seen }
+        Self { painter, definitions, window, found, style_of, seen }
     }
 
     /// Adds the strokes of an item.
@@ -107,7 +111,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
             label: item.meta.label.clone(),
         };
         let style = self.style(&stroke, &item.meta);
-        let colour = colour::of_paint(self.inker.source, fill);
+        let colour = colour::of_paint(self.painter.source, fill);
         for path in &lines.paths {
             self.push(Curve { path: path.clone(), style, width: lines.width, colour }, &stroke, item);
         }
@@ -121,7 +125,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     fn node(&mut self, node: &Node, at: &Inside, item: &Item) -> Result<()> {
         let world = at.parent * node.transform;
         let opacity = at.opacity * node.own.get("opacity").map_or(1.0, fraction);
-        let clip = match (&at.clip, self.inker.clip(node, world)?) {
+        let clip = match (&at.clip, self.painter.clip(node, world)?) {
             (Some(a), Some(b)) => Some(Rc::new(a.intersection(&b))),
             (a, b) => b.map(Rc::new).or_else(|| a.clone()),
         };
@@ -133,7 +137,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     }
 
     fn shape(&mut self, node: &Node, path: &BezPath, at: &Inside, item: &Item) -> Result<()> {
-        let notes = &self.inker.source.notes;
+        let notes = &self.painter.source.notes;
         let name = || item.meta.id.clone().unwrap_or_default();
         if !node.style.strokes() {
             return Ok(());
@@ -146,13 +150,13 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         }
         let stroke = self.stroke(node, at, item);
         let style = self.style(&stroke, &item.meta);
-        let colour = colour::of_paint(self.inker.source, node.style.get(P::Stroke));
+        let colour = colour::of_paint(self.painter.source, node.style.get(P::Stroke));
         for elements in path.subpaths() {
             let closed = is_closed(elements);
             let line =
-                line(&(at.parent * BezPath::from_vec(elements.to_vec())), closed, self.inker.source.limits.extent);
-            if length(&line) <= self.inker.source.limits.extent {
-                self.inker.source.notes.add(Note::ZeroLength, || item.meta.id.clone().unwrap_or_default());
+                line(&(at.parent * BezPath::from_vec(elements.to_vec())), closed, self.painter.source.limits.extent);
+            if length(&line) <= self.painter.source.limits.extent {
+                self.painter.source.notes.add(Note::ZeroLength, || item.meta.id.clone().unwrap_or_default());
                 continue;
             }
             let parts = at.clip.as_ref().and_then(|clip| cut(&line, clip, Side::Inside));
@@ -168,7 +172,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
             return;
         }
         if !self.seen.insert(curve.style, &curve.path) {
-            self.inker.source.notes.add(Note::Twice, || item.meta.id.clone().unwrap_or_default());
+            self.painter.source.notes.add(Note::Duplicate, || item.meta.id.clone().unwrap_or_default());
             return;
         }
         self.found.curves.push(curve);
@@ -177,7 +181,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
 
     /// Refuses more curves than the limit.
     fn check_count(&self) -> Result<()> {
-        let (found, source) = (self.found.curves.len(), self.inker.source);
+        let (found, source) = (self.found.curves.len(), self.painter.source);
         if found <= source.limits.elements {
             return Ok(());
         }
@@ -186,7 +190,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
 
     /// How a shape's stroke is painted, in the units of the root.
     fn stroke(&mut self, node: &Node, at: &Inside, item: &Item) -> Stroke {
-        let notes = &self.inker.source.notes;
+        let notes = &self.painter.source.notes;
         let fixed = node.own.get("vector-effect") == Some("non-scaling-stroke");
         let scale = if fixed { 1.0 } else { growth(at.parent) };
         if !fixed && !is_even(at.parent) {
@@ -207,7 +211,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         }
     }
 
-    /// The presentation attributes of a stroke, but for its lengths and effects.
+    /// The presentation attributes of a stroke, except for its lengths and effects.
     fn paint(&mut self, node: &Node) -> String {
         let mut out = " fill=\"none\"".to_owned();
         for (name, value) in node.style.attributes() {
@@ -249,7 +253,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         if let Some(known) = self.style_of.get(&key) {
             return *known;
         }
-        let names = names_of(meta, &self.inker.source.sheet);
+        let names = names_of(meta, &self.painter.source.sheet);
         let name = names.into_iter().next().unwrap_or_else(|| format!("style {}", self.found.styles.len() + 1));
         let taken = |name: &str| self.found.styles.iter().any(|s| s.name == name);
         let free = (2..).map(|n| format!("{name} {n}"));
@@ -272,7 +276,7 @@ fn first_shape(node: &Node, opacity: f64) -> Option<(&Node, f64)> {
 /// Properties that scale with the stroke.
 const LENGTHS: [&str; 3] = ["stroke-width", "stroke-dasharray", "stroke-dashoffset"];
 
-/// Whether a transform stretches all directions alike, but for one part in a hundred.
+/// Whether a transform stretches all directions alike, up to one part in a hundred.
 fn is_even(transform: Affine) -> bool {
     let [a, b, c, d, ..] = transform.as_coeffs();
     let (p, q) = (a.hypot(b), c.hypot(d));

@@ -13,7 +13,8 @@ use crate::svg::{
 const CUT: f64 = 0.15;
 /// How far from the frame a cut may be, as a share of the diagonal of the element.
 const NEAR: f64 = 0.002;
-/// The same two for edges that lie on the frame as exactly as numbers are written: no whole element has such edges by chance.
+/// The same two for edges that lie on the frame as exactly as numbers are written: no whole element has such edges by
+/// chance.
 const EXACT_CUT: f64 = 0.03;
 const EXACTLY_NEAR: f64 = 1e-5;
 
@@ -53,7 +54,8 @@ fn square(extent: &Bounds<2>) -> Bounds<2> {
     Bounds::new(centre - Vector::xy(half, half), centre + Vector::xy(half, half))
 }
 
-/// The box around all items, with half the usual gap around it: the frame that the artist had in mind. Curves end at it.
+/// The box around all items, with half the usual gap around it: the frame that the artist had in mind. Curves end at
+/// it.
 pub(crate) fn around(items: &[Item]) -> Bounds<2> {
     let tight = items.iter().fold(Bounds::EMPTY, |all, item| all.union(&item.outline.bounds()));
     if is_thin(&tight) {

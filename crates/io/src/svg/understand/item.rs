@@ -1,4 +1,5 @@
-//! What the selection finds.
+//! Items: what the selection takes for one element, one set of strokes, or too large a fill, and how items are put
+//! together.
 
 use std::rc::Rc;
 
@@ -9,10 +10,10 @@ use crate::svg::{
     centreline::Centrelines,
     parse::{meta::Meta, notes::Note, scene::Node, source::Source},
     shape::{
-        extent::{bounds, longer, sole_shape},
-        painted_area::{Ink, Inker},
+        extent::{SoleShape, bounds, longer, sole_shape},
+        painted_area::{PaintedArea, Painter},
     },
-    understand::{compound::Compound, surroundings::Context},
+    understand::{compound::Compound, surroundings::Surroundings},
 };
 
 /// Share of the frame from which on something is too large for an element.
@@ -25,7 +26,7 @@ pub(crate) enum Kind {
     Element,
     /// An open stroke, a closed one too large for an element or of the same net, or one marked as curve.
     Curve,
-    /// A fill larger than half of the frame that is no background.
+    /// A fill larger than half of the frame that is not a background.
     Large,
 }
 
@@ -52,7 +53,7 @@ pub(crate) struct Item {
     /// Opacity of the containers around it.
     pub(crate) opacity: f64,
     pub(crate) outline: Outline<2>,
-    pub(crate) ink: Ink,
+    pub(crate) painted: PaintedArea,
     pub(crate) kind: Kind,
     pub(crate) origin: Origin,
     /// The lines whose outline it is, where it was found to be one.
@@ -68,20 +69,20 @@ pub(crate) struct Item {
 impl Item {
     /// A node as a whole; `None`, with a note, where nothing of it is seen.
     pub(crate) fn taken(
-        inker: &Inker<'_, '_>,
+        painter: &Painter<'_, '_>,
         node: &Rc<Node>,
-        at: &Context,
+        at: &Surroundings,
         kind: Kind,
         origin: Origin,
     ) -> Result<Option<Self>> {
-        let ink = inker.ink(node, at.parent)?;
+        let painted = painter.painted(node, at.parent)?;
         let mut item = Self {
             parts: vec![(at.parent, Rc::clone(node))],
             meta: named(node),
             layer: at.layer.clone(),
             opacity: at.opacity,
-            outline: ink.outline(),
-            ink,
+            outline: painted.outline(),
+            painted,
             kind,
             origin,
             lines: None,
@@ -94,9 +95,9 @@ impl Item {
             item.outline = item.outline.intersection(clip);
             item.is_cut = item.outline.area() < 0.999 * before;
         }
-        let is_seen = !item.outline.rings.is_empty() && longer(&item.outline.bounds()) > inker.source.limits.extent;
+        let is_seen = !item.outline.rings.is_empty() && longer(&item.outline.bounds()) > painter.source.limits.extent;
         if !is_seen {
-            item.note_unseen(inker);
+            item.note_unseen(painter);
         }
         Ok(is_seen.then_some(item))
     }
@@ -104,17 +105,17 @@ impl Item {
     /// Some pieces of a compound path.
     ///
     /// # Errors
-    /// As for ink that cannot be found.
+    /// As [`Painter::painted`].
     pub(crate) fn of_pieces(
         compound: &Rc<Compound>,
-        inker: &Inker<'_, '_>,
+        painter: &Painter<'_, '_>,
         which: Vec<usize>,
         frame: Bounds<2>,
     ) -> Result<Option<Self>> {
         let node = Rc::new(compound.node(&which));
         let share = bounds(&node, compound.context.parent).measure() / frame.measure();
         let kind = if share < HALF { Kind::Element } else { Kind::Large };
-        let item = Self::taken(inker, &node, &compound.context, kind, Origin::Piece)?;
+        let item = Self::taken(painter, &node, &compound.context, kind, Origin::Piece)?;
         let compound = (which.len() > 1).then(|| (Rc::clone(compound), which));
         Ok(item.map(|item| Self { compound, ..item }))
     }
@@ -127,7 +128,7 @@ impl Item {
         }
         for &i in &group[1..] {
             all.parts.extend(items[i].parts.iter().map(|(t, n)| (*t, Rc::clone(n))));
-            all.ink.append(items[i].ink.clone());
+            all.painted.append(items[i].painted.clone());
             all.is_cut |= items[i].is_cut;
         }
         all.compound = None;
@@ -143,7 +144,7 @@ impl Item {
         all
     }
 
-    /// What a person calls it: its label or id, else its place in the file.
+    /// What messages call it: its label or id, else its place in the file.
     pub(crate) fn name(&self, source: &Source<'_>) -> String {
         let meta = &self.meta;
         let own = meta.label.as_ref().or(meta.id.as_ref()).map(|n| format!("\"{n}\""));
@@ -152,14 +153,14 @@ impl Item {
     }
 
     /// Says why nothing of it is seen.
-    fn note_unseen(&self, inker: &Inker<'_, '_>) {
+    fn note_unseen(&self, painter: &Painter<'_, '_>) {
         let name = || self.meta.id.clone().unwrap_or_default();
         if self.parts.iter().any(|(_, node)| node.style.has_no_width()) {
-            inker.source.notes.add(Note::NoWidth, name);
+            painter.source.notes.add(Note::NoWidth, name);
         }
         let is_drawn = self.parts.iter().any(|(parent, node)| !bounds(node, *parent).is_empty());
         if is_drawn && !self.is_cut {
-            inker.source.notes.add(Note::ZeroSize, name);
+            painter.source.notes.add(Note::ZeroSize, name);
         }
     }
 }
@@ -167,7 +168,7 @@ impl Item {
 /// The names of a node, completed by those of the only shape in it.
 fn named(node: &Rc<Node>) -> Rc<Meta> {
     match sole_shape(node, Affine::IDENTITY) {
-        Some((leaf, _)) if !Rc::ptr_eq(leaf, node) => {
+        Some(SoleShape { leaf, .. }) if !Rc::ptr_eq(leaf, node) => {
             let (outer, inner) = (&*node.meta, &*leaf.meta);
             Rc::new(Meta {
                 class: outer.class.clone().or_else(|| inner.class.clone()),

@@ -8,7 +8,7 @@ use crate::svg::{
     shape::{
         adjacency::{Budget, Edge, edges_meet, meeting},
         extent::longer,
-        painted_area::Inker,
+        painted_area::Painter,
     },
     understand::{
         abutting,
@@ -22,12 +22,14 @@ const EDGE_PAIRS: u64 = 200_000_000;
 /// Gap that still counts as touching, as a share of the frame.
 const SEAM: f64 = 2e-4;
 
-/// Joins items: pieces of the same colour that touch always, strokes and what they touch when every connected piece is an element.
-pub(crate) fn join(found: Selection, inker: &Inker<'_, '_>, frame: Bounds<2>, method: Method) -> Result<Selection> {
+/// Joins items: pieces of the same colour that touch always, strokes and what they touch when every connected piece is
+/// an element.
+pub(crate) fn join(found: Selection, painter: &Painter<'_, '_>, frame: Bounds<2>, method: Method) -> Result<Selection> {
     let Selection { items, background } = found;
     let tolerance = SEAM * longer(&frame);
-    let items = if method == Method::Elements { items } else { abutting::join_lines(items, inker, frame, tolerance)? };
-    let colours: Vec<String> = items.iter().map(|item| item.ink.colours_key()).collect();
+    let items =
+        if method == Method::Elements { items } else { abutting::join_lines(items, painter, frame, tolerance)? };
+    let colours: Vec<String> = items.iter().map(|item| item.painted.colours_key()).collect();
     let may_join = |i: usize, j: usize| {
         let (a, b) = (items[i].origin, items[j].origin);
         let pieces = a == Origin::Piece && b == Origin::Piece && colours[i] == colours[j];
@@ -36,7 +38,7 @@ pub(crate) fn join(found: Selection, inker: &Inker<'_, '_>, frame: Bounds<2>, me
         (!is_done && pieces) || (method == Method::Elements && loose && (a == Origin::Stroke || b == Origin::Stroke))
     };
     let items = if items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
-        let groups = connected(&items, may_join, tolerance, inker);
+        let groups = connected(&items, may_join, tolerance, painter);
         groups.into_iter().map(|group| Item::merged(&items, &group, frame)).collect()
     } else {
         items
@@ -48,7 +50,7 @@ fn connected(
     items: &[Item],
     may_join: impl Fn(usize, usize) -> bool,
     tolerance: f64,
-    inker: &Inker<'_, '_>,
+    painter: &Painter<'_, '_>,
 ) -> Vec<Vec<usize>> {
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
@@ -67,7 +69,7 @@ fn connected(
                 Some(true) => sets.join(i, j),
                 Some(false) if inside(&items[i], &items[j]) || inside(&items[j], &items[i]) => sets.join(i, j),
                 Some(false) => {}
-                None => inker.source.notes.add(Note::TooTangled, || "not all touching strokes joined".to_owned()),
+                None => painter.source.notes.add(Note::TooTangled, || "not all touching strokes joined".to_owned()),
             }
             meets.is_some()
         },

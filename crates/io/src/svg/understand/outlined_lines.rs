@@ -1,5 +1,5 @@
-//! Filled outlines that are lines in truth, as drawing programs make them by "stroke to path": taken for strokes where they are too
-//! large for an element.
+//! Filled outlines that are really lines, as drawing programs make them by "stroke to path": taken for strokes where
+//! they are too large for an element.
 
 use std::{collections::BTreeSet, rc::Rc};
 
@@ -15,7 +15,8 @@ use crate::svg::{
     understand::item::{Item, Kind, Origin},
 };
 
-/// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as a curve.
+/// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as
+/// a curve.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for something filled that is marked as a curve and has no lines of one width.
@@ -23,12 +24,12 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
     let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
         if follow(source, item, window) {
-            paints.insert(item.ink.colours_key());
+            paints.insert(item.painted.colours_key());
         }
     }
     // Smaller pieces of the same paint are parts of the same net.
     for item in items.iter_mut().filter(|item| item.kind == Kind::Element && item.origin != Origin::Whole) {
-        if paints.contains(&item.ink.colours_key()) && is_plain_fill(item) {
+        if paints.contains(&item.painted.colours_key()) && is_plain_fill(item) {
             follow(source, item, window);
         }
     }
@@ -36,7 +37,7 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
         if !follow(source, item, window) {
             return Err(Error::Unsupported {
                 what: format!(
-                    "{}: {}, filled and marked as a curve but no line of one width",
+                    "{}: {}, filled and marked as a curve but not the outline of lines of one width",
                     source.name,
                     item.name(source)
                 ),

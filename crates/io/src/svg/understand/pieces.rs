@@ -1,7 +1,7 @@
 //! Taking a filled compound path apart: an outer border with its holes is one piece.
 //!
-//! Subpaths whose borders meet belong together; so does a subpath that lies in the filled area of others. What lies in a hole
-//! is a piece of its own, and knows the piece that it lies in.
+//! Subpaths whose borders meet belong together; so does a subpath that lies in the filled area of others. What lies in
+//! a hole is a piece of its own, and knows the piece that it lies in.
 
 use arabesque_core::{Bounds, DisjointSets, FillRule, Ring, ring};
 use kurbo::{BezPath, PathEl};
@@ -23,7 +23,8 @@ pub(crate) struct Piece {
     pub(crate) within: Option<usize>,
 }
 
-/// The pieces of a path filled under `rule`, in the order of their first subpaths; `None` when it is too tangled to take apart.
+/// The pieces of a path filled under `rule`, in the order of their first subpaths; `None` when it is too tangled to
+/// take apart.
 pub(crate) fn pieces(path: &BezPath, rule: FillRule) -> Option<Vec<Piece>> {
     let rings: Vec<Ring<2>> = path.subpaths().map(flattened).collect();
     let boxes: Vec<_> = rings.iter().map(|r| Bounds::around(r.iter().copied())).collect();
@@ -58,7 +59,8 @@ pub(crate) fn pieces(path: &BezPath, rule: FillRule) -> Option<Vec<Piece>> {
     Some(gather(sets, &homes))
 }
 
-/// Joins each ring that lies in a filled area to that area. Returns for every ring in a hole the innermost ring around it.
+/// Joins each ring that lies in a filled area to that area. Returns for every ring in a hole the innermost ring around
+/// it.
 fn nest(rings: &[Ring<2>], around: &[Vec<usize>], rule: FillRule, sets: &mut DisjointSets) -> Vec<Option<usize>> {
     let areas: Vec<f64> = rings.iter().map(|r| ring::area(r).abs()).collect();
     let mut homes = vec![None; rings.len()];

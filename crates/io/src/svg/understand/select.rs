@@ -1,11 +1,14 @@
 //! What of a drawing is an element, what a curve, what background.
 //!
 //! - Filled shapes, groups, `<use>` and filled pieces smaller than half of the frame are elements.
-//! - A stroke without a fill is a curve where it is open, or larger than half of the frame. Where the drawing holds any such curve, its
-//!   closed strokes outside groups are curves too, for they belong to the same net; else they are elements.
-//! - Layers, groups that cover half of the frame, and groups of several things far apart are containers: their content is looked at.
-//! - A filled compound path is taken apart into connected pieces unless it is small and its pieces lie close together (a paw print);
-//!   pieces in the holes of another piece stay with it, and pieces of the same colour that abut are joined again.
+//! - A stroke without a fill is a curve where it is open, or larger than half of the frame. Where the drawing holds any
+//!   such curve, its closed strokes outside groups are curves too, for they belong to the same net; else they are
+//!   elements.
+//! - Layers, groups that cover half of the frame, and groups of several things far apart are containers: their content
+//!   is looked at.
+//! - A filled compound path is taken apart into connected pieces unless it is small and its pieces lie close together
+//!   (a paw print); pieces in the holes of another piece stay with it, and pieces of the same colour that abut are
+//!   joined again.
 //! - A fill that covers the frame is background; a stroke along the frame is left out.
 //! - `data-arabesque` on an item overrides all this.
 
@@ -25,16 +28,16 @@ use crate::svg::{
         scene::{Content, Node},
     },
     shape::{
-        extent::{bounds, clusters, longer, sole_shape},
+        extent::{SoleShape, bounds, clusters, longer, sole_shape},
         flatten,
-        painted_area::Inker,
+        painted_area::Painter,
         subpath::is_all_closed,
     },
     understand::{
         compound::Compound,
         item::{HALF, Item, Kind, Origin, Selection},
         join::join,
-        surroundings::Context,
+        surroundings::Surroundings,
     },
 };
 
@@ -47,7 +50,7 @@ const COVER: f64 = 0.95;
 
 /// Walks the drawing.
 struct Selector<'a, 's, 'i> {
-    inker: &'i Inker<'a, 's>,
+    painter: &'i Painter<'a, 's>,
     frame: Bounds<2>,
     method: Method,
     /// Groups to be opened whatever they look like.
@@ -57,14 +60,14 @@ struct Selector<'a, 's, 'i> {
 
 /// What the roots hold. A single group that is all there is gets opened when it holds several separate things.
 pub(crate) fn select(
-    inker: &Inker<'_, '_>,
+    painter: &Painter<'_, '_>,
     frame: Bounds<2>,
     method: Method,
-    roots: &[(Context, Rc<Node>)],
+    roots: &[(Surroundings, Rc<Node>)],
 ) -> Result<Selection> {
     let mut opened: Vec<NodeId> = Vec::new();
     loop {
-        let mut selector = Selector { inker, frame, method, opened: opened.clone(), found: Selection::default() };
+        let mut selector = Selector { painter, frame, method, opened: opened.clone(), found: Selection::default() };
         for (context, root) in roots {
             selector.open(root, context)?;
         }
@@ -78,7 +81,7 @@ pub(crate) fn select(
                 if method == Method::Auto {
                     promote(&mut selector.found.items);
                 }
-                return join(selector.found, inker, frame, method);
+                return join(selector.found, painter, frame, method);
             }
         }
     }
@@ -113,9 +116,9 @@ impl Selector<'_, '_, '_> {
     }
 
     /// Looks at the content of a container.
-    fn open(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
+    fn open(&mut self, node: &Rc<Node>, at: &Surroundings) -> Result<()> {
         let world = at.parent * node.transform;
-        let clip = self.inker.clip(node, world)?;
+        let clip = self.painter.clip(node, world)?;
         let clip = match (&at.clip, clip) {
             (Some(a), Some(b)) => Some(Rc::new(a.intersection(&b))),
             (a, b) => b.map(Rc::new).or_else(|| a.clone()),
@@ -125,16 +128,16 @@ impl Selector<'_, '_, '_> {
             return Ok(());
         }
         if node.own.has_effects() {
-            self.inker.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());
+            self.painter.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());
         }
         let name = node.meta.label.as_ref().or(node.meta.id.as_ref());
         let layer = if node.meta.is_layer { name.map(|l| l.as_str().into()) } else { at.layer.clone() };
         let mark = node.meta.mark.or(at.mark);
-        let inside = Context { parent: world, layer, opacity, clip, mark, without: Rc::clone(&at.without) };
+        let inside = Surroundings { parent: world, layer, opacity, clip, mark, without: Rc::clone(&at.without) };
         node.children().iter().try_for_each(|child| self.visit(child, &inside))
     }
 
-    fn visit(&mut self, node: &Rc<Node>, at: &Context) -> Result<()> {
+    fn visit(&mut self, node: &Rc<Node>, at: &Surroundings) -> Result<()> {
         let meta = &node.meta;
         if matches!(meta.part, Some(part) if part != Part::Exemplar) || at.excludes(meta) {
             return Ok(());
@@ -149,8 +152,8 @@ impl Selector<'_, '_, '_> {
             None if meta.source.is_some() => return self.take(node, at, Kind::Element, Origin::Whole),
             None => {}
         }
-        if let (Some((leaf, parent)), true) = (sole_shape(node, at.parent), meta.tag != "use") {
-            return self.shape(node, leaf, parent, at);
+        if let (Some(only), true) = (sole_shape(node, at.parent), meta.tag != "use") {
+            return self.shape(node, &only, at);
         }
         let extent = self.visible(node, at)?;
         if extent.is_empty() {
@@ -166,16 +169,16 @@ impl Selector<'_, '_, '_> {
     }
 
     /// Box around what the clips leave of a node.
-    fn visible(&self, node: &Node, at: &Context) -> Result<Bounds<2>> {
+    fn visible(&self, node: &Node, at: &Surroundings) -> Result<Bounds<2>> {
         let mut extent = bounds(node, at.parent);
-        if let Some(clip) = self.inker.clip(node, at.parent * node.transform)? {
+        if let Some(clip) = self.painter.clip(node, at.parent * node.transform)? {
             let clip = clip.bounds();
             extent = Bounds::new(extent.min.zip(clip.min, f64::max), extent.max.zip(clip.max, f64::min));
         }
         Ok(extent)
     }
 
-    fn is_container(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Context) -> bool {
+    fn is_container(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Surroundings) -> bool {
         let share = self.share(extent);
         if share >= HALF {
             return true;
@@ -189,13 +192,14 @@ impl Selector<'_, '_, '_> {
     }
 
     /// Takes a node as a whole.
-    fn take(&mut self, node: &Rc<Node>, at: &Context, kind: Kind, origin: Origin) -> Result<()> {
-        self.found.items.extend(Item::taken(self.inker, node, at, kind, origin)?);
+    fn take(&mut self, node: &Rc<Node>, at: &Surroundings, kind: Kind, origin: Origin) -> Result<()> {
+        self.found.items.extend(Item::taken(self.painter, node, at, kind, origin)?);
         Ok(())
     }
 
     /// Decides about a node that is, or wraps, a single shape.
-    fn shape(&mut self, node: &Rc<Node>, leaf: &Rc<Node>, parent: Affine, at: &Context) -> Result<()> {
+    fn shape(&mut self, node: &Rc<Node>, only: &SoleShape<'_>, at: &Surroundings) -> Result<()> {
+        let &SoleShape { leaf, parent } = only;
         let Content::Shape(geometry) = &leaf.content else { return Ok(()) };
         let extent = self.visible(node, at)?;
         let world = parent * leaf.transform;
@@ -208,19 +212,19 @@ impl Selector<'_, '_, '_> {
         let origin = if filled { Origin::Fill } else { Origin::Stroke };
         if filled {
             let compound = match geometry.paint {
-                Painted::Style => Compound::new(self.inker, node, (leaf, parent), at)?.map(Rc::new),
+                Painted::Style => Compound::new(self.painter, node, only, at)?.map(Rc::new),
                 Painted::Picture => None,
             };
             if let Some(compound) = compound.as_ref().filter(|compound| !self.is_compact(compound)) {
                 return self.split(compound);
             }
             let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
-            let whole = Item::taken(self.inker, node, at, kind, origin)?;
+            let whole = Item::taken(self.painter, node, at, kind, origin)?;
             self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
             return Ok(());
         }
         if closed && self.is_frame(leaf, geometry, world) {
-            self.inker.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
+            self.painter.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
             return Ok(());
         }
         let is_small = closed && self.share(&extent) < HALF && self.method != Method::Curves;
@@ -237,7 +241,7 @@ impl Selector<'_, '_, '_> {
         along && flatten::filled(&geometry.path, world, FillRule::NonZero).area() >= 0.85 * self.frame.measure()
     }
 
-    fn covers_frame(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Context) -> Result<bool> {
+    fn covers_frame(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Surroundings) -> Result<bool> {
         let low = extent.min.zip(self.frame.min, f64::max);
         let high = extent.max.zip(self.frame.max, f64::min);
         let common = Bounds::new(low, high);
@@ -246,13 +250,13 @@ impl Selector<'_, '_, '_> {
         }
         let (a, b) = (self.frame.min, self.frame.max);
         let corners = vec![a, arabesque_core::Vector::xy(b[0], a[1]), b, arabesque_core::Vector::xy(a[0], b[1])];
-        let outline = self.inker.ink(node, at.parent)?.outline().intersection(&Outline { rings: vec![corners] });
+        let outline = self.painter.painted(node, at.parent)?.outline().intersection(&Outline { rings: vec![corners] });
         Ok(outline.area() >= COVER * self.frame.measure())
     }
 
     /// Takes the pieces of a compound path, those in the hole of another with it.
     fn split(&mut self, compound: &Rc<Compound>) -> Result<()> {
-        compound.note_losses(self.inker);
+        compound.note_losses(self.painter);
         let mut sets = DisjointSets::new(compound.pieces.len());
         for (k, p) in compound.pieces.iter().enumerate() {
             if let Some(home) = p.within.filter(|&home| self.share(&compound.boxes[home]) < HALF) {
@@ -260,7 +264,7 @@ impl Selector<'_, '_, '_> {
             }
         }
         for group in sets.groups() {
-            self.found.items.extend(Item::of_pieces(compound, self.inker, group, self.frame)?);
+            self.found.items.extend(Item::of_pieces(compound, self.painter, group, self.frame)?);
         }
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! The shape of an outline in short, and the best similarity between two of them.
 //!
-//! A signature holds the farthest ink in 64 directions around the centre, and points along the border. Two outlines are aligned by
-//! the turns for which the directions agree best; how well they then agree is the root mean square distance between their borders.
+//! A signature holds the farthest painted area in 64 directions around the centre, and points along the border. Two
+//! outlines are aligned by the turns for which the directions agree best; how well they then agree is the root mean
+//! square distance between their borders.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +28,7 @@ pub(crate) struct Signature {
     /// Covered share of the disc with that radius.
     fullness: f64,
     is_round: bool,
-    /// Farthest ink by direction, in sizes; 0 where there is none.
+    /// Farthest painted area by direction, in sizes; 0 where there is none.
     profile: [f64; DIRECTIONS],
     /// Points along the border at equal steps, relative to the centre, in sizes.
     points: Vec<Vector<2>>,

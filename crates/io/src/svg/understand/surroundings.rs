@@ -9,7 +9,7 @@ use crate::svg::parse::meta::{Mark, Meta};
 
 /// What holds for everything inside a container.
 #[derive(Clone, Debug)]
-pub(crate) struct Context {
+pub(crate) struct Surroundings {
     /// From the parent to the root.
     pub(crate) parent: Affine,
     pub(crate) layer: Option<Rc<str>>,
@@ -20,13 +20,13 @@ pub(crate) struct Context {
     pub(crate) without: Rc<[String]>,
 }
 
-impl Context {
+impl Surroundings {
     /// Nothing but the transform from the parent to the root.
     pub(crate) fn new(parent: Affine) -> Self {
         Self { parent, layer: None, opacity: 1.0, clip: None, mark: None, without: Rc::default() }
     }
 
-    /// The same, but for the items of those names.
+    /// The same, except for the items of those names.
     pub(crate) fn without(self, names: &[String]) -> Self {
         Self { without: names.into(), ..self }
     }

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Repeats beyond this number would make a file that nobody can open.
-const MOST_REPEATS: f64 = 100_000.0;
+const MAX_REPEATS: f64 = 100_000.0;
 
 /// Markup that fills the domain of `sheet` with the background `markup` of its exemplar, and what is wrong with it.
 pub(crate) fn background(
@@ -82,7 +82,7 @@ fn repeated(markup: &str, sheet: &Sheet<'_>, prefix: &str, d: Decimals) -> Resul
     let (window, area) = (sheet.drawing.exemplar.window, sheet.domain.bounds());
     let size = window.size();
     let count = |k: usize| (area.size()[k] / size[k]).ceil().max(1.0);
-    if count(0) * count(1) > MOST_REPEATS {
+    if count(0) * count(1) > MAX_REPEATS {
         return Err(Error::Unsupported {
             what: format!("repeating the background {} times", count(0) * count(1)),
             advice: "give the exemplar a background of one colour, or none".into(),
@@ -90,7 +90,8 @@ fn repeated(markup: &str, sheet: &Sheet<'_>, prefix: &str, d: Decimals) -> Resul
     }
     let clip: Outline<2> = sheet.shape.cloned().unwrap_or_else(|| rectangle(&area));
     let mut out = format!(
-        "<clipPath id=\"{prefix}-behind\"><path d=\"{}\" clip-rule=\"evenodd\"/></clipPath>\n<g clip-path=\"url(#{prefix}-behind)\">\n",
+        "<clipPath id=\"{prefix}-behind\"><path d=\"{}\" clip-rule=\"evenodd\"/></clipPath>\n<g \
+         clip-path=\"url(#{prefix}-behind)\">\n",
         outline_data(&clip, d)
     );
     for row in 0..count(1) as usize {

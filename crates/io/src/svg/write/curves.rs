@@ -1,4 +1,4 @@
-//! Writing the strokes of a result: one path a stroke, those painted alike in one group.
+//! Writing the strokes of a result: one path per stroke, those painted alike in one group.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -12,7 +12,8 @@ use crate::{
 /// Widths that differ by less than this share are the same.
 const SAME_WIDTH: f64 = 1e-3;
 
-/// Markup of the strokes of a sheet that are not kept from another file; `shifts` tells under which shifts a box is seen.
+/// Markup of the strokes of a sheet that are not kept from another file; `shifts` tells under which shifts a box is
+/// seen.
 pub(crate) fn curves(
     sheet: &Sheet<'_>,
     prefix: &str,
@@ -39,7 +40,7 @@ pub(crate) fn curves(
         for (index, drawn) in members {
             let bounds = drawn.path.bounds().grown(0.5 * stroke.width * drawn.scale);
             for (copy, shift) in shifts(&bounds).into_iter().enumerate() {
-                path(&mut out, (prefix, index, copy), drawn, stroke, shift, decimals);
+                path(&mut out, &CurveId { prefix, index, copy }, drawn, stroke, shift, decimals);
             }
         }
         out.push_str("</g>\n");
@@ -47,25 +48,33 @@ pub(crate) fn curves(
     out
 }
 
-/// The name of the layer that strokes came from, else that of their style; names that would make the layer part of a job are not handed on.
+/// The name of the layer that strokes came from, else that of their style; names that would make the layer part of a
+/// job are not handed on.
 fn label(stroke: &Stroke, style: &str) -> String {
     let layer = stroke.layer.as_deref().filter(|name| part(name).is_none());
     layer.unwrap_or(style).to_owned()
 }
 
-fn path(
-    out: &mut String,
-    (prefix, index, copy): (&str, usize, usize),
-    drawn: &Drawn<2>,
-    stroke: &Stroke,
-    shift: Vector<2>,
-    decimals: Decimals,
-) {
+/// What the id of a path says: which stroke of the result it is, and which copy of it on a torus.
+struct CurveId<'a> {
+    prefix: &'a str,
+    index: usize,
+    copy: usize,
+}
+
+impl CurveId<'_> {
+    fn text(&self) -> String {
+        let copy = if self.copy == 0 { String::new() } else { format!("-{}", self.copy) };
+        format!("{}-curve-{}{copy}", self.prefix, self.index)
+    }
+}
+
+fn path(out: &mut String, id: &CurveId<'_>, drawn: &Drawn<2>, stroke: &Stroke, shift: Vector<2>, decimals: Decimals) {
     let moved = if shift == Vector::ZERO { drawn.path.clone() } else { drawn.path.map(|p| p + shift) };
-    let copy = if copy == 0 { String::new() } else { format!("-{copy}") };
     let _ = write!(
         out,
-        "<path id=\"{prefix}-curve-{index}{copy}\" d=\"{}\" data-arabesque-curve=\"{}\"",
+        "<path id=\"{}\" d=\"{}\" data-arabesque-curve=\"{}\"",
+        id.text(),
         path_data(&moved, decimals),
         drawn.source
     );

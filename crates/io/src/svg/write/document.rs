@@ -36,7 +36,8 @@ impl Root<'_> {
         let [width, height] = [0, 1].map(|k| self.lengths.format(size[k] * self.page.unit_per_user));
         let [x, y, w, h] = [view.min[0], view.min[1], size[0], size[1]].map(|v| d.format(v));
         format!(
-            "<svg xmlns=\"{SVG}\"{declared}{} width=\"{width}{unit}\" height=\"{height}{unit}\" viewBox=\"{x} {y} {w} {h}\">\n",
+            "<svg xmlns=\"{SVG}\"{declared}{} width=\"{width}{unit}\" height=\"{height}{unit}\" viewBox=\"{x} {y} {w} \
+             {h}\">\n",
             self.attributes
         )
     }

@@ -54,7 +54,10 @@ impl Writer<'_> {
         self.out.push_str("</g>\n");
         if clipped > 0 {
             self.warnings.push(Warning::new(
-                format!("{clipped} pieces (pictures, text, linked parts, or pieces with gradients, clips or filters) were not flattened"),
+                format!(
+                    "{clipped} pieces (pictures, text, linked parts, or pieces with gradients, clips or filters) \
+                     were not flattened"
+                ),
                 "convert them to plain paths in the exemplar where the receiving machine needs that",
             ));
         }

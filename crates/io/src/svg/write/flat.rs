@@ -10,7 +10,7 @@ use crate::{
         drawing::Drawing,
         write::{
             cut::{Cutter, Remainder},
-            pieces::{PaintedPath, Piece, take_apart},
+            pieces::{MarkupPiece, PaintedPath, take_apart},
             sheet::Style,
         },
     },
@@ -54,7 +54,7 @@ pub(crate) struct Flattener<'a> {
     /// Id of the clip path of the domain, where there is one.
     clip: Option<&'a str>,
     decimals: Decimals,
-    pieces: Vec<OnceCell<Vec<Piece>>>,
+    pieces: Vec<OnceCell<Vec<MarkupPiece>>>,
 }
 
 impl<'a> Flattener<'a> {
@@ -75,7 +75,7 @@ impl<'a> Flattener<'a> {
         }
     }
 
-    fn pieces(&self, source: usize) -> Result<&[Piece]> {
+    fn pieces(&self, source: usize) -> Result<&[MarkupPiece]> {
         let cell = &self.pieces[source];
         if cell.get().is_none() {
             let taken = take_apart(&self.drawing.fragments[source].markup)?;
@@ -95,10 +95,10 @@ impl<'a> Flattener<'a> {
         let mut flat = Flat::default();
         for piece in self.pieces(source)? {
             match piece {
-                Piece::Open(tag) => flat.markup.push_str(tag),
-                Piece::Close => flat.markup.push_str("</g>"),
-                Piece::Path(path) => self.path(path, warp, cutter, &mut flat.markup),
-                Piece::Whole(markup) => {
+                MarkupPiece::Open(tag) => flat.markup.push_str(tag),
+                MarkupPiece::Close => flat.markup.push_str("</g>"),
+                MarkupPiece::Path(path) => self.path(path, warp, cutter, &mut flat.markup),
+                MarkupPiece::Whole(markup) => {
                     flat.kept_whole += usize::from(style == Style::Expanded);
                     let placed = format!("<g transform=\"{}\">{markup}</g>", self.matrix(moved));
                     match (cutter, self.clip) {
@@ -130,23 +130,16 @@ impl<'a> Flattener<'a> {
         match (fill, stroke) {
             (Remainder::Everything, Remainder::Everything) => self.push(out, painted, &path, scale, Paint::Both),
             (fill, stroke) => {
-                self.push_part(out, painted, (&path, &fill), scale, Paint::Fill);
-                self.push_part(out, painted, (&path, &stroke), scale, Paint::Stroke);
+                self.push_part(out, painted, &CutPath { whole: &path, rest: &fill }, scale, Paint::Fill);
+                self.push_part(out, painted, &CutPath { whole: &path, rest: &stroke }, scale, Paint::Stroke);
             }
         }
     }
 
-    fn push_part(
-        &self,
-        out: &mut String,
-        painted: &PaintedPath,
-        part: (&BezPath, &Remainder),
-        scale: f64,
-        paint: Paint,
-    ) {
-        match part.1 {
+    fn push_part(&self, out: &mut String, painted: &PaintedPath, part: &CutPath<'_>, scale: f64, paint: Paint) {
+        match part.rest {
             Remainder::Nothing => {}
-            Remainder::Everything => self.push(out, painted, part.0, scale, paint),
+            Remainder::Everything => self.push(out, painted, part.whole, scale, paint),
             Remainder::Part(rest) => self.push(out, painted, rest, scale, paint),
         }
     }
@@ -199,6 +192,12 @@ impl<'a> Flattener<'a> {
         let linear: Vec<_> = m[..4].iter().map(|&v| self.decimals.plus(3).format(v)).collect();
         format!("matrix({} {} {})", linear.join(" "), self.decimals.format(m[4]), self.decimals.format(m[5]))
     }
+}
+
+/// A path, and what the border leaves of it.
+struct CutPath<'a> {
+    whole: &'a BezPath,
+    rest: &'a Remainder,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Results as SVG text.
+//! Results as SVG text: a file of placed elements and strokes, a file of ribbons, and the survey of an exemplar.
 
 pub(crate) mod areas;
 pub(crate) mod background;

@@ -5,14 +5,20 @@ use std::{collections::BTreeMap, str::FromStr};
 use arabesque_core::{Error, Result};
 use kurbo::{Affine, BezPath, Shape as _};
 
-use crate::text::xml::escape;
+use crate::{
+    svg::{
+        namespace::{INKSCAPE, SVG, XLINK},
+        parse::length::unit_of,
+    },
+    text::xml::escape,
+};
 
 /// Attributes of one node, sorted by name.
 type Attributes = BTreeMap<String, String>;
 
 /// A part of an element, in the coordinates of the exemplar.
 #[derive(Clone, Debug)]
-pub(crate) enum Piece {
+pub(crate) enum MarkupPiece {
     /// Start tag of a group that does something to what is in it.
     Open(String),
     /// End tag of the last open group.
@@ -27,7 +33,7 @@ pub(crate) enum Piece {
 #[derive(Clone, Debug)]
 pub(crate) struct PaintedPath {
     pub(crate) path: BezPath,
-    /// Paint and the rest, but for what scales with the element.
+    /// Paint and the rest, except what scales with the element.
     pub(crate) attributes: Attributes,
     /// `stroke-width`, `stroke-dasharray` and `stroke-dashoffset`, in exemplar units.
     pub(crate) lengths: Vec<(&'static str, Vec<f64>)>,
@@ -76,8 +82,7 @@ const ARC_TOLERANCE: f64 = 1e-4;
 /// `markup` as a document of its own, with the namespaces that it may use.
 pub(crate) fn wrapped(markup: &str) -> String {
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
+        "<svg xmlns=\"{SVG}\" xmlns:xlink=\"{XLINK}\" xmlns:inkscape=\"{INKSCAPE}\" \
          xmlns:sodipodi=\"http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd\">{markup}</svg>"
     )
 }
@@ -86,7 +91,7 @@ pub(crate) fn wrapped(markup: &str) -> String {
 ///
 /// # Errors
 /// [`Error::Input`] when it is not well-formed, or a path in it cannot be read.
-pub(crate) fn take_apart(markup: &str) -> Result<Vec<Piece>> {
+pub(crate) fn take_apart(markup: &str) -> Result<Vec<MarkupPiece>> {
     let text = wrapped(markup);
     let document = roxmltree::Document::parse(&text).map_err(|e| broken(&e.to_string()))?;
     let mut pieces = Vec::new();
@@ -100,7 +105,7 @@ fn broken(problem: &str) -> Error {
     Error::input("an element of the exemplar", problem, "draw it again with plain paths, or write without expanding")
 }
 
-fn visit(node: roxmltree::Node<'_, '_>, above: Affine, handed: &Attributes, out: &mut Vec<Piece>) -> Result<()> {
+fn visit(node: roxmltree::Node<'_, '_>, above: Affine, handed: &Attributes, out: &mut Vec<MarkupPiece>) -> Result<()> {
     let name = node.tag_name().name();
     if matches!(name, "title" | "desc" | "metadata") {
         return Ok(());
@@ -120,7 +125,7 @@ fn visit(node: roxmltree::Node<'_, '_>, above: Affine, handed: &Attributes, out:
         out.push(painted(&(transform * path), transform, &own, merged));
         return Ok(());
     }
-    out.push(Piece::Whole(whole(node, above, handed)));
+    out.push(MarkupPiece::Whole(whole(node, above, handed)));
     Ok(())
 }
 
@@ -129,17 +134,17 @@ fn group(
     transform: Affine,
     own: &Attributes,
     merged: &Attributes,
-    out: &mut Vec<Piece>,
+    out: &mut Vec<MarkupPiece>,
 ) -> Result<()> {
     let kept: String = own_text(own, |n| OWN.contains(&n) && n != "class");
     if !kept.is_empty() {
-        out.push(Piece::Open(format!("<g{kept}>")));
+        out.push(MarkupPiece::Open(format!("<g{kept}>")));
     }
     for child in node.children().filter(roxmltree::Node::is_element) {
         visit(child, transform, merged, out)?;
     }
     if !kept.is_empty() {
-        out.push(Piece::Close);
+        out.push(MarkupPiece::Close);
     }
     Ok(())
 }
@@ -193,7 +198,7 @@ fn is_even(transform: Affine, attributes: &Attributes) -> bool {
     similar || attributes.get("stroke").is_none_or(|s| s == "none")
 }
 
-fn painted(path: &BezPath, transform: Affine, own: &Attributes, mut attributes: Attributes) -> Piece {
+fn painted(path: &BezPath, transform: Affine, own: &Attributes, mut attributes: Attributes) -> MarkupPiece {
     let scale = transform.determinant().abs().sqrt();
     attributes.extend(
         own.iter().filter(|(n, _)| OWN.contains(&n.as_str()) && *n != "class").map(|(n, v)| (n.clone(), v.clone())),
@@ -209,22 +214,13 @@ fn painted(path: &BezPath, transform: Affine, own: &Attributes, mut attributes: 
             lengths.push((name, numbers));
         }
     }
-    Piece::Path(PaintedPath { path: path.clone(), attributes, lengths })
+    MarkupPiece::Path(PaintedPath { path: path.clone(), attributes, lengths })
 }
 
 /// A length in user units; percentages have no meaning once the element has left its page.
 fn length(text: &str) -> Option<f64> {
     let l = svgtypes::Length::from_str(text.trim()).ok()?;
-    let factor = match l.unit {
-        svgtypes::LengthUnit::None | svgtypes::LengthUnit::Px => 1.0,
-        svgtypes::LengthUnit::Mm => 96.0 / 25.4,
-        svgtypes::LengthUnit::Cm => 96.0 / 2.54,
-        svgtypes::LengthUnit::In => 96.0,
-        svgtypes::LengthUnit::Pt => 96.0 / 72.0,
-        svgtypes::LengthUnit::Pc => 16.0,
-        svgtypes::LengthUnit::Em | svgtypes::LengthUnit::Ex | svgtypes::LengthUnit::Percent => return None,
-    };
-    Some(l.number * factor)
+    Some(l.number * unit_of(l.unit)?.pixels())
 }
 
 /// The path of a basic shape in its own coordinates; `None` for everything else.
@@ -310,7 +306,7 @@ mod tests {
 
     fn only_path(markup: &str) -> PaintedPath {
         match take_apart(markup).unwrap().as_slice() {
-            [Piece::Path(p)] => p.clone(),
+            [MarkupPiece::Path(p)] => p.clone(),
             other => panic!("{other:?}"),
         }
     }
@@ -335,13 +331,13 @@ mod tests {
             "<path transform=\"scale(1 3)\" d=\"M0 0L1 1\" stroke=\"red\"/>",
         ] {
             let pieces = take_apart(markup).unwrap();
-            assert!(matches!(&pieces[..], [Piece::Whole(text)] if !text.contains("id=")), "{markup}: {pieces:?}");
+            assert!(matches!(&pieces[..], [MarkupPiece::Whole(text)] if !text.contains("id=")), "{markup}: {pieces:?}");
         }
     }
 
     #[test]
     fn group_opacity_stays_a_group() {
         let pieces = take_apart("<g opacity=\"0.5\"><circle r=\"1\"/></g>").unwrap();
-        assert!(matches!(&pieces[..], [Piece::Open(_), Piece::Path(_), Piece::Close]));
+        assert!(matches!(&pieces[..], [MarkupPiece::Open(_), MarkupPiece::Path(_), MarkupPiece::Close]));
     }
 }

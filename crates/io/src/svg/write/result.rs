@@ -1,7 +1,9 @@
-//! Writing results as SVG.
+//! A result as an SVG file: page, metadata, definitions, layers; or the file of which a part was refilled, with the new
+//! part in it.
 //!
-//! The page keeps the units of the exemplar, layers carry Inkscape's labels, each exemplar element that is used stands once in `<defs>` and
-//! is placed by `<use>`; or every element is written out in place ([`Style::Expanded`](crate::svg::Style::Expanded)). The recipe travels in `<metadata>`.
+//! The page keeps the units of the exemplar, layers carry Inkscape's labels, each exemplar element that is used stands
+//! once in `<defs>` and is placed by `<use>`; or every element is written out in place
+//! ([`Style::Expanded`](crate::svg::Style::Expanded)). The recipe travels in `<metadata>`.
 
 use std::fmt::Write as _;
 
@@ -98,9 +100,12 @@ mod tests {
     use arabesque_core::{Border, Bounds, Domain, Exemplar, Placement, Similarity, Vector};
 
     use super::*;
-    use crate::svg::{
-        drawing::{Drawing, Fragment, Job, Page, Unit},
-        write::{document::recipe_of, sheet::Style, text::rectangle},
+    use crate::{
+        svg::{
+            drawing::{Drawing, Fragment, Job, Page},
+            write::{document::recipe_of, sheet::Style, text::rectangle},
+        },
+        text::unit::Unit,
     };
 
     /// Two dots at (2, 2) and (8, 8) in a 10 x 10 frame.

@@ -69,6 +69,28 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
         let declared = format!(" xmlns:arabesque=\"{NAMESPACE}\"");
         let _ = writeln!(out, "  <metadata>{}</metadata>", recipe_element(recipe, &declared));
     }
+    definitions(&mut out, sheet, decimals);
+    out.push_str("  <g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\">\n");
+    let mut number = 0;
+    for (name, look) in sheet.ribbons {
+        let _ = writeln!(out, "    <g inkscape:label=\"{}\">", escape(name));
+        match look {
+            Look::Markup(markup) => out.push_str(markup),
+            Look::Cells(cells) => {
+                for cell in cells {
+                    push_cell(&mut out, number, cell, decimals);
+                    number += 1;
+                }
+            }
+        }
+        out.push_str("    </g>\n");
+    }
+    out.push_str("  </g>\n</svg>\n");
+    out
+}
+
+/// The pictures, and the clips of all cells, numbered through all ribbons.
+fn definitions(out: &mut String, sheet: &RibbonSheet<'_>, decimals: Decimals) {
     out.push_str("  <defs>\n");
     for (k, picture) in sheet.pictures.iter().enumerate() {
         let [width, height] = picture.size;
@@ -88,28 +110,16 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
         let data = ring_text(&grown(&cell.ring, OVERLAP * (a * d - b * c).abs().sqrt()), decimals);
         let _ = writeln!(out, "    <clipPath id=\"cell-{k}\"><path d=\"{data}\"/></clipPath>");
     }
-    out.push_str("  </defs>\n  <g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\">\n");
-    let mut number = 0;
-    for (name, look) in sheet.ribbons {
-        let _ = writeln!(out, "    <g inkscape:label=\"{}\">", escape(name));
-        match look {
-            Look::Markup(markup) => out.push_str(markup),
-            Look::Cells(cells) => {
-                for cell in cells {
-                    let _ = writeln!(
-                        out,
-                        "      <g clip-path=\"url(#cell-{number})\"><use xlink:href=\"#exemplar-{}\" transform=\"{}\"/></g>",
-                        cell.source,
-                        matrix_text(&cell.matrix, decimals)
-                    );
-                    number += 1;
-                }
-            }
-        }
-        out.push_str("    </g>\n");
-    }
-    out.push_str("  </g>\n</svg>\n");
-    out
+    out.push_str("  </defs>\n");
+}
+
+/// A cell as its picture seen through its clip.
+fn push_cell(out: &mut String, number: usize, cell: &Cell, decimals: Decimals) {
+    let (source, matrix) = (cell.source, matrix_text(&cell.matrix, decimals));
+    let _ = writeln!(
+        out,
+        "      <g clip-path=\"url(#cell-{number})\"><use xlink:href=\"#exemplar-{source}\" transform=\"{matrix}\"/></g>"
+    );
 }
 
 fn root(sheet: &RibbonSheet<'_>, decimals: Decimals) -> String {
@@ -161,7 +171,7 @@ mod tests {
     use arabesque_core::Bounds;
 
     use super::*;
-    use crate::svg::{drawing::Unit, write::document::recipe_of};
+    use crate::{svg::write::document::recipe_of, text::unit::Unit};
 
     #[test]
     fn sides_move_outwards_whatever_the_direction() {

@@ -27,7 +27,7 @@ pub struct Sheet<'a> {
     pub curves: &'a [Drawn<2>],
     /// The looks of frozen placements and of what else is kept.
     pub kept: Option<&'a Placed>,
-    /// The drawing of which a part is made anew: then the result is that file with the new in it.
+    /// The drawing of which a part is refilled: then the result is that file with the new in it.
     pub host: Option<&'a HostDocument>,
     /// Page of the result.
     pub page: Page,

@@ -7,6 +7,7 @@ use arabesque_core::{Decimals, Role};
 use crate::{
     svg::{
         drawing::{Drawing, Page},
+        palette::PALETTE,
         write::{
             document::{PREFIXES, Root},
             text::{outline_data, rectangle},
@@ -15,11 +16,8 @@ use crate::{
     text::{path_data::path_data, xml::escape},
 };
 
-/// Colours of the classes; further classes start again.
-const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
-
-/// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres, every curve in the
-/// colour of its style with dots at its ends, and the frame.
+/// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres,
+/// every curve in the colour of its style with dots at its ends, and the frame.
 pub fn write_survey(drawing: &Drawing) -> String {
     let exemplar = &drawing.exemplar;
     let view =
@@ -53,7 +51,8 @@ fn elements(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
         let (x, y) = (d.format(e.centre[0]), d.format(e.centre[1]));
         let _ = writeln!(
             out,
-            "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{}\"{dash}/><circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill=\"{colour}\"/></g>",
+            "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{}\"{dash}/><circle cx=\"{x}\" cy=\"{y}\" \
+             r=\"{}\" fill=\"{colour}\"/></g>",
             outline_data(&e.outline, d),
             d.plus(2).format(1.5 * line)
         );

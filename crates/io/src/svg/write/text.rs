@@ -1,4 +1,4 @@
-//! Pieces of SVG text: names, outlines, matrices.
+//! Attribute values that several writers need: matrices and outlines.
 
 use std::fmt::Write as _;
 

@@ -22,7 +22,7 @@ use crate::{
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct RibbonOutcome<const D: usize> {
-    /// One ribbon a curve, in order; fewer when the run was stopped.
+    /// One ribbon per curve, in order; fewer when the run was stopped.
     pub ribbons: Vec<Ribbon<D>>,
     /// What the user should know.
     pub warnings: Vec<Warning>,
@@ -127,7 +127,7 @@ impl Prepared {
         self.lay(&cages, free, request, &Memory::default(), watch)
     }
 
-    /// User units a pixel of the search.
+    /// User units per pixel of the search.
     fn scale(&self) -> f64 {
         self.params.scale * self.params.coarse as f64
     }

@@ -29,7 +29,7 @@
 //!
 //! Where it departs from the paper: half-transparent pixels have a cost in between; a place where the ribbon overlaps itself belongs to the
 //! piece whose curve is nearest instead of to none; parts that were shown a short while ago cost more ([`RibbonParams::repetition`]) and a
-//! random taste varies the pattern ([`RibbonParams::variety`]); several exemplars pass into one another; exemplars may have a start and an
+//! random preference varies the pattern ([`RibbonParams::variety`]); several exemplars pass into one another; exemplars may have a start and an
 //! end; rows of an earlier run are taken over ([`Prepared::resume`]). A closed curve without a cycle among the paths of the first pass
 //! is searched again from its best start. Lower bounds on the difference of columns make the exact optimum fast.
 //!

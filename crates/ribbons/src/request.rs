@@ -16,7 +16,7 @@ pub struct RibbonRequest<const D: usize> {
     pub first: Option<(usize, i64)>,
     /// With several exemplars: the shares of the length, rising, at which the pattern passes into the next one. Empty: equal parts.
     pub changes: Vec<f64>,
-    /// Seed of the random taste.
+    /// Seed of the random preference.
     pub seed: u64,
 }
 

@@ -36,7 +36,7 @@ pub(crate) struct Demands {
     pub(crate) rows: Option<Range<i64>>,
     /// Pixels on which no ink may fall, in rising order.
     pub(crate) forbidden: Vec<Offset>,
-    /// Whether the left edge may be empty: the begin of a curve that is drawn with its end.
+    /// Whether the left edge may be empty: the beginning of a curve that is drawn with its end.
     pub(crate) loose_left: bool,
     /// The same of the right edge.
     pub(crate) loose_right: bool,

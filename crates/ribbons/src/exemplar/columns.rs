@@ -40,7 +40,7 @@ impl Summary {
 }
 
 /// ξ(p, q) of [`WIDE`] pairs of pixels, added to `sum`: colours premultiplied, alpha in [0, 255], channel by channel.
-/// Continuous in alpha and, but for the slopes, equal to the paper's where alpha is 0 or 255.
+/// Continuous in alpha and, except for the slopes, equal to the paper's where alpha is 0 or 255.
 fn add_costs(sum: &mut [f32; WIDE], p: &Chunk, q: &Chunk) {
     for k in 0..WIDE {
         let (r, g, b) = (p[0][k] - q[0][k], p[1][k] - q[1][k], p[2][k] - q[2][k]);

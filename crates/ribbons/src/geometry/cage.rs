@@ -120,7 +120,7 @@ pub(crate) struct Cage<const D: usize> {
     pub(crate) closed: bool,
     /// Length of a piece along the curve, in user units.
     pub(crate) step: f64,
-    /// User units an exemplar pixel.
+    /// User units per exemplar pixel.
     pub(crate) scale: f64,
 }
 
@@ -132,7 +132,7 @@ impl<const D: usize> Cage<D> {
 }
 
 impl Cage<2> {
-    /// Cuts the ribbon around `path` for an exemplar that is `height` pixels high. `scale` is in user units a pixel.
+    /// Cuts the ribbon around `path` for an exemplar that is `height` pixels high. `scale` is in user units per pixel.
     pub(crate) fn along(path: &Path<2>, params: &RibbonParams, height: f64, scale: f64, place: &str) -> Result<Self> {
         let line = Line::new(path, params, height * params.scale, place)?;
         let mut down = Vector::xy(0.0, 1.0);
@@ -183,7 +183,7 @@ impl Cage<2> {
     }
 }
 
-/// A curve by arc length, divided into pieces of equal length, but for the last, which takes what is left: a change of the curve leaves
+/// A curve by arc length, divided into pieces of equal length, except for the last, which takes what is left: a change of the curve leaves
 /// the pieces before it as they are.
 pub(crate) struct Line<'a, const D: usize> {
     line: Measured<D>,

@@ -65,7 +65,7 @@ fn between(source: usize, rigid: &[f64; 6], upper: &Rung<2>, lower: &Rung<2>) ->
     [[a, b, c], [a, c, d]].into_iter().map(|corners| facet(&corners, map(corners))).collect()
 }
 
-/// User units a pixel of the picture.
+/// User units per pixel of the picture.
 fn size(matrix: &[f64; 6]) -> f64 {
     (matrix[0] * matrix[3] - matrix[1] * matrix[2]).abs().sqrt()
 }

@@ -58,7 +58,7 @@ impl<const D: usize> Piece<D> {
 }
 
 impl Piece<2> {
-    /// User units an exemplar pixel.
+    /// User units per exemplar pixel.
     pub fn scale(&self) -> f64 {
         let (canvas, texture) = (&self.patch.corners, &self.patch.texture);
         (canvas[3] - canvas[0]).norm() / (texture[3] - texture[0]).norm()

@@ -13,7 +13,7 @@ use crate::{
 /// Half of the width, in exemplar pixels, over which a piece passes into the next.
 const FEATHER: f64 = 1.0;
 /// Most samples along each side of an output pixel.
-const MOST_SAMPLES: f64 = 8.0;
+const MAX_SAMPLES: f64 = 8.0;
 
 /// The part of the plane that a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Canvas {
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
-    /// Pixels a user unit.
+    /// Pixels per user unit.
     pub pixels_per_unit: f64,
 }
 
@@ -119,7 +119,7 @@ fn pixel(
         return [0; 4];
     }
     let finest = here.iter().map(|p| p.piece.scale()).fold(f64::INFINITY, f64::min);
-    let n = (1.0 / (canvas.pixels_per_unit * finest)).ceil().clamp(1.0, MOST_SAMPLES);
+    let n = (1.0 / (canvas.pixels_per_unit * finest)).ceil().clamp(1.0, MAX_SAMPLES);
     let mut sum = [0.0; 4];
     for k in 0..(n * n) as usize {
         let (i, j) = (k % n as usize, k / n as usize);

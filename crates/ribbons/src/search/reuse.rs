@@ -1,7 +1,7 @@
-//! Against visible repetition: a penalty on showing a part again soon, and a random taste that differs from piece to piece.
+//! Against visible repetition: a penalty on showing a part again soon, and a random preference that differs from piece to piece.
 //!
 //! The paper names repetition as its limit [Zhou 2013 §4]. Every path remembers the columns that it showed within the window; a
-//! position that shows one of them again costs more. The taste is a random cost for each piece and part of the exemplar, so that the
+//! position that shows one of them again costs more. The preference is a random cost for each piece and part of the exemplar, so that the
 //! pattern does not run through the exemplar from left to right again and again.
 
 use arabesque_core::{Stage, Stream};
@@ -17,7 +17,7 @@ const MEMORY: usize = 64;
 /// Cost of one row of pixels that is shown again at full strength, in 8-bit colour steps.
 const REPEATED: f64 = 24.0;
 /// Largest random cost of one row of pixels, in 8-bit colour steps.
-const TASTE: f64 = 24.0;
+const PREFERRED: f64 = 24.0;
 
 /// Cost of one row of pixels for a piece that lies a whole height of the exemplar off the middle, in 8-bit colour steps.
 const OFF_CENTRE: f64 = 640.0;
@@ -52,7 +52,7 @@ pub(crate) struct Reuse {
     /// Cost of a piece that is shown again.
     repeated: f64,
     /// Random costs: for each piece, one for each part of the strip.
-    taste: Vec<f32>,
+    preference: Vec<f32>,
     parts: usize,
     part: f64,
     /// Cost of a pixel off the middle, and the middle of the strip.
@@ -67,20 +67,20 @@ impl Reuse {
         let step = (form.exit() - form.foot * 0.5).norm().max(1.0);
         let rows = form.rows() as f64;
         let window = ((params.window * length as f64 / step).ceil() as usize).min(MEMORY);
-        // Parts as long as four pieces: a taste for one is felt until the next is due.
+        // Parts as long as four pieces: a preference for one is felt until the next is due.
         let part = 4.0 * step;
         let parts = (strip.width as f64 / part).ceil() as usize + 1;
-        let most = (params.variety * TASTE * rows) as f32;
-        let mut taste = Vec::new();
+        let most = (params.variety * PREFERRED * rows) as f32;
+        let mut preference = Vec::new();
         if most > 0.0 {
             for piece in 0..pieces.div_ceil(4) + 1 {
                 let mut stream = Stream::new(seed, PREFERENCE, piece as u64);
-                taste.extend((0..parts).map(|_| most * stream.unit() as f32));
+                preference.extend((0..parts).map(|_| most * stream.unit() as f32));
             }
         }
         let drift = params.centring * OFF_CENTRE * rows / strip.height as f64;
         let middle = 0.5 * strip.height as f64;
-        Self { step, window, repeated: params.repetition * REPEATED * rows, taste, parts, part, drift, middle }
+        Self { step, window, repeated: params.repetition * REPEATED * rows, preference, parts, part, drift, middle }
     }
 
     /// What column `x` costs after `trail`.
@@ -94,13 +94,13 @@ impl Reuse {
     }
 
     /// What position `p` costs a piece whose left edge reaches down `depth` pixels.
-    pub(crate) fn taste(&self, piece: usize, p: Position, depth: f64) -> f64 {
+    pub(crate) fn preference(&self, piece: usize, p: Position, depth: f64) -> f64 {
         let drift = self.drift * (f64::from(p.y) + 0.5 * depth - self.middle).abs();
-        if self.taste.is_empty() {
+        if self.preference.is_empty() {
             return drift;
         }
         let part = (f64::from(p.x) / self.part) as usize;
-        drift + self.taste.get(piece / 4 * self.parts + part).map_or(0.0, |&cost| f64::from(cost))
+        drift + self.preference.get(piece / 4 * self.parts + part).map_or(0.0, |&cost| f64::from(cost))
     }
 
     /// The same without the penalty on re-use.

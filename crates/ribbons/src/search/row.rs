@@ -39,7 +39,7 @@ impl Row {
     /// The first row, which nothing goes before.
     pub(crate) fn first(positions: Arc<Vec<Position>>, reuse: &Reuse, depth: f64) -> Self {
         let n = positions.len();
-        let cost = positions.iter().map(|p| reuse.taste(0, *p, depth)).collect();
+        let cost = positions.iter().map(|p| reuse.preference(0, *p, depth)).collect();
         Self { cost, back: vec![NONE; n], start: (0..n as u32).collect(), positions }
     }
 
@@ -170,9 +170,9 @@ impl Step<'_> {
     }
 
     fn row(&self, best: &[Best]) -> Row {
-        let taste = |u: usize| self.reuse.taste(self.piece, self.positions[u], self.depth);
+        let preference = |u: usize| self.reuse.preference(self.piece, self.positions[u], self.depth);
         Row {
-            cost: best.iter().enumerate().map(|(u, b)| b.cost + taste(u)).collect(),
+            cost: best.iter().enumerate().map(|(u, b)| b.cost + preference(u)).collect(),
             back: best.iter().map(|b| b.from).collect(),
             start: best.iter().map(|b| self.before.start[b.from as usize]).collect(),
             positions: Arc::clone(&self.positions),

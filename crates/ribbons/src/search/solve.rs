@@ -60,7 +60,7 @@ pub(crate) struct Solution {
 pub(crate) type Watch<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Vec<Position>) -> bool + 'a;
 
 impl Course<'_> {
-    /// Rows of the table: one a piece, and on a closed curve the first piece once more.
+    /// Rows of the table: one per piece, and on a closed curve the first piece once more.
     fn rows(&self) -> usize {
         self.forms.len() + usize::from(self.closed)
     }
@@ -239,7 +239,7 @@ impl Table<'_> {
         );
         let natural = form.foot * 0.5 - last.form.exit();
         let natural = (natural[0].round() as i64, natural[1].round() as i64);
-        // The terminal piece is the first one, whose taste is counted there.
+        // The terminal piece is the first one, whose preference is counted there.
         let none = Reuse::default();
         let reuse = if self.kept.len() < self.course.forms.len() { &self.course.reuse } else { &none };
         let before = &*last.row;

@@ -6,8 +6,8 @@ use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Vector};
 
 mod sealed {
     pub trait Sealed {}
-    impl Sealed for super::Vector<2> {}
-    impl Sealed for super::Vector<3> {}
+    impl Sealed for arabesque_core::Vector<2> {}
+    impl Sealed for arabesque_core::Vector<3> {}
 }
 
 /// The dimensions that patterns are made in, the plane and space, implemented for the vectors of both.

@@ -1,5 +1,5 @@
-//! Sample-graph synthesis of discrete elements and continuous curves: one engine, whose presets are [Ma 2011] and [Tu
-//! 2020].
+//! Sample-graph synthesis of discrete elements and continuous curves: one engine, whose presets are [Ma 2011] and
+//! [Tu 2020].
 //!
 //! Elements of an exemplar become samples; output samples are matched with exemplar samples by their neighbourhoods,
 //! and the matches say where every element belongs, which one it is, and whether it should be there. Coarse levels

@@ -177,7 +177,8 @@ where
         if sampled.level.radius >= 0.5 * side {
             warnings.push(Warning::new(
                 format!(
-                    "the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} to see one",
+                    "the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} \
+                     to see one",
                     2.0 * sampled.level.radius
                 ),
                 "show more of the pattern, or set a smaller radius or spacing",
@@ -196,8 +197,7 @@ where
         if covered > CROWDED {
             warnings.push(Warning::new(
                 format!(
-                    "strokes as wide as or wider than their spacing: they cover {:.0} % of the exemplar and run into one \
-                     another",
+                    "strokes at least as wide as their spacing: they cover {:.0} % of the exemplar and run into one another",
                     100.0 * covered
                 ),
                 "use thinner strokes; lines closer than their width are taken to touch",

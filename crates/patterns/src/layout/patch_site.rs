@@ -1,10 +1,10 @@
-//! A site of the layout with what is around it: which exemplar patch agrees best with that, and what the patch adds [Tu
-//! 2020 §4.3.2].
+//! A site of the layout with what is around it: which exemplar patch agrees best with that, and what the patch adds
+//! [Tu 2020 §4.3.2].
 //!
 //! [Ma 2011 §4.1] copies patches at random, [Tu 2020 §4.3.2] those that are most similar to what is there where they
-//! overlap. Beyond that, a patch is only tried where it puts one of its elements onto one that is there, so that both are in step:
-//! disorder starts at the seams, and iterations that see no farther than a neighbourhood do not bring two parts into
-//! step again.
+//! overlap. Beyond that, a patch is only tried where it puts one of its elements onto one that is there, so that both
+//! are in step: disorder starts at the seams, and iterations that see no farther than a neighbourhood do not bring two
+//! parts into step again.
 
 use arabesque_core::{Frame, Numbered, Stream, Vector};
 

@@ -7,7 +7,8 @@
 //!
 //! 1. crossings are undone and missing junctions put back, since both make ends that look false;
 //! 2. false ends are joined to what is near, a few times over, for a joint makes other ends false or right;
-//! 3. those that face each other across a wider gap are bridged, and strokes that go on beyond the border are taken over it;
+//! 3. those that face each other across a wider gap are bridged, and strokes that go on beyond the border are taken
+//!    over it;
 //! 4. in nets, what still ends goes on to the nearest stroke ahead, as a T junction;
 //! 5. what is left and only a single edge long is taken away.
 

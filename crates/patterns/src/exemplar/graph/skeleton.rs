@@ -1,5 +1,5 @@
-//! The lines of an exemplar and the places where they meet, end or turn sharply: what every level samples alike [Tu
-//! 2020 §4.1.1].
+//! The lines of an exemplar and the places where they meet, end or turn sharply: what every level samples alike
+//! [Tu 2020 §4.1.1].
 //!
 //! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the
 //! stroke is wide. Lines that run side by side do not meet, however close they are.

@@ -46,8 +46,8 @@ impl Summary {
         }
         let Self { pairs, outside, removed, exchanged, .. } = self;
         let message = format!(
-            "{pairs} pairs of elements overlapped more than in the exemplar and {outside} elements reached out of the domain; \
-             {exchanged} were exchanged for smaller ones and {removed} left out"
+            "{pairs} pairs of elements overlapped more than in the exemplar and {outside} elements reached out of \
+             the domain; {exchanged} were exchanged for smaller ones and {removed} left out"
         );
         Some(Warning::new(message, "lower the density, or leave more room around kept elements and obstacles"))
     }

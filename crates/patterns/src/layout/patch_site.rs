@@ -10,7 +10,7 @@ use arabesque_core::{Frame, Numbered, Stream, Vector};
 
 use crate::{
     border::Extent,
-    exemplar::library::Library,
+    exemplar::{level::fall_off, library::Library},
     layout::coverage::{Cell, Coverage},
     output::canvas::Canvas,
 };
@@ -274,10 +274,4 @@ struct Missing {
     weights: f64,
     /// How often the others, which would be new, were used, relative to the mean.
     usage: f64,
-}
-
-/// Weight of an element at `offset` in surroundings of `radius`: 1 in the middle, 0.1 at the rim.
-fn fall_off<const D: usize>(offset: Vector<D>, radius: f64) -> f64 {
-    let x = (offset.norm2() / (radius * radius)).min(1.0);
-    0.1 + 0.9 * (1.0 - x) * (1.0 - x)
 }

@@ -57,7 +57,8 @@ fn predictions_of<const D: usize>(state: &State<'_, D>, slot_of: &Numbered<Optio
             from,
             to: slot_of[o]?,
             offset: frame.to_output(offset) - present,
-            weight: trust * f64::from(fall_off(offset, state.level.radius)),
+            // Rounded as in the search, so that both weigh alike.
+            weight: trust * f64::from(fall_off(offset, state.level.radius) as f32),
         })
     };
     matched.pairs.iter().filter_map(one).collect()

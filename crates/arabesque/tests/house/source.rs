@@ -143,7 +143,9 @@ pub(crate) fn named(tokens: &[String]) -> Vec<Named> {
             }
             k += 2;
         }
-        if path.len() > 1 {
+        // `pub(in path)` says who may see a thing, not what it needs.
+        let is_visibility = k >= 2 * path.len() && tokens[k - 2 * path.len() + 1] == "in";
+        if path.len() > 1 && !is_visibility {
             found.push(Named { path, alias: None, reexported: false });
         }
         k += 1;
@@ -214,6 +216,7 @@ fn f<'a>(x: &'a str) -> char { crate::deep::down::call::<u8>(x); ';' }
 #[cfg(test)]
 mod tests { use std::env; fn g() { std::net::x() } }
 fn h() { super::up() }
+pub(in crate::recipe) fn i() {}
 "##;
     let names: Vec<String> = named(&tokens(text)).iter().map(|n| n.path.join("::")).collect();
     let expected = ["std::fs", "std::path", "std::path::Path", "child::Thing", "crate::deep::down::call", "super::up"];

@@ -37,10 +37,13 @@ pub use shape::{
     simplify::simplified,
 };
 pub use write::{
-    areas::{Filled, areas_markup},
     document::recipe_of,
     result::write_svg,
-    ribbon::{Cell, Embedded, Look, RibbonSheet, write_ribbons},
+    ribbon::{
+        Cell, Embedded, Look, RibbonSheet,
+        areas::{Filled, areas_markup},
+        write_ribbons,
+    },
     sheet::{Bend, Sheet, Style, Written},
     survey::write_survey,
 };

@@ -9,11 +9,11 @@ use arabesque_core::{Placement, Request, Similarity, Vector};
 use rayon::prelude::*;
 
 use crate::finish::clearance::{
-    Summary,
     arrangement::{Arrangement, PlacedFigure},
     border_check::BorderCheck,
     figure::Figure,
     limits::{ExemplarClearance, NEGLIGIBLE},
+    summary::Summary,
 };
 
 /// How far an element may be shifted, in mean spacings.

@@ -1,5 +1,7 @@
 //! Writing ribbons as SVG: pictures that stand once in `<defs>` and are shown through clips, or vector shapes.
 
+pub(crate) mod areas;
+
 use std::fmt::Write as _;
 
 use arabesque_core::{Decimals, Vector};

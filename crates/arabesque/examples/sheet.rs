@@ -7,7 +7,7 @@ use std::{fmt::Write, fs};
 
 use arabesque::{
     Limits,
-    io::png::{Plate, Resolution, is_png, write_png},
+    io::raster::png::{RenderJob, Resolution, is_png, write_png},
 };
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
@@ -93,8 +93,12 @@ fn main() -> Result<()> {
     if out.ends_with(".svg") {
         return Ok(fs::write(out, svg)?);
     }
-    let plate =
-        Plate { svg: &svg, units: [width as f64, height as f64], resolution: Resolution::PerUnit(1.0), recipe: None };
+    let plate = RenderJob {
+        svg: &svg,
+        units: [width as f64, height as f64],
+        resolution: Resolution::PerUnit(1.0),
+        recipe: None,
+    };
     Ok(fs::write(out, write_png(&plate, &Limits::default())?)?)
 }
 

@@ -1,10 +1,13 @@
 //! Exemplars of any file kind, as a drawing.
 
+use std::sync::Arc;
+
 use arabesque_core::{Error, Exemplar, Limits, Outline, Result, Vector, Warning};
 use arabesque_io::{
-    csv::{self, Points},
-    file, obj,
-    svg::{self, Drawing, Fragment, Job, Page, ReadOptions, Stacking, Unit},
+    file,
+    mesh::obj,
+    svg::{self, Drawing, Fragment, Job, PALETTE, Page, ReadOptions, Stacking, Unit},
+    table::csv::{self, Points},
 };
 
 use crate::recipe::{Input, Method};
@@ -26,8 +29,6 @@ const DOT_RADIUS: f64 = 0.2;
 const DOT_CORNERS: usize = 24;
 /// A mean spacing of points is drawn this long, in CSS pixels.
 const DOT_SPACING_PIXELS: f64 = 24.0;
-/// Colours of the classes of points, told apart by people with any colour vision; further classes start again.
-const PALETTE: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"];
 
 impl LoadedExemplar {
     /// Reads an exemplar from the bytes of a file: SVG, CSV or OBJ, by its name and content.
@@ -37,7 +38,7 @@ impl LoadedExemplar {
     pub fn read(input: &Input, bytes: &[u8], method: Method, limits: &Limits) -> Result<Self> {
         let name = input.name();
         let method = method.of_drawings()?;
-        if arabesque_io::png::is_png(bytes) {
+        if arabesque_io::raster::png::is_png(bytes) {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
         }
@@ -99,7 +100,7 @@ pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
         page: Page { view: exemplar.window, unit: Unit::Px, unit_per_user: DOT_SPACING_PIXELS / spacing },
         job: Job::default(),
         warnings: Vec::<Warning>::new(),
-        exemplar,
+        exemplar: Arc::new(exemplar),
     }
 }
 

@@ -2,15 +2,15 @@
 
 use arabesque_core::{Error, Exemplar, Limits, Result, Role, Warning};
 use arabesque_io::{
-    obj::junctions,
-    png::{Plate, Resolution, write_png},
+    mesh::obj::junctions,
+    raster::png::{RenderJob, Resolution, write_png},
     svg::{Drawing, write_survey},
 };
 use serde::Serialize;
 
 use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
-    recipe::{Format, Input, Method, unit_name},
+    recipe::{Format, Input, Method},
     resources::Resources,
     spacing::{length, spacing},
 };
@@ -98,7 +98,7 @@ pub fn inspect(input: &Input, method: Method, resources: &Resources) -> Result<R
     Ok(match LoadedExemplar::read(input, &bytes, method, &resources.limits)? {
         LoadedExemplar::Drawing(drawing) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
-            report.unit = Some(unit_name(drawing.page.unit));
+            report.unit = Some(drawing.page.unit.name());
             report.unit_per_user = Some(drawing.page.unit_per_user);
             report.layers = layers(&drawing);
             report.warnings = drawing.warnings.clone();
@@ -189,8 +189,8 @@ impl Report {
             Format::Svg => Ok(svg.into_bytes()),
             Format::Png => {
                 let units = drawing.page.view.size().0;
-                let plate = Plate { svg: &svg, units, resolution: Resolution::default(), recipe: None };
-                write_png(&plate, limits)
+                let job = RenderJob { svg: &svg, units, resolution: Resolution::default(), recipe: None };
+                write_png(&job, limits)
             }
             Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Toml => {
                 Err(unsupported("a picture in this format"))

@@ -38,7 +38,7 @@ pub(crate) fn length<const D: usize>(path: &Path<D>, tolerance: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arabesque_core::{Class, Curve, Vector};
+    use arabesque_core::{Class, Contents, Curve, Vector};
 
     #[test]
     fn a_square_net_has_the_spacing_of_its_lines() {
@@ -48,8 +48,8 @@ mod tests {
         let columns = (0..10).map(|k| line(Vector::xy(at(k), 0.0), Vector::xy(at(k), 100.0)));
         let window = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
         let styles = vec![Class { name: "s".into() }];
-        let net = (rows.chain(columns).collect(), styles);
-        let exemplar = Exemplar::with_curves("t", (Vec::new(), Vec::new()), net, window).unwrap();
+        let net = Contents { curves: rows.chain(columns).collect(), styles, ..Contents::default() };
+        let exemplar = Exemplar::with_curves("t", net, window).unwrap();
         assert!((spacing(&exemplar) - 10.0).abs() < 1e-9);
     }
 }

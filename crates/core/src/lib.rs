@@ -32,7 +32,7 @@ pub use curve::{
     spans_inside, straight,
 };
 pub use error::{Error, Result};
-pub use exemplar::{Class, Curve, Element, Exemplar, Role, View};
+pub use exemplar::{Class, Contents, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};

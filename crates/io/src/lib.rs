@@ -11,9 +11,3 @@ pub mod raster;
 pub mod svg;
 pub mod table;
 pub mod text;
-
-pub use json::ribbon as ribbon_json;
-pub use mesh::{gltf, obj, obj::strips as obj_strip, strip};
-pub use raster::{field as picture, image, mask, png};
-pub use table::csv;
-pub use text::{path_data, suggest as nearest};

@@ -19,8 +19,12 @@ fn exemplar(paths: Vec<Path<2>>) -> Exemplar<2> {
     let curves = paths.into_iter().map(|path| Curve { path, style: 0, width: 1.5, colour: [0.0; 3] });
     let styles = vec![Class { name: "line".into() }];
     let window = Bounds::new(Vector::ZERO, Vector::splat(SIDE));
-    Exemplar::with_curves("benchmark", (Vec::new(), Vec::new()), (curves.collect(), styles), window)
-        .expect("the exemplar is valid")
+    Exemplar::with_curves(
+        "benchmark",
+        arabesque_core::Contents { curves: curves.collect(), styles, ..arabesque_core::Contents::default() },
+        window,
+    )
+    .expect("the exemplar is valid")
 }
 
 /// Hexagons whose corners lie a little off: many short strokes that meet three by three.
@@ -97,7 +101,7 @@ mod prepare {
 
     fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
         let params = Params::default();
-        bencher.bench_local(|| Prepared::new(exemplar, &params));
+        bencher.bench_local(|| Prepared::new(exemplar.clone(), &params));
     }
 
     #[divan::bench(sample_count = 5)]

@@ -30,7 +30,7 @@ fn scattered() -> Exemplar<2> {
 
 /// 80 discs of several sizes in two classes, with outlines of 24 corners.
 fn discs() -> Exemplar<2> {
-    let mut stream = Stream::new(4, Stage::TEST, 1);
+    let mut stream = Stream::new(4, arabesque_core::Stage::TEST, 1);
     let centres = spread(80, 10.0, 0.8);
     let elements = centres.iter().enumerate().map(|(k, &centre)| {
         let radius = stream.range(0.2, 0.38);
@@ -57,7 +57,7 @@ fn classes(count: usize) -> Vec<Class> {
 
 /// Up to `count` points in a square of `side`, no two nearer than `distance`.
 fn spread(count: usize, side: f64, distance: f64) -> Vec<Vector<2>> {
-    let mut stream = Stream::new(4, Stage::TEST, 0);
+    let mut stream = Stream::new(4, arabesque_core::Stage::TEST, 0);
     let mut found: Vec<Vector<2>> = Vec::new();
     for _ in 0..100 * count {
         let p = Vector::xy(stream.range(0.5, side - 0.5), stream.range(0.5, side - 0.5));
@@ -83,7 +83,7 @@ fn params(settings: &[(&str, &str)]) -> Params {
 }
 
 fn fill(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, settings: &[(&str, &str)]) {
-    let prepared = Prepared::new(exemplar, &params(settings)).expect("the exemplar can be analysed");
+    let prepared = Prepared::new(exemplar.clone(), &params(settings)).expect("the exemplar can be analysed");
     let request = page(exemplar, n);
     bencher.bench_local(|| -> Outcome<2> { prepared.run(&request, &mut Unobserved).expect("the page can be filled") });
 }
@@ -123,7 +123,7 @@ mod prepare {
 
     fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
         let params = Params::default();
-        bencher.bench_local(|| Prepared::new(exemplar, &params));
+        bencher.bench_local(|| Prepared::new(exemplar.clone(), &params));
     }
 
     #[divan::bench(sample_count = 20)]

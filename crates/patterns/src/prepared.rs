@@ -40,7 +40,7 @@ const MIN_ELEMENTS: usize = 12;
 /// An exemplar, analysed once, ready for any number of runs.
 #[derive(Clone, Debug)]
 pub struct Prepared<const D: usize> {
-    exemplar: Exemplar<D>,
+    exemplar: Arc<Exemplar<D>>,
     clearance: Option<ExemplarClearance>,
     pub(crate) levels: Vec<LevelExemplar<D>>,
     pub(crate) params: Params,
@@ -65,14 +65,15 @@ impl<const D: usize> Prepared<D>
 where
     Vector<D>: Dimension<D>,
 {
-    /// Analyses the exemplar.
+    /// Analyses the exemplar, which is shared where the caller shares it.
     ///
     /// # Errors
     /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`]
     /// when the exemplar shows no curve and fewer than two elements that may be copied, for then nothing tells how far
     /// apart they belong, or when its curves lie outside its frame; [`Error::Limit`] when its curves meet in too many
     /// places or lie too densely.
-    pub fn new(exemplar: &Exemplar<D>, params: &Params) -> Result<Self> {
+    pub fn new(exemplar: impl Into<Arc<Exemplar<D>>>, params: &Params) -> Result<Self> {
+        let exemplar = &exemplar.into();
         params.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
             let problem = "one element only, expected at least two";
@@ -100,7 +101,7 @@ where
         let levels = level_exemplars(exemplar, skeleton.as_ref(), params);
         let coarsest = levels.first().filter(|_| skeleton.is_some());
         Ok(Self {
-            exemplar: exemplar.clone(),
+            exemplar: Arc::clone(exemplar),
             clearance: clearance::measure(exemplar),
             dissimilarity: coarsest.and_then(|s| search::dissimilarity(&s.level, &s.library, params.matching)),
             levels,

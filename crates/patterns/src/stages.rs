@@ -85,7 +85,7 @@ impl Setup {
     /// # Panics
     /// When the exemplar cannot be analysed.
     pub fn new(exemplar: &Exemplar<2>, n: usize) -> Self {
-        let prepared = Prepared::new(exemplar, &Params::default()).expect("the exemplar can be analysed");
+        let prepared = Prepared::new(exemplar.clone(), &Params::default()).expect("the exemplar can be analysed");
         let side = (n as f64 / density(finest(&prepared))).sqrt();
         let request = Request::new(Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(side))));
         Self { prepared, request }

@@ -21,7 +21,16 @@ fn curve<const D: usize>(points: &[Vector<D>], closed: bool) -> Curve<D> {
 }
 
 fn exemplar(curves: Vec<Curve<2>>, window: Bounds<2>) -> Exemplar<2> {
-    Exemplar::with_curves("t", (vec![], vec![]), (curves, vec![Class { name: "line".into() }]), window).unwrap()
+    Exemplar::with_curves(
+        "t",
+        arabesque_core::Contents {
+            curves,
+            styles: vec![Class { name: "line".into() }],
+            ..arabesque_core::Contents::default()
+        },
+        window,
+    )
+    .unwrap()
 }
 
 /// A square grid of `n` by `n` cells of side 10, its lines shifted at random by up to `wobble`.
@@ -47,7 +56,7 @@ fn grid(n: usize, wobble: f64) -> Exemplar<2> {
 }
 
 fn fill(exemplar: &Exemplar<2>, params: &Params, request: &Request<2>) -> Outcome<2> {
-    Prepared::new(exemplar, params).unwrap().run(request, &mut Unobserved).unwrap()
+    Prepared::new(exemplar.clone(), params).unwrap().run(request, &mut Unobserved).unwrap()
 }
 
 fn length<const D: usize>(outcome: &Outcome<D>) -> f64 {
@@ -295,9 +304,14 @@ fn a_lattice_in_space_goes_on() {
     }
     let window = Bounds::new(Vector([0.0; 3]), Vector([40.0; 3]));
     let styles = vec![Class { name: "bar".into() }];
-    let exemplar = Exemplar::with_curves("t", (vec![], vec![]), (curves, styles), window).unwrap();
+    let exemplar = Exemplar::with_curves(
+        "t",
+        arabesque_core::Contents { curves, styles, ..arabesque_core::Contents::default() },
+        window,
+    )
+    .unwrap();
     let domain = Domain::Box(Bounds::new(Vector([0.0; 3]), Vector([60.0, 60.0, 40.0])));
-    let prepared = Prepared::new(&exemplar, &Params::default()).unwrap();
+    let prepared = Prepared::new(exemplar.clone(), &Params::default()).unwrap();
     let outcome = prepared.run(&Request::new(domain), &mut Unobserved).unwrap();
     // 6 x 4 bars of 60 twice, 6 x 6 bars of 40.
     let total = 2.0 * 24.0 * 60.0 + 36.0 * 40.0;
@@ -317,6 +331,6 @@ fn curves_that_never_repeat_are_warned_of() {
 fn curves_outside_the_frame_are_refused() {
     let exemplar =
         exemplar(vec![curve(&[Vector::xy(-50.0, -50.0), Vector::xy(-10.0, -20.0)], false)], page(10.0, 10.0));
-    let error = Prepared::new(&exemplar, &Params::default()).unwrap_err();
+    let error = Prepared::new(exemplar.clone(), &Params::default()).unwrap_err();
     assert!(error.to_string().contains("outside the frame"), "{error}");
 }

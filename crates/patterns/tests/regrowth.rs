@@ -30,13 +30,18 @@ fn bricks() -> Exemplar<2> {
     }
     let window = Bounds::new(Vector::ZERO, Vector::xy(80.0, 80.0));
     let styles = vec![Class { name: "line".into() }];
-    Exemplar::with_curves("bricks", (vec![], vec![]), (curves, styles), window).unwrap()
+    Exemplar::with_curves(
+        "bricks",
+        arabesque_core::Contents { curves, styles, ..arabesque_core::Contents::default() },
+        window,
+    )
+    .unwrap()
 }
 
 fn fill(settings: &[(&str, &str)], request: &Request<2>) -> Outcome<2> {
     let mut params = Params::default();
     settings.iter().for_each(|(name, value)| params.set(name, value).unwrap());
-    Prepared::new(&bricks(), &params).unwrap().run(request, &mut Unobserved).unwrap()
+    Prepared::new(bricks(), &params).unwrap().run(request, &mut Unobserved).unwrap()
 }
 
 /// Energy of the last search.
@@ -112,7 +117,7 @@ fn progress_never_goes_back() {
     let mut params = Params::default();
     params.set("initialisation", "white-noise").unwrap();
     let mut seen = Fractions(Vec::new());
-    Prepared::new(&bricks(), &params).unwrap().run(&Request::new(page(200.0, 160.0)), &mut seen).unwrap();
+    Prepared::new(bricks(), &params).unwrap().run(&Request::new(page(200.0, 160.0)), &mut seen).unwrap();
     assert!(seen.0.windows(2).all(|pair| pair[0] <= pair[1]), "{:?}", seen.0);
     assert!(seen.0.iter().all(|f| (0.0..=1.0).contains(f)));
 }

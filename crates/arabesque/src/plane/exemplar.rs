@@ -1,7 +1,9 @@
 //! An exemplar of the plane, as it was read.
 
+use std::sync::Arc;
+
 use arabesque_core::Exemplar;
-use arabesque_io::svg::{Drawing, Rest};
+use arabesque_io::svg::{Drawing, HostDocument};
 
 use crate::plane::place::{Place, Units};
 
@@ -11,7 +13,7 @@ pub(crate) struct PlaneExemplar {
     /// The exemplar as it is drawn.
     pub(crate) drawing: Drawing,
     /// What the engine is given, where that is not the exemplar of the drawing: a file of points.
-    pub(crate) points: Option<Exemplar<2>>,
+    pub(crate) points: Option<Arc<Exemplar<2>>>,
     /// The region of the exemplar's own file that is filled again, and the rest of it, which stays.
     pub(crate) region: Option<RegionOfFile>,
 }
@@ -23,7 +25,7 @@ pub(crate) struct RegionOfFile {
     pub(crate) name: String,
     pub(crate) place: Place,
     /// Everything that stays.
-    pub(crate) rest: Rest,
+    pub(crate) rest: HostDocument,
 }
 
 impl PlaneExemplar {
@@ -33,7 +35,7 @@ impl PlaneExemplar {
     }
 
     /// What the engine is given.
-    pub(crate) fn exemplar(&self) -> &Exemplar<2> {
+    pub(crate) fn exemplar(&self) -> &Arc<Exemplar<2>> {
         self.points.as_ref().unwrap_or(&self.drawing.exemplar)
     }
 }

@@ -3,8 +3,7 @@
 use arabesque_core::{Bounds, Error, Fields, Matrix, OrientationField, Result, ScalarField};
 use arabesque_io::{
     file,
-    picture::Picture,
-    png,
+    raster::{field::Picture, png},
     svg::{self, Drawing},
 };
 

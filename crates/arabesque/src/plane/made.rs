@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use arabesque_core::{Drawn, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
 use arabesque_io::{
-    csv, json,
-    png::{Plate, Resolution, write_png},
+    json,
+    raster::png::{RenderJob, Resolution, write_png},
     svg::{Sheet as SvgSheet, Style, Written, simplified, write_svg},
+    table::csv,
 };
 
 use crate::{
     artwork::{Encoded, Geometry, Made, Sheet, Summary},
     plane::{exemplar::PlaneExemplar, place::Units, request::PlaneRequest},
-    recipe::{Format, OutputOptions, unit_name},
+    recipe::{Format, OutputOptions},
     spacing::spacing,
 };
 
@@ -114,12 +115,12 @@ impl Made for PlaneMade {
             Format::Png => {
                 let written = self.svg(Style::Linked, None)?;
                 let resolution = resolution(sheet.output)?;
-                let plate = Plate { svg: &written.text, units: size.0, resolution, recipe: sheet.recipe };
-                Ok(Encoded { bytes: write_png(&plate, sheet.limits)?, warnings: written.warnings })
+                let job = RenderJob { svg: &written.text, units: size.0, resolution, recipe: sheet.recipe };
+                Ok(Encoded { bytes: write_png(&job, sheet.limits)?, warnings: written.warnings })
             }
             Format::Json => {
                 let has_unit = self.exemplar.units() == Units::OfPage;
-                let unit = has_unit.then_some((unit_name(page.unit), page.unit_per_user));
+                let unit = has_unit.then_some((page.unit.name(), page.unit_per_user));
                 let frame = json::Frame { view: page.view, unit, recipe: sheet.recipe };
                 json::write_json(exemplar, &self.outcome, &frame).map(Encoded::plain)
             }

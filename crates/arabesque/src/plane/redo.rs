@@ -3,7 +3,7 @@
 use arabesque_core::{Border, Bounds, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
-    svg::{self, Drawing, ReadOptions, Rest},
+    svg::{Document, Drawing, HostDocument, ReadOptions},
 };
 
 use crate::{
@@ -31,12 +31,20 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
         return Err(Error::parameter("border", "turn", expected));
     }
     let bytes = preparation.files.read(&preparation.exemplar)?;
-    let file = HostFile {
-        text: drawing_text(preparation.exemplar.name(), &bytes)?,
-        name: preparation.exemplar.name().to_owned(),
-        files: preparation.files,
+    let name = preparation.exemplar.name().to_owned();
+    let text = drawing_text(&name, &bytes)?;
+    let own = |region: &Region| if let Region::Own(id) = region { Some(id.clone()) } else { None };
+    let options = ReadOptions {
+        limits: preparation.files.limits(),
+        method: redo.method.of_drawings()?,
+        without: std::iter::once(&redo.region).chain(&redo.from).filter_map(own).collect(),
+        ..ReadOptions::new(&*name)
     };
-    let (drawing, region) = file.split(redo, &mut preparation.warnings)?;
+    // One parse serves the example, the regions and what stays.
+    let (drawing, region) = Document::with(&text, &options, |document| {
+        let file = HostFile { document, name: &name, files: preparation.files };
+        file.split(redo, &mut preparation.warnings)
+    })?;
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
     let mut job = redo.clone();
     for region in std::iter::once(&mut job.region).chain(job.from.as_mut()) {
@@ -50,7 +58,7 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
 
 /// The text of a drawing.
 fn drawing_text(name: &str, bytes: &[u8]) -> Result<String> {
-    let text = if arabesque_io::png::is_png(bytes) { String::new() } else { file::decode_text(name, bytes)? };
+    let text = if arabesque_io::raster::png::is_png(bytes) { String::new() } else { file::decode_text(name, bytes)? };
     if text.trim_start().starts_with('<') {
         return Ok(text);
     }
@@ -61,27 +69,17 @@ fn drawing_text(name: &str, bytes: &[u8]) -> Result<String> {
 }
 
 /// The drawing of which a region is filled again.
-struct HostFile<'a> {
-    text: String,
-    name: String,
+struct HostFile<'a, 'd> {
+    document: &'a Document<'d>,
+    name: &'a str,
     files: &'a Files,
 }
 
-impl HostFile<'_> {
+impl HostFile<'_, '_> {
     /// The part that serves as the example, and the region with everything that stays.
     fn split(&self, redo: &Redo, warnings: &mut Vec<Warning>) -> Result<(Drawing, RegionOfFile)> {
         let target = &redo.region;
-        let mut options = ReadOptions {
-            limits: self.files.limits(),
-            method: redo.method.of_drawings()?,
-            ..ReadOptions::new(&*self.name)
-        };
-        for region in [Some(target), redo.from.as_ref()].into_iter().flatten() {
-            if let Region::Own(id) = region {
-                options.without.push(id.clone());
-            }
-        }
-        let drawing = svg::read_exemplar(&self.text, &options)?;
+        let drawing = self.document.exemplar()?;
         let whole = self.shape(target, &drawing)?;
         let page = Shape::rectangle(drawing.page.view);
         let Some(shape) = page.and_then(|page| whole.within(&page)) else {
@@ -90,7 +88,7 @@ impl HostFile<'_> {
         };
         let area = whole.outline().area();
         warnings.extend(overhang(&self.place_of(target), area - shape.outline().area(), area));
-        let rest = svg::read_rest(&self.text, &drawing, shape.outline(), &options)?;
+        let rest = self.document.host(&drawing, shape.outline())?;
         let (window, hole) = match &redo.from {
             Some(from) => (self.source_window(from, &drawing)?, None),
             None => {
@@ -106,7 +104,7 @@ impl HostFile<'_> {
             Error::input(place, "nothing of the drawing lies in the region that is to be the example", advice)
         })?;
         // What stays is matched to what is left as the example.
-        let rest = svg::read_rest(&self.text, &drawing, shape.outline(), &options)?;
+        let rest = self.document.host(&drawing, shape.outline())?;
         let region = RegionOfFile { name: target.to_string(), place: Place::shaped(shape, page), rest };
         Ok((drawing, region))
     }
@@ -122,10 +120,7 @@ impl HostFile<'_> {
                 let shape = Shape::rectangle(Bounds::new(corner, corner + Vector::xy(*w, *h)));
                 shape.ok_or_else(|| Error::parameter("region", region, "a box with an area"))
             }
-            Region::Own(id) => {
-                let options = ReadOptions { limits: self.files.limits(), ..ReadOptions::new(&*self.name) };
-                Ok(svg::read_shape(&self.text, Some(id), &options)?.0)
-            }
+            Region::Own(id) => Ok(self.document.shape(Some(id))?.0),
             Region::Shape(input) => Ok(read_shape(input, drawing, Units::OfPage, self.files)?.0),
         }
     }
@@ -154,7 +149,7 @@ fn overhang(place: &str, lost: f64, area: f64) -> Option<Warning> {
 }
 
 /// Refuses a hole that leaves too little around it, for what lies in the hole is to be no example.
-fn check_rim(drawing: &Drawing, hole: &Bounds<2>, rest: &Rest, place: &str) -> Result<()> {
+fn check_rim(drawing: &Drawing, hole: &Bounds<2>, rest: &HostDocument, place: &str) -> Result<()> {
     if !hole.intersects(&rest.content) {
         let advice = "give a region that the drawing reaches into";
         return Err(Error::input(place, "nothing of the drawing lies in or around the region", advice));

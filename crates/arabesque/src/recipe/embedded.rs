@@ -1,7 +1,16 @@
 //! Files that carry a recipe.
 
 use arabesque_core::{Error, Result};
-use arabesque_io::{csv, file, gltf, json, obj, obj_strip, png, svg};
+use arabesque_io::{
+    file, json,
+    mesh::{
+        gltf,
+        obj::{self, strips},
+    },
+    raster::png,
+    svg,
+    table::csv,
+};
 
 use crate::recipe::{Format, Recipe};
 
@@ -30,7 +39,7 @@ pub fn recipe_in(name: &str, bytes: &[u8]) -> Result<Recipe> {
     } else if Format::of_path(name).ok().flatten() == Some(Format::Csv) || start.starts_with("x,y,") {
         (csv::recipe_of(&text), "a file of points")
     } else if Format::of_path(name).ok().flatten() == Some(Format::Obj)
-        || ["# curves as polylines", obj_strip::TITLE].iter().any(|title| start.starts_with(title))
+        || ["# curves as polylines", strips::TITLE].iter().any(|title| start.starts_with(title))
     {
         (obj::recipe_of(&text), "a file of curves")
     } else {

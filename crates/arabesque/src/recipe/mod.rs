@@ -25,7 +25,7 @@ pub use region::Region;
 pub use size::{Cuboid, Size};
 
 pub(crate) use input::encode;
-pub(crate) use size::{pixels_per_user, unit_name};
+pub(crate) use size::pixels_per_user;
 
 use arabesque_core::{Error, Result, suggest::nearest};
 use schemars::{JsonSchema, Schema, SchemaGenerator};

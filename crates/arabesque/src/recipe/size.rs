@@ -16,29 +16,9 @@ pub struct Size {
     pub unit: Option<Unit>,
 }
 
-const UNITS: [(&str, Unit, f64); 7] = [
-    ("px", Unit::Px, 1.0),
-    ("mm", Unit::Mm, 96.0 / 25.4),
-    ("cm", Unit::Cm, 96.0 / 2.54),
-    ("in", Unit::In, 96.0),
-    ("pt", Unit::Pt, 96.0 / 72.0),
-    ("pc", Unit::Pc, 16.0),
-    ("q", Unit::Q, 96.0 / 101.6),
-];
-
-/// CSS pixels of one `unit`.
-fn pixels(unit: Unit) -> f64 {
-    UNITS.iter().find(|(_, u, _)| *u == unit).map_or(1.0, |(_, _, px)| *px)
-}
-
-/// The name of a unit.
-pub(crate) fn unit_name(unit: Unit) -> &'static str {
-    UNITS.iter().find(|(_, u, _)| *u == unit).map_or("px", |(name, _, _)| *name)
-}
-
 /// CSS pixels of one user unit of a page.
 pub(crate) fn pixels_per_user(page: &Page) -> f64 {
-    pixels(page.unit) * page.unit_per_user
+    page.unit.pixels() * page.unit_per_user
 }
 
 impl Size {
@@ -47,7 +27,7 @@ impl Size {
         let user = pixels_per_user(page);
         let (factor, unit, unit_per_user) = match self.unit {
             None => (1.0, page.unit, page.unit_per_user),
-            Some(unit) => (pixels(unit) / user, unit, user / pixels(unit)),
+            Some(unit) => (unit.pixels() / user, unit, user / unit.pixels()),
         };
         let sides = self.sides.map(|s| s * factor);
         let view = Bounds::new(Vector::ZERO, Vector(sides));
@@ -92,7 +72,7 @@ fn halves(text: &str) -> Option<(&str, &str)> {
 
 fn length(text: &str) -> Option<(f64, Option<Unit>)> {
     let text = text.trim();
-    let named = UNITS.iter().find_map(|(name, unit, _)| Some((text.strip_suffix(name)?, *unit)));
+    let named = Unit::ALL.iter().find_map(|unit| Some((text.strip_suffix(unit.name())?, *unit)));
     match named {
         Some((number, unit)) => Some((number.trim().parse().ok()?, Some(unit))),
         None => Some((text.parse().ok()?, None)),
@@ -101,7 +81,7 @@ fn length(text: &str) -> Option<(f64, Option<Unit>)> {
 
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit = self.unit.map_or("", unit_name);
+        let unit = self.unit.map_or("", Unit::name);
         write!(f, "{}{unit}x{}{unit}", self.sides[0], self.sides[1])
     }
 }

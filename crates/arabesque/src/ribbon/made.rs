@@ -4,10 +4,15 @@ use std::sync::Arc;
 
 use arabesque_core::{Bounds, Decimals, Error, Patch, Result, Snapshot, StopReason, Vector, Warning};
 use arabesque_io::{
-    gltf::{self, Part},
-    obj_strip, png, ribbon_json,
-    strip::Strip,
+    json::ribbon,
+    mesh::{
+        gltf,
+        obj::strips,
+        strip::{Part, Strip},
+    },
+    raster::png,
     svg::{Area, Cell, Embedded, Filled, Look, Page, RibbonSheet, areas_markup, write_ribbons},
+    text::unit::PIXELS_PER_INCH,
 };
 use arabesque_ribbons::{Piece, Ribbon, Rung, StripExemplar, facets, rungs, shown_areas};
 
@@ -17,8 +22,8 @@ use crate::{
     ribbon::{picture, strips::RibbonStrips, track::Track},
 };
 
-/// Pixels per metre of an embedded picture: 96 per inch.
-const PER_METRE: f64 = 96.0 / 0.0254;
+/// Pixels per metre of an embedded picture.
+const PER_METRE: f64 = PIXELS_PER_INCH / 0.0254;
 
 /// Ribbons along curves.
 #[derive(Debug)]
@@ -124,14 +129,14 @@ impl RibbonMade {
     }
 
     fn json_of<const D: usize>(&self, ribbons: &[Ribbon<D>], recipe: Option<&str>) -> Result<String> {
-        let lines = ribbons.iter().zip(self.names()).map(|(ribbon, name)| ribbon_json::Line {
+        let lines = ribbons.iter().zip(self.names()).map(|(ribbon, name)| ribbon::RibbonLine {
             name,
             closed: ribbon.closed,
             cost: ribbon.cost,
             pieces: ribbon.pieces.iter().map(|p| (p.patch, p.shift.as_slice())).collect(),
         });
         let sizes = self.exemplars().iter().map(|e| [e.image.width, e.image.height]);
-        ribbon_json::write_ribbons(&ribbon_json::Document {
+        ribbon::write_ribbons(&ribbon::Document {
             exemplars: self.strips.sources.iter().map(|s| s.name.as_str()).zip(sizes).collect(),
             ribbons: lines.collect(),
             page: match &*self.track {
@@ -224,9 +229,7 @@ impl Made for RibbonMade {
         let recipe = sheet.recipe;
         let bytes = match (sheet.format, &self.laid, &*self.track) {
             (Format::Json, ..) => self.json(recipe)?.into_bytes(),
-            (Format::Obj, ..) => {
-                obj_strip::write_strips(&self.parts(Pictures::Left)?, self.extent(), recipe).into_bytes()
-            }
+            (Format::Obj, ..) => strips::write_strips(&self.parts(Pictures::Left)?, self.extent(), recipe).into_bytes(),
             (Format::Glb, ..) => gltf::write_glb(&self.parts(Pictures::Held)?, recipe)?,
             (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page }) => {
                 let avoid = request.avoid.as_ref();

@@ -1,17 +1,17 @@
 //! Ribbons as pictures.
 
 use arabesque_core::{Error, Image, Limits, Result, Vector};
-use arabesque_io::{image::draw_svg, png, svg::Page};
+use arabesque_io::{
+    raster::{image::draw_svg, png, size::checked_size},
+    svg::Page,
+    text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
+};
 use arabesque_ribbons::{Canvas, Mask, Ribbon, StripExemplar, render};
 
 use crate::{
     artwork::Sheet,
     recipe::{OutputOptions, pixels_per_user},
 };
-
-/// CSS pixels per inch.
-const PIXELS_PER_INCH: f64 = 96.0;
-const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
 
 /// Pixels per user unit of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -48,15 +48,8 @@ impl Pixels {
     pub(crate) fn pixels(self, page: &Page, limits: &Limits) -> Result<[usize; 2]> {
         // A clamp keeps NaN, which the limit below then refuses.
         let sides = page.view.size().0.map(|side| (side * self.0).round().clamp(1.0, f64::MAX));
-        if sides[0] * sides[1] <= limits.pixels as f64 && sides[0].max(sides[1]) <= f64::from(i16::MAX) {
-            return Ok(sides.map(|side| side as usize));
-        }
-        Err(Error::Limit {
-            what: "size of the canvas".into(),
-            found: format!("{} x {} pixels", sides[0], sides[1]),
-            limit: format!("{} pixels, {} a side", limits.pixels, i16::MAX),
-            advice: "ask for fewer --pixels-per-unit, or a smaller canvas with --on-canvas".into(),
-        })
+        let advice = "ask for fewer --pixels-per-unit, or a smaller canvas with --on-canvas";
+        Ok(checked_size("size of the canvas", sides, limits, advice)?.map(|side| side as usize))
     }
 }
 

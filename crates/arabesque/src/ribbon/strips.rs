@@ -3,8 +3,10 @@
 use arabesque_core::{Error, Image, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
-    image::{self, Alpha},
-    png,
+    raster::{
+        image::{self, Alpha},
+        png,
+    },
     svg::{self, Area},
 };
 use arabesque_ribbons::{Prepared as Engine, RibbonParams, StripExemplar, Width};

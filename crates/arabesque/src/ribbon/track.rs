@@ -2,9 +2,9 @@
 
 use arabesque_core::{Bounds, Error, Path, Result, Warning};
 use arabesque_io::{
-    file, image,
-    mask::Region,
-    obj, png,
+    file,
+    mesh::obj,
+    raster::{image, mask::MaskRaster, png},
     svg::{self, Page, Unit},
 };
 use arabesque_ribbons::{Mask, RibbonRequest};
@@ -105,7 +105,7 @@ fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Resul
     }
     let (files, limits) = (context.files, context.limits());
     let [width, height] = resolution_of_canvas(context.output(), Some(page))?.pixels(page, &limits)?;
-    let mut region = Region::empty(page.view, width, height);
+    let mut region = MaskRaster::empty(page.view, width, height);
     for input in inputs {
         let bytes = files.embed(input)?;
         if png::is_png(&bytes) {
@@ -119,7 +119,7 @@ fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Resul
         let advice = "make the avoided regions smaller; of a picture, transparent and light pixels are free";
         return Err(Error::no_result("what is to be avoided covers the whole canvas", advice));
     }
-    let Region { bounds, width, height, cells } = region;
+    let MaskRaster { bounds, width, height, cells } = region;
     Ok(Some(Mask { bounds, width, height, blocked: cells }))
 }
 

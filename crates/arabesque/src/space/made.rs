@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{Bounds, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
-use arabesque_io::{csv, json, obj};
+use arabesque_io::{json, mesh::obj, table::csv};
 
 use crate::{
     artwork::{Encoded, Geometry, Made, Sheet, Summary},

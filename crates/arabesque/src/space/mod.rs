@@ -45,8 +45,9 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
         }
     };
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
-    let engine = Engine::new(&exemplar, &params)?;
-    Ok(Volume { exemplar: Arc::new(exemplar), engine })
+    let exemplar = Arc::new(exemplar);
+    let engine = Engine::new(Arc::clone(&exemplar), &params)?;
+    Ok(Volume { exemplar, engine })
 }
 
 impl Volume {

@@ -78,25 +78,40 @@ pub struct Exemplar<const D: usize> {
     pub hole: Option<Bounds<D>>,
 }
 
+/// What an exemplar holds, not yet checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contents<const D: usize> {
+    /// The elements, in drawing order.
+    pub elements: Vec<Element<D>>,
+    /// The classes that they refer to.
+    pub classes: Vec<Class>,
+    /// The curves, in drawing order.
+    pub curves: Vec<Curve<D>>,
+    /// The styles that they refer to.
+    pub styles: Vec<Class>,
+}
+
+impl<const D: usize> Default for Contents<D> {
+    fn default() -> Self {
+        Self { elements: Vec::new(), classes: Vec::new(), curves: Vec::new(), styles: Vec::new() }
+    }
+}
+
 impl<const D: usize> Exemplar<D> {
     /// An exemplar of elements alone.
     ///
     /// # Errors
     /// As [`Exemplar::with_curves`].
     pub fn new(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>, window: Bounds<D>) -> Result<Self> {
-        Self::with_curves(place, (elements, classes), (Vec::new(), Vec::new()), window)
+        Self::with_curves(place, Contents { elements, classes, ..Contents::default() }, window)
     }
 
     /// Checks the promises.
     ///
     /// # Errors
     /// [`Error::Input`] with `place` when a promise is broken.
-    pub fn with_curves(
-        place: &str,
-        (elements, classes): (Vec<Element<D>>, Vec<Class>),
-        (curves, styles): (Vec<Curve<D>>, Vec<Class>),
-        window: Bounds<D>,
-    ) -> Result<Self> {
+    pub fn with_curves(place: &str, contents: Contents<D>, window: Bounds<D>) -> Result<Self> {
+        let Contents { elements, classes, curves, styles } = contents;
         let fail = |problem: &str, advice: &str| Err(Error::input(place, problem, advice));
         if elements.is_empty() && curves.is_empty() {
             return fail("no element found", "draw a few shapes or groups that should be repeated");

@@ -18,8 +18,6 @@ pub struct RibbonLine<'a, const D: usize> {
     pub pieces: Vec<(Patch<D>, &'a [f32])>,
 }
 
-pub use self::RibbonLine as Line;
-
 /// Everything that one file says.
 #[derive(Clone, Debug)]
 pub struct Document<'a, const D: usize> {

@@ -3,7 +3,7 @@
 use arabesque_core::{Error, Result};
 use serde_json::{Value, json};
 
-pub use crate::mesh::strip::Part;
+use crate::mesh::strip::Part;
 
 const MAGIC: &[u8; 4] = b"glTF";
 const VERSION: u32 = 2;

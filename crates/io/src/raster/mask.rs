@@ -21,8 +21,6 @@ pub struct MaskRaster {
     pub cells: Vec<bool>,
 }
 
-pub use self::MaskRaster as Region;
-
 impl MaskRaster {
     /// No cell in the region.
     pub fn empty(bounds: Bounds<2>, width: usize, height: usize) -> Self {

@@ -39,8 +39,6 @@ pub struct RenderJob<'a> {
     pub recipe: Option<&'a str>,
 }
 
-pub use self::RenderJob as Plate;
-
 /// Draws an SVG text as PNG: RGBA with straight alpha, 8 bits per channel.
 ///
 /// Width and height are rounded to whole pixels and the page is stretched to fit them, by less than half a pixel: the

@@ -3,6 +3,8 @@
 
 use std::fmt::Write as _;
 
+use std::sync::Arc;
+
 use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
 
 use crate::text::{path_data::path_data, unit::Unit};
@@ -128,7 +130,7 @@ pub struct Job {
 #[derive(Clone, Debug)]
 pub struct Drawing {
     /// Elements and classes.
-    pub exemplar: Exemplar<2>,
+    pub exemplar: Arc<Exemplar<2>>,
     /// How element `i` of the exemplar looks.
     pub fragments: Vec<Fragment>,
     /// How curve `i` of the exemplar is painted.

@@ -16,12 +16,10 @@ mod understand;
 mod write;
 
 pub use crate::text::unit::Unit;
-pub use drawing::HostDocument as Rest;
 pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke};
 pub use namespace::NAMESPACE;
 pub use options::{Method, ReadOptions};
 pub use palette::PALETTE;
-pub use read::host_document::read_host_document as read_rest;
 pub use read::{
     document::Document,
     domain::read_shape,

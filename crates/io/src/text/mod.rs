@@ -1,6 +1,5 @@
 //! What several text formats share: path data, and which known word was meant.
 
 pub mod path_data;
-pub mod suggest;
 pub mod unit;
 pub(crate) mod xml;

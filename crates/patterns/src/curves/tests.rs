@@ -44,7 +44,12 @@ fn exemplar(paths: &[Path<2>]) -> Exemplar<2> {
     let curve = |path: &Path<2>| Curve { path: path.clone(), style: 0, width: 0.5, colour: [0.0; 3] };
     let styles = vec![arabesque_core::Class { name: "line".into() }];
     let curves = paths.iter().map(curve).collect();
-    Exemplar::with_curves("t", (Vec::new(), Vec::new()), (curves, styles), window()).unwrap()
+    Exemplar::with_curves(
+        "t",
+        arabesque_core::Contents { curves, styles, ..arabesque_core::Contents::default() },
+        window(),
+    )
+    .unwrap()
 }
 
 /// What came of a sample graph.
@@ -58,7 +63,7 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     let exemplar = exemplar(paths);
     let params = Params { levels: 1, ..Params::default() };
     let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.view()).unwrap());
-    let sampled = level_exemplars(&exemplar, Some(&skeleton), &params).remove(0);
+    let sampled = level_exemplars(&std::sync::Arc::new(exemplar.clone()), Some(&skeleton), &params).remove(0);
     let request = Request::new(Domain::Box(window().grown(SIDE)));
     let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
     let net = sampled.level.net.clone().unwrap();

@@ -34,17 +34,17 @@ pub(crate) struct LevelExemplar<const D: usize> {
 
 /// The settings of all levels, coarsest first.
 pub(crate) fn level_exemplars<const D: usize>(
-    exemplar: &Exemplar<D>,
+    exemplar: &Arc<Exemplar<D>>,
     skeleton: Option<&Arc<Skeleton<D>>>,
     params: &Params,
 ) -> Vec<LevelExemplar<D>> {
     let samples = ElementSamples::new(exemplar, params.samples);
     let Some(skeleton) = skeleton else {
-        let (shared, library) = (Arc::new(exemplar.clone()), Arc::new(Library::new(exemplar, None)));
+        let library = Arc::new(Library::new(exemplar, None));
         let sampled = |number| {
             let counts = (params.coarse_neighbours, params.fine_neighbours);
             let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
-            LevelExemplar { exemplar: shared.clone(), library: library.clone(), level }
+            LevelExemplar { exemplar: Arc::clone(exemplar), library: library.clone(), level }
         };
         return (0..params.levels).map(sampled).collect();
     };

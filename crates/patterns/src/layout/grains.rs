@@ -105,7 +105,7 @@ mod tests {
     fn nucleus_with_disorder_beyond(x: f64) -> Option<Vec<Item<2>>> {
         let exemplar = exemplar();
         let params = Params { levels: 1, ..Params::default() };
-        let sampled = level_exemplars(&exemplar, None, &params).remove(0);
+        let sampled = level_exemplars(&std::sync::Arc::new(exemplar.clone()), None, &params).remove(0);
         let request = Request::new(Domain::Box(exemplar.window));
         let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
         let mut random = Stream::new(6, Stage::TEST, 0);

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Class, Curve, Error, Exemplar, Limits, Path, Result, Vector, Warning};
+use arabesque_core::{Bounds, Class, Contents, Curve, Error, Exemplar, Limits, Path, Result, Vector, Warning};
 
 use crate::mesh::obj::lexer::{Lexer, logical_lines};
 
@@ -174,7 +174,8 @@ impl<'a> Reader<'a> {
         let window = self.window(&curves)?;
         let warnings = self.warnings(points);
         let styles = self.styles.into_iter().map(|name| Class { name }).collect();
-        let exemplar = Exemplar::with_curves(self.lexer.name, (Vec::new(), Vec::new()), (curves, styles), window)?;
+        let exemplar =
+            Exemplar::with_curves(self.lexer.name, Contents { curves, styles, ..Contents::default() }, window)?;
         Ok(Net { exemplar, warnings })
     }
 

@@ -1,6 +1,8 @@
 //! A part of a drawing as an exemplar of its own.
 
-use arabesque_core::{Bounds, Class, Exemplar, Result, Role};
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Class, Contents, Exemplar, Result, Role};
 
 use crate::svg::drawing::Drawing;
 
@@ -11,7 +13,7 @@ impl Drawing {
     /// # Errors
     /// As [`Exemplar::with_curves`], naming `place`.
     pub fn within(self, window: Bounds<2>, hole: Option<Bounds<2>>, place: &str) -> Result<Self> {
-        let Exemplar { elements, classes, curves, styles, .. } = self.exemplar;
+        let Exemplar { elements, classes, curves, styles, .. } = Arc::unwrap_or_clone(self.exemplar);
         let (mut kept, mut fragments) = (Vec::new(), Vec::new());
         for (mut element, fragment) in elements.into_iter().zip(self.fragments) {
             if hole.is_some_and(|hole| hole.contains(element.centre)) {
@@ -35,8 +37,11 @@ impl Drawing {
             curves.into_iter().zip(self.strokes).filter(|(curve, _)| meets(curve)).unzip();
         let classes = renumbered(classes, kept.iter_mut().map(|e| &mut e.class));
         let styles = renumbered(styles, curves.iter_mut().map(|c| &mut c.style));
-        let exemplar = Exemplar { hole, ..Exemplar::with_curves(place, (kept, classes), (curves, styles), window)? };
-        Ok(Self { exemplar, fragments, strokes, ..self })
+        let exemplar = Exemplar {
+            hole,
+            ..Exemplar::with_curves(place, Contents { elements: kept, classes, curves, styles }, window)?
+        };
+        Ok(Self { exemplar: Arc::new(exemplar), fragments, strokes, ..self })
     }
 }
 

@@ -2,21 +2,18 @@
 
 use std::{cell::OnceCell, rc::Rc};
 
-use arabesque_core::{Error, Result, Vector};
+use arabesque_core::{Error, Result, Vector, suggest::nearest};
 use kurbo::Affine;
 
-use crate::{
-    svg::{
-        drawing::Page,
-        options::ReadOptions,
-        parse::{
-            length::{self, Viewport},
-            meta::Part,
-            scene::{self, Node},
-            source::{Source, with_source},
-        },
+use crate::svg::{
+    drawing::Page,
+    options::ReadOptions,
+    parse::{
+        length::{self, Viewport},
+        meta::Part,
+        scene::{self, Node},
+        source::{Source, with_source},
     },
-    text::suggest::nearest,
 };
 
 /// An SVG file, parsed once for everything that is read of it: the text is checked and parsed, styles and `<use>` are

@@ -1,9 +1,9 @@
 //! The exemplar in a file: what is selected of the drawing, as elements and curves with their looks, and the other
 //! layers of a job.
 
-use std::rc::Rc;
+use std::{rc::Rc, sync::Arc};
 
-use arabesque_core::{Bounds, Element, Error, Exemplar, Result, Role};
+use arabesque_core::{Bounds, Contents, Element, Error, Exemplar, Result, Role};
 use kurbo::Affine;
 
 use crate::{
@@ -75,13 +75,27 @@ impl Document<'_> {
         if elements.is_empty() && curves.is_empty() {
             return Err(nothing_found(source, &found));
         }
-        let exemplar = Exemplar::with_curves(source.name, (elements, classes.classes), (curves, styles), window)?;
+        let exemplar = Exemplar::with_curves(
+            source.name,
+            Contents { elements, classes: classes.classes, curves, styles },
+            window,
+        )?;
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
         let background = background(&found, &mut definitions);
         let definitions = definitions.finish();
         let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
         let warnings = source.notes.warnings(source.name);
-        Ok(Drawing { exemplar, fragments, strokes, stacking, background, definitions, page, job, warnings })
+        Ok(Drawing {
+            exemplar: Arc::new(exemplar),
+            fragments,
+            strokes,
+            stacking,
+            background,
+            definitions,
+            page,
+            job,
+            warnings,
+        })
     }
 }
 

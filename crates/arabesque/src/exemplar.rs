@@ -58,7 +58,7 @@ impl LoadedExemplar {
     }
 }
 
-/// By the extension, or else by the first statement that is no comment.
+/// By the extension, or else by the first statement that is not a comment.
 fn looks_like_curves(name: &str, text: &str) -> bool {
     let first = text.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#'));
     let keyword = first.and_then(|l| l.split_whitespace().next());

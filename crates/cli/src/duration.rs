@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// Reads a duration; a plain number is seconds.
 pub(crate) fn parse(text: &str) -> Result<Duration, String> {
-    let fail = || format!("\"{text}\" is no duration; write seconds such as 90, or 1m30s, 250ms, 2h");
+    let fail = || format!("\"{text}\" is not a duration; write seconds such as 90, or 1m30s, 250ms, 2h");
     let seconds = match text.trim().parse::<f64>() {
         Ok(seconds) => seconds,
         Err(_) => sum(text.trim()).ok_or_else(fail)?,

@@ -178,7 +178,7 @@ fn what_never_repeats_is_told() {
 fn strokes_wider_than_their_spacing_are_told_once() {
     let (told, paths) = filled(&net(10, 10, 14.0), "");
     assert_eq!(told.matches("warning").count(), 1, "{told}");
-    assert!(told.contains("wider than their spacing: they cover 100 %"), "{told}");
+    assert!(told.contains("as wide as their spacing: they cover 100 %"), "{told}");
     assert!(!paths.is_empty());
     let (told, _) = filled(&net(10, 10, 6.0), "");
     assert!(!told.contains("warning"), "{told}");

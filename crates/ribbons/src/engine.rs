@@ -156,7 +156,7 @@ impl Prepared {
             let rows = if known { before.curves.get(k).map_or(&[][..], |c| c) } else { &[] };
             let demands = Plan { strip: &self.strip, params: &self.params, request, cage }.demands(free)?;
             let finished = &outcome.ribbons;
-            let solution = self.solve(cage, &demands, (name, request.seed), rows, &mut |rows, energy, path| {
+            let solution = self.solve(cage, &demands, name, request.seed, rows, &mut |rows, energy, path| {
                 let iteration = done + rows;
                 let progress = Progress {
                     stage: "laying pieces".into(),
@@ -187,7 +187,8 @@ impl Prepared {
         &self,
         cage: &Cage<D>,
         demands: &[Demands],
-        (name, seed): (&str, u64),
+        name: &str,
+        seed: u64,
         rows: &[Kept],
         watch: &mut crate::search::solve::Watch<'_>,
     ) -> Result<Solution> {

@@ -112,7 +112,7 @@ impl Loading<'_> {
         Ok((image, Source { name: path, areas: None }))
     }
 
-    /// A drawing as a picture, as areas in pixels of the picture, and the pixels a user unit.
+    /// A drawing as a picture, as areas in pixels of the picture, and the pixels per user unit.
     fn drawing(&mut self, name: &str, text: &str, finer: Option<f64>) -> Result<(Image, Vec<Area>, f64)> {
         let taken = svg::read_areas(text, &options(&Input::file(name), self.files))?;
         self.warnings.extend(taken.warnings);

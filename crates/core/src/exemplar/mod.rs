@@ -72,7 +72,7 @@ pub struct Exemplar<const D: usize> {
     pub curves: Vec<Curve<D>>,
     /// Ways in which curves are painted.
     pub styles: Vec<Class>,
-    /// The frame: inside it every element is known, outside it nothing is, but for elements that reach in.
+    /// The frame: inside it every element is known, outside it nothing is, except elements that reach in.
     pub window: Bounds<D>,
     /// A part of the window of which nothing is known.
     pub hole: Option<Bounds<D>>,

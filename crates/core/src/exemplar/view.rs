@@ -2,7 +2,7 @@
 
 use crate::space::{Bounds, Vector};
 
-/// What an exemplar shows: everything in a box, but for a hole.
+/// What an exemplar shows: everything in a box, except in a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View<const D: usize> {
     /// The box.

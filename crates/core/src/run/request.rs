@@ -41,7 +41,7 @@ pub struct Request<const D: usize> {
     pub frozen: Vec<Placement<D>>,
     /// Strokes that stay exactly where they are; new ones join them. Their `frozen` entry is ignored on input.
     pub frozen_curves: Vec<Drawn<D>>,
-    /// Ink that is in the way but is no element of the exemplar, in output coordinates: nothing may overlap it.
+    /// Ink that is in the way but is not an element of the exemplar, in output coordinates: nothing may overlap it.
     pub obstacles: Vec<Outline<D>>,
     /// Box in which everything outside the domain stays as it is, so that new strokes end where the domain does. Default none.
     pub known: Option<Bounds<D>>,

@@ -193,7 +193,7 @@ fn separator_of(line: &str) -> Option<char> {
 /// it, where one of these closes them; else it ends there.
 ///
 /// The crate `csv` is not used for this: it tells the line of a record only as the line after the last record, comments
-/// included, and a quote after a blank is no quote to it.
+/// included, and a quote after a blank is not a quote to it.
 fn records(text: &str) -> Vec<(usize, Vec<String>)> {
     let lines: Vec<&str> = text.lines().collect();
     let first = lines.iter().map(|line| line.trim()).find(|line| is_data(line));

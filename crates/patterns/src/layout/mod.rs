@@ -139,7 +139,7 @@ impl<const D: usize> Layout<'_, D> {
         let shortest = |v: arabesque_core::Vector<D>| v.0.into_iter().fold(f64::INFINITY, f64::min);
         let side = self.library.view.side();
         let radius = self.library.radius_for(self.params.patch);
-        // A handful of curve samples is no patch: several strokes side by side are.
+        // A handful of curve samples is not a patch: several strokes side by side are.
         let radius = if self.has_strokes() { f64::INFINITY } else { radius }.min(self.params.patch_share * side);
         match self.request.domain.period() {
             // On a small tile the surroundings must not reach around the back.

@@ -60,13 +60,14 @@ impl Mask {
 
 /// For each piece of each cage the pixels that must stay free.
 pub(crate) fn forbidden(cages: &[Cage<2>], mask: Option<&Mask>) -> Vec<Vec<Vec<Offset>>> {
-    let all: Vec<Piece> = cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
+    let all: Vec<PieceId> =
+        cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
     let bounds: Vec<Bounds<2>> = all.iter().map(|&(c, k)| cages[c].bounds(k)).collect();
     let near = Near::new(&bounds);
     let found: Vec<Vec<Offset>> = (0..all.len())
         .into_par_iter()
         .map(|id| {
-            let rivals: Vec<Piece> = near.of(id, &bounds).into_iter().map(|j| all[j]).collect();
+            let rivals: Vec<PieceId> = near.of(id, &bounds).into_iter().map(|j| all[j]).collect();
             let mut offsets = overlaps(cages, all[id], &rivals);
             offsets.extend(mask.into_iter().flat_map(|mask| blocked(&cages[all[id].0], all[id].1, mask)));
             offsets.sort_unstable();
@@ -104,11 +105,12 @@ impl Near {
     }
 }
 
-/// Cage and piece.
-type Piece = (usize, usize);
+/// A piece by the numbers of its cage and within that; ordered by both.
+type PieceId = (usize, usize);
 
 /// Pixels of a piece that lie in another piece as well, and nearer to the curve there: each place of an overlap belongs to one piece.
-fn overlaps(cages: &[Cage<2>], (c, k): Piece, rivals: &[Piece]) -> Vec<Offset> {
+fn overlaps(cages: &[Cage<2>], id: PieceId, rivals: &[PieceId]) -> Vec<Offset> {
+    let (c, k) = id;
     let (cage, form) = (&cages[c], &cages[c].forms[k]);
     let bounds = form.bounds();
     let mut offsets = Vec::new();
@@ -119,7 +121,7 @@ fn overlaps(cages: &[Cage<2>], (c, k): Piece, rivals: &[Piece]) -> Vec<Offset> {
                 continue;
             }
             let p = cage.canvas(k, q);
-            let own = (cage.distance(k, p), (c, k));
+            let own = (cage.distance(k, p), id);
             let taken = rivals.iter().any(|&(d, j)| {
                 let rival = &cages[d];
                 rival.forms[j].depth(rival.local(j, p)) > INSIDE && nearer((rival.distance(j, p), (d, j)), own)
@@ -132,7 +134,7 @@ fn overlaps(cages: &[Cage<2>], (c, k): Piece, rivals: &[Piece]) -> Vec<Offset> {
     offsets
 }
 
-fn nearer(a: (f64, Piece), b: (f64, Piece)) -> bool {
+fn nearer(a: (f64, PieceId), b: (f64, PieceId)) -> bool {
     a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).is_lt()
 }
 

@@ -66,12 +66,12 @@ pub(crate) struct Columns {
 impl Columns {
     /// Left edges: L + u.
     pub(crate) fn left(strip: &Strip, form: &Form, context: f64, positions: &[Position]) -> Self {
-        Self::extract(strip, positions, &taps((Vector::ZERO, form.foot), form.rows(), context))
+        Self::extract(strip, positions, &taps([Vector::ZERO, form.foot], form.rows(), context))
     }
 
     /// Right edges: R + v, sampled at as many `rows` as the left edge that follows.
     pub(crate) fn right(strip: &Strip, form: &Form, rows: usize, context: f64, positions: &[Position]) -> Self {
-        Self::extract(strip, positions, &taps((form.top, form.bottom), rows, context))
+        Self::extract(strip, positions, &taps([form.top, form.bottom], rows, context))
     }
 
     fn extract(strip: &Strip, positions: &[Position], taps: &[Tap]) -> Self {
@@ -119,7 +119,7 @@ impl Columns {
 }
 
 /// Samples down an edge, and the slopes square to it: what lies ahead of it.
-fn taps((top, bottom): (Vector<2>, Vector<2>), rows: usize, context: f64) -> Vec<Tap> {
+fn taps([top, bottom]: [Vector<2>; 2], rows: usize, context: f64) -> Vec<Tap> {
     let edge = bottom - top;
     let ahead = Vector::xy(edge[1], -edge[0]) * (SLOPES * context / edge.norm());
     let at = |k: usize| top + edge * ((k as f64 + 0.5) / rows as f64) + Vector::xy(0.5, 0.0);

@@ -54,7 +54,7 @@ pub fn render(ribbons: &[Ribbon<2>], exemplars: &[StripExemplar], mask: Option<&
         .collect();
     let row = |y: usize| {
         let here: Vec<&Painter<'_>> = painters.iter().filter(|p| p.covers(1, y)).collect();
-        (0..canvas.width).map(|x| pixel(&here, ribbons, mask, canvas, (x, y))).collect::<Vec<_>>()
+        (0..canvas.width).map(|x| pixel(&here, ribbons, mask, canvas, x, y)).collect::<Vec<_>>()
     };
     Image {
         width: canvas.width,
@@ -110,7 +110,8 @@ fn pixel(
     ribbons: &[Ribbon<2>],
     mask: Option<&Mask>,
     canvas: &Canvas,
-    (x, y): (usize, usize),
+    x: usize,
+    y: usize,
 ) -> [u8; 4] {
     let here: Vec<&Painter<'_>> = painters.iter().copied().filter(|p| p.covers(0, x)).collect();
     let at =

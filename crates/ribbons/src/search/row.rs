@@ -130,7 +130,7 @@ impl Step<'_> {
                 let natural = index.find((p.0 + self.natural.0, p.1 + self.natural.1));
                 let candidates: Vec<u32> = natural.into_iter().chain(beside).collect();
                 for v in candidates {
-                    self.offer(&mut best[k], v as usize, first + k, (right, left));
+                    self.offer(&mut best[k], v as usize, first + k, [right, left]);
                 }
             }
         });
@@ -138,7 +138,7 @@ impl Step<'_> {
     }
 
     /// Takes `v` for the way to `u` if it is better.
-    fn offer(&self, best: &mut Best, v: usize, u: usize, (right, left): (&[Summary], &[Summary])) {
+    fn offer(&self, best: &mut Best, v: usize, u: usize, [right, left]: [&[Summary]; 2]) {
         let base = self.base(v, self.positions[u].x);
         // Rounded up, so that no equal cost is given up.
         let limit = ((best.cost - base) as f32).next_up();
@@ -288,7 +288,7 @@ impl<'a> Query<'a> {
         }
         for lane in (0..self.members.len()).filter(|&lane| promising[lane]) {
             let u = self.members[lane] as usize;
-            self.step.offer(&mut self.best[lane], v as usize, u, (self.right, self.left));
+            self.step.offer(&mut self.best[lane], v as usize, u, [self.right, self.left]);
         }
         self.raise_limits();
     }

@@ -47,7 +47,7 @@ impl Document<'_> {
     ///
     /// Copies made by arabesque say what they are copies of (`data-arabesque-source`, `data-arabesque-curve`); other
     /// elements are matched by name, colour and outline, other strokes by their paint. What matches nothing becomes an
-    /// obstacle. Nothing at all in the file is no error: there is nothing to keep.
+    /// obstacle. Nothing at all in the file is not an error: there is nothing to keep.
     ///
     /// # Errors
     /// [`arabesque_core::Error::Input`] when the text is not usable SVG, [`arabesque_core::Error::Limit`] when it is

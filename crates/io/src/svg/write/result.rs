@@ -134,7 +134,7 @@ mod tests {
             page: Page { view: exemplar.window, unit: Unit::Mm, unit_per_user: 2.0 },
             job: Job::default(),
             warnings: Vec::new(),
-            exemplar,
+            exemplar: exemplar.into(),
         }
     }
 

@@ -52,7 +52,7 @@ pub(crate) struct Passage {
 /// A cubic from one passage to another, an arc of a circle where there is one.
 pub(crate) fn arc(from: Passage, to: Passage) -> Cubic<2> {
     let (Passage { place: a, way: out }, Passage { place: b, way: on }) = (from, to);
-    let turn = out.cross(on).atan2(out.dot(on)).abs();
+    let turn = out.angle_to(on).abs();
     let reach = (b - a).norm() / (3.0 * (0.25 * turn).cos().powi(2));
     [a, a + out * reach, b - on * reach, b]
 }

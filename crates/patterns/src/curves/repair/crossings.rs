@@ -53,7 +53,7 @@ impl EdgeRules {
     pub(crate) fn allow<const D: usize>(&self, state: &State<'_, D>, a: u32, b: u32) -> bool {
         let across = state.offset(a, b);
         let is_free = |s: u32, way: Vector<D>| {
-            state.links_of(s).iter().all(|&o| cosine(state.offset(s, o), way) <= self.max_cosine)
+            state.links_of(s).iter().all(|&o| state.offset(s, o).cosine(way) <= self.max_cosine)
         };
         is_free(a, across) && is_free(b, across * -1.0) && (!self.is_planar || !self.crosses_any(state, a, across, b))
     }
@@ -100,7 +100,7 @@ impl EdgeRules {
                 let (to_a, to_b) = (state.offset(s, a), state.offset(s, b));
                 let (near, far) = if to_a.norm2() <= to_b.norm2() { (a, b) } else { (b, a) };
                 let is_fixed = state.is_frozen_edge(s, far);
-                if !is_fixed && cosine(to_a, to_b) > self.max_cosine {
+                if !is_fixed && to_a.cosine(to_b) > self.max_cosine {
                     return Some((near, far));
                 }
             }
@@ -184,10 +184,6 @@ fn weaker<const D: usize>(state: &State<'_, D>, votes: &Votes, edges: &[(u32, u3
     let (x, y) = (key(i), key(j));
     let order = x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then(x.2.total_cmp(&y.2));
     if order.is_le() { i } else { j }
-}
-
-fn cosine<const D: usize>(a: Vector<D>, b: Vector<D>) -> f64 {
-    (a.dot(b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
 /// Whether two edges in the plane cross; `between`: from the middle of the first one to that of the second one.

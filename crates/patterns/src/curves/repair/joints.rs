@@ -1,7 +1,7 @@
 //! False ends are joined: to what is near, across a gap, or to the stroke ahead.
 
 use arabesque_core::{
-    GridIndex, Vector,
+    GridIndex,
     pairing::{Wish, pair_up},
 };
 
@@ -40,13 +40,13 @@ impl<const D: usize> Repair<'_, D> {
     pub(crate) fn bridge(&self, state: &mut State<'_, D>) -> usize {
         let ends = self.false_ends(state);
         let places: Vec<_> = ends.iter().map(|&s| state.sample(s).position).collect();
-        let ways: Vec<_> = ends.iter().map(|&s| direction(state.offset(state.links_of(s)[0], s))).collect();
+        let ways: Vec<_> = ends.iter().map(|&s| state.offset(state.links_of(s)[0], s).unit_or_zero()).collect();
         let unit = self.net.spacing * state.extent.largest_spacing_scale;
         let index = GridIndex::new(&places, SPAN * unit, state.domain());
         let mut wishes = Vec::new();
         for (i, &s) in ends.iter().enumerate() {
             index.within(places[i], SPAN * unit, |j, offset| {
-                let across = direction(offset);
+                let across = offset.unit_or_zero();
                 let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
                 let is_new = !state.is_frozen_edge(s, ends[j]);
                 if j > i && is_new && out > FACING && back > FACING && state.share_style(s, ends[j]) {
@@ -85,10 +85,10 @@ impl<const D: usize> Repair<'_, D> {
     fn ahead(&self, state: &State<'_, D>, before: u32, s: u32) -> Vec<(f64, u32)> {
         let position = state.sample(s).position;
         let unit = self.net.spacing * state.request.fields.frame(position).spacing_scale;
-        let way = direction(state.offset(before, s));
+        let way = state.offset(before, s).unit_or_zero();
         let mut ahead = Vec::new();
         state.within(position, SPAN * unit, |o, offset| {
-            let cosine = way.dot(direction(offset));
+            let cosine = way.dot(offset.unit_or_zero());
             let cost = offset.norm() * (2.0 - cosine);
             let is_own = o == s || o == before || state.are_linked(before, o);
             let may_take_one = (1..=2).contains(&state.degree(o));
@@ -105,7 +105,7 @@ impl<const D: usize> Repair<'_, D> {
         let position = state.sample(s).position;
         let unit = self.net.spacing * state.request.fields.frame(position).spacing_scale;
         let Some(&before) = state.links_of(s).first() else { return Vec::new() };
-        let way = direction(state.offset(before, s));
+        let way = state.offset(before, s).unit_or_zero();
         let branches = self.net.branches();
         // What is too long would only grow with another end of a stroke.
         let takes_ends = self.expected(state, s) > EXPECTED || !self.dangles.has_single();
@@ -120,7 +120,7 @@ impl<const D: usize> Repair<'_, D> {
                 return;
             }
             let wants = self.expected(state, o) - degree as f64 > 0.4;
-            let turn = 1.0 - way.dot(direction(offset));
+            let turn = 1.0 - way.dot(offset.unit_or_zero());
             let cost = offset.norm() / unit + ANGLE * turn + if wants { 0.0 } else { NEW_JUNCTION };
             let is_crowded = degree >= 4 || (!wants && (degree >= 3 || (degree == 2 && !branches)));
             if cost <= REACH && !is_crowded {
@@ -129,8 +129,4 @@ impl<const D: usize> Repair<'_, D> {
         });
         found
     }
-}
-
-pub(crate) fn direction<const D: usize>(v: Vector<D>) -> Vector<D> {
-    v * (1.0 / v.norm().max(f64::MIN_POSITIVE))
 }

@@ -4,10 +4,7 @@ use arabesque_core::{GridIndex, Matrix, Vector};
 
 use crate::{
     curves::{
-        repair::{
-            joints::{FACING, direction},
-            mend::Repair,
-        },
+        repair::{joints::FACING, mend::Repair},
         votes::edges::{OpenArm, open_arms},
     },
     output::{draft::Item, state::State},
@@ -121,7 +118,7 @@ fn gathered<const D: usize>(state: &State<'_, D>, places: &[Vector<D>], i: usize
 fn is_gap<const D: usize>(state: &State<'_, D>, open: &[OpenArm<D>], arms: &[usize]) -> bool {
     let way = |j: usize| {
         let arm = &open[j];
-        direction(state.domain().offset(state.sample(arm.sample).position, arm.place))
+        (state.domain().offset(state.sample(arm.sample).position, arm.place)).unit_or_zero()
     };
     matches!(arms, [i, j] if way(*i).dot(way(*j)) < -FACING)
 }

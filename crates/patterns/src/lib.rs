@@ -59,4 +59,6 @@ mod streams;
 pub use dimension::Dimension;
 pub use finish::clearance::overlap_ratio;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Search, Switch};
+#[doc(hidden)]
+pub use prepared::Compiled;
 pub use prepared::Prepared;

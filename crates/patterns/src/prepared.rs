@@ -48,6 +48,43 @@ pub struct Prepared<const D: usize> {
     dissimilarity: Option<f64>,
 }
 
+/// The engine for one dimension, compiled in this crate: left generic, it would be compiled again in every crate that calls it.
+#[doc(hidden)]
+pub trait Compiled<const D: usize>: Dimension<D> {
+    /// See [`Prepared::new`].
+    ///
+    /// # Errors
+    /// As there.
+    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params) -> Result<Prepared<D>>;
+
+    /// See [`Prepared::run`].
+    ///
+    /// # Errors
+    /// As there.
+    fn filled(prepared: &Prepared<D>, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>>;
+}
+
+macro_rules! compiled {
+    ($dimension:literal) => {
+        impl Compiled<$dimension> for Vector<$dimension> {
+            fn analysed(exemplar: &Arc<Exemplar<$dimension>>, params: &Params) -> Result<Prepared<$dimension>> {
+                Prepared::analysed(exemplar, params)
+            }
+
+            fn filled(
+                prepared: &Prepared<$dimension>,
+                request: &Request<$dimension>,
+                watch: &mut dyn Watch<Snapshot<$dimension>>,
+            ) -> Result<Outcome<$dimension>> {
+                prepared.filled(request, watch)
+            }
+        }
+    };
+}
+
+compiled!(2);
+compiled!(3);
+
 /// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.
 fn check_density(nodes: f64) -> Result<()> {
     if nodes <= MAX_NODES {
@@ -72,8 +109,14 @@ where
     /// when the exemplar shows no curve and fewer than two elements that may be copied, for then nothing tells how far
     /// apart they belong, or when its curves lie outside its frame; [`Error::Limit`] when its curves meet in too many
     /// places or lie too densely.
-    pub fn new(exemplar: impl Into<Arc<Exemplar<D>>>, params: &Params) -> Result<Self> {
-        let exemplar = &exemplar.into();
+    pub fn new(exemplar: impl Into<Arc<Exemplar<D>>>, params: &Params) -> Result<Self>
+    where
+        Vector<D>: Compiled<D>,
+    {
+        Vector::<D>::analysed(&exemplar.into(), params)
+    }
+
+    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params) -> Result<Self> {
         params.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
             let problem = "one element only, expected at least two";
@@ -125,7 +168,14 @@ where
     /// # Errors
     /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too
     /// large; [`Error::NoResult`] when nothing fits into the domain.
-    pub fn run(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
+    pub fn run(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>>
+    where
+        Vector<D>: Compiled<D>,
+    {
+        Vector::<D>::filled(self, request, watch)
+    }
+
+    fn filled(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
         let (levels, mut warnings) = self.usable_levels(request);
         let iterations = if levels.is_empty() { 0 } else { self.params.iterations };
         // Where no neighbourhood fits, the first layout is all there can be.

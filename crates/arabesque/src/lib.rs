@@ -75,13 +75,14 @@ pub use arabesque_core::suggest::nearest;
 pub use arabesque_core::{
     Border, EnergyPoint, Error, Limits, Progress, Result, Snapshot, StopReason, Unobserved, Warning, Watch,
 };
-pub use artwork::{Artwork, Encoded, Geometry, RibbonSummary, Summary};
+pub use arabesque_ribbons::Closing;
+pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, Report, StyleReport, inspect};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
-    ClosingRule, Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
-    OutputOptions, Parameters, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, recipe_in, ribbon_options,
+    Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method, OutputOptions,
+    Parameters, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

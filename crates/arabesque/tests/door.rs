@@ -129,6 +129,7 @@ fn one_watch_draws_the_previews_of_every_method() {
             Geometry::Space(snapshot) => snapshot.placements.len() + snapshot.curves.len() + snapshot.patches.len(),
         };
         assert!(placed > 0, "{progress}");
+        assert_eq!(preview.points().len(), preview.summary().elements, "{progress}");
         let format = if matches!(recipe.job, Job::Space(_)) { Format::Csv } else { Format::Svg };
         let drawn = preview.encode(&OutputOptions { format: Some(format), bare: true, ..OutputOptions::default() });
         assert!(drawn.unwrap().bytes.len() > 100);

@@ -1,16 +1,41 @@
-//! The schema of recipes that is shipped is the schema of the code. `ARABESQUE_BLESS=1` writes it anew.
+//! What is generated from the code and shipped is that of the code. `ARABESQUE_BLESS=1` writes it again.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, its helpers too")]
 
 use std::path::Path;
 
-use arabesque::Recipe;
+use arabesque::{
+    Recipe,
+    core::options::{markdown_table, preset_list},
+    patterns::Params,
+    ribbons::RibbonParams,
+};
+
+fn is_current(name: &str, generated: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
+    if std::env::var_os("ARABESQUE_BLESS").is_some() {
+        std::fs::write(&path, generated).unwrap();
+    }
+    let shipped = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(shipped == generated, "docs/{name} is out of date; write it again with ARABESQUE_BLESS=1");
+}
 
 #[test]
 fn the_shipped_schema_is_current() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/recipe.schema.json");
-    let schema = Recipe::schema();
-    if std::env::var_os("ARABESQUE_BLESS").is_some() {
-        std::fs::write(&path, &schema).unwrap();
-    }
-    let shipped = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(shipped == schema, "docs/recipe.schema.json is out of date; write it anew with ARABESQUE_BLESS=1");
+    is_current("recipe.schema.json", &Recipe::schema());
+}
+
+#[test]
+fn the_shipped_tables_of_parameters_are_current() {
+    let (own, set): (Vec<_>, Vec<_>) = RibbonParams::specs().into_iter().partition(|spec| spec.own_option);
+    let presets = preset_list(Params::PRESETS).lines().map(|line| format!("- {}\n", line.trim())).collect::<String>();
+    let text = format!(
+        "# Parameters\n\nEvery parameter that can be set by name, with `--set NAME=VALUE` or in the table `params` of a job. This page is \
+         generated from the code.\n\n## Elements and curves: `arabesque fill`\n\n{}\n### Presets, for `--preset`\n\n{presets}\n\
+         ## Ribbons: `arabesque ribbon`\n\n{}\nThese have options of their own, and keys of their own in the table `[ribbon]`:\n\n{}",
+        markdown_table(&Params::specs()),
+        markdown_table(&set),
+        markdown_table(&own),
+    );
+    is_current("parameters.md", &text);
 }

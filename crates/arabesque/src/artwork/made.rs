@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use arabesque_core::{EnergyPoint, Limits, Result, Snapshot, StopReason, Warning};
 
 use crate::{
-    artwork::summary::Summary,
+    artwork::{points::PlacedPoint, summary::Summary},
     recipe::{Format, OutputOptions},
 };
 
@@ -19,6 +19,11 @@ pub(crate) trait Made: Debug + Send + Sync {
 
     /// The bare geometry.
     fn geometry(&self) -> Geometry;
+
+    /// The centres of the elements.
+    fn points(&self) -> Vec<PlacedPoint> {
+        Vec::new()
+    }
 
     /// What the user should know.
     fn warnings(&self) -> &[Warning];

@@ -1,12 +1,15 @@
 //! Results, whatever the method that made them.
 
 mod made;
+mod points;
 mod summary;
 
 pub use made::{Encoded, Geometry};
+pub use points::PlacedPoint;
 pub use summary::{RibbonSummary, Summary};
 
 pub(crate) use made::{Made, Sheet};
+pub(crate) use points::points;
 
 use std::sync::Arc;
 
@@ -64,6 +67,11 @@ impl Artwork {
     /// The bare geometry.
     pub fn geometry(&self) -> Geometry {
         self.made.geometry()
+    }
+
+    /// The centres of the elements with their classes, in drawing order; empty for ribbons.
+    pub fn points(&self) -> Vec<PlacedPoint> {
+        self.made.points()
     }
 
     /// The recipe that repeats this very result and writes it as `output` says.

@@ -11,7 +11,7 @@ use arabesque_io::{
 };
 
 use crate::{
-    artwork::{Encoded, Geometry, Made, Sheet, Summary},
+    artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
     plane::{exemplar::PlaneExemplar, place::Units, request::PlaneRequest},
     recipe::{Format, OutputOptions},
     spacing::spacing,
@@ -141,6 +141,10 @@ impl Made for PlaneMade {
 
     fn geometry(&self) -> Geometry {
         Geometry::Plane(snapshot(&self.outcome))
+    }
+
+    fn points(&self) -> Vec<PlacedPoint> {
+        points(&self.exemplar.drawing.exemplar, &self.outcome.placements)
     }
 
     fn warnings(&self) -> &[Warning] {

@@ -4,12 +4,13 @@
 use std::collections::BTreeMap;
 
 use arabesque_core::{Border, Error, Result};
+use arabesque_ribbons::Closing;
 use serde::Deserialize;
 
 use crate::recipe::{
     field::FieldSource,
     input::Input,
-    job::{ClosingRule, Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, plain_values},
+    job::{Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, plain_values},
     output::OutputOptions,
     region::Region,
     size::{Cuboid, Size},
@@ -97,7 +98,7 @@ struct FlatRibbon {
     first: Option<[i64; 2]>,
     start: Option<[usize; 2]>,
     end: Option<[usize; 2]>,
-    closing: Option<ClosingRule>,
+    closing: Option<Closing>,
     stitch: Option<bool>,
     #[serde(default)]
     relax: bool,

@@ -19,7 +19,7 @@ pub use embedded::recipe_in;
 pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
-pub use job::{ClosingRule, Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, ribbon_options};
+pub use job::{Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, ribbon_options};
 pub use output::OutputOptions;
 pub use region::Region;
 pub use size::{Cuboid, Size};

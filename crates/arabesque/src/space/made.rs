@@ -6,7 +6,7 @@ use arabesque_core::{Bounds, EnergyPoint, Error, Exemplar, Outcome, Result, Snap
 use arabesque_io::{json, mesh::obj, table::csv};
 
 use crate::{
-    artwork::{Encoded, Geometry, Made, Sheet, Summary},
+    artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
     plane::{snapshot, unfinished},
     recipe::Format,
     spacing::spacing,
@@ -65,6 +65,10 @@ impl Made for VolumeMade {
 
     fn geometry(&self) -> Geometry {
         Geometry::Space(snapshot(&self.outcome))
+    }
+
+    fn points(&self) -> Vec<PlacedPoint> {
+        points(&self.exemplar, &self.outcome.placements)
     }
 
     fn warnings(&self) -> &[Warning] {

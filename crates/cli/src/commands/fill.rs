@@ -4,10 +4,13 @@ use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
     Border, Cuboid, Error, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo, Region, Space,
-    core::options::{help_list, preset_list},
+    core::options::{Choice, help_list, preset_list},
     patterns::Params,
 };
-use clap::{Args, ValueEnum};
+use clap::{
+    Args,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 
 use crate::{
     failure::Failure,
@@ -70,8 +73,8 @@ struct Place {
     to: Option<Region>,
     /// What happens to elements and strokes at the border
     /// [default: clip; with --redo and --to, where all are elements, cross]
-    #[arg(long, value_enum)]
-    border: Option<BorderName>,
+    #[arg(long, value_name = "RULE", value_parser = choice::<Border>())]
+    border: Option<Border>,
 }
 
 #[derive(Args, Debug)]
@@ -92,8 +95,8 @@ struct Fields {
 #[command(next_help_heading = "Method")]
 struct Engine {
     /// What the exemplar is made of
-    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
-    method: MethodName,
+    #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
+    method: Method,
     /// Named set of parameters: default, ma2011, tu2020
     #[arg(long, value_name = "NAME", default_value = "default")]
     preset: String,
@@ -125,40 +128,10 @@ struct Writing {
     pixels_per_unit: Option<f64>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum BorderName {
-    /// Elements lie wholly inside
-    Inside,
-    /// Elements with their centre inside stay whole and may reach over the border
-    Cross,
-    /// Whatever reaches into the domain is drawn, cut at the border
-    Clip,
-    /// Strokes turn at the border and run along it; elements lie wholly inside
-    Turn,
-}
-
-/// What the exemplar is made of.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum MethodName {
-    /// The exemplar decides: filled shapes and groups are elements, open strokes and their net are curves
-    Auto,
-    /// Every connected piece is an element
-    Elements,
-    /// Every stroke without a fill is a curve
-    Curves,
-    /// Repetitive structures (not yet)
-    Structures,
-}
-
-impl From<MethodName> for Method {
-    fn from(name: MethodName) -> Self {
-        match name {
-            MethodName::Auto => Self::Auto,
-            MethodName::Elements => Self::Elements,
-            MethodName::Curves => Self::Curves,
-            MethodName::Structures => Self::Structures,
-        }
-    }
+/// Reads the names of an enumeration of the library, and lists them in the help.
+pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    let known = T::CHOICES.iter().map(|(name, help)| PossibleValue::new(*name).help(help.trim_end_matches('.')));
+    PossibleValuesParser::new(known).try_map(|text| text.parse::<T>())
 }
 
 pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
@@ -172,17 +145,6 @@ pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
 fn parameters() -> String {
     let (list, presets) = (help_list(&Params::specs()), preset_list(Params::PRESETS));
     format!("Parameters for --set, by name:\n{list}\nPresets:\n{presets}")
-}
-
-impl From<BorderName> for Border {
-    fn from(name: BorderName) -> Self {
-        match name {
-            BorderName::Inside => Self::Inside,
-            BorderName::Cross => Self::Cross,
-            BorderName::Clip => Self::Clip,
-            BorderName::Turn => Self::Turn,
-        }
-    }
 }
 
 impl Engine {
@@ -215,7 +177,7 @@ impl Fill {
 /// The job that the options mean.
 fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
     let avoid = place.avoid.iter().map(|text| Input::shape(text)).collect();
-    let (method, border) = (engine.method.into(), place.border.map(Border::from));
+    let (method, border) = (engine.method, place.border);
     let Fields { orient, scale, density } = fields;
     if let Some(cuboid) = place.cuboid {
         let plane_only =

@@ -2,10 +2,10 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{Format, Input, Report, Resources, inspect, io::file};
+use arabesque::{Format, Input, Method, Report, Resources, inspect, io::file};
 use clap::Args;
 
-use super::fill::MethodName;
+use super::fill::choice;
 use crate::{
     failure::Failure,
     produce::TalkOptions,
@@ -22,8 +22,8 @@ pub(crate) struct Inspect {
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<String>,
     /// What the exemplar is made of
-    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
-    method: MethodName,
+    #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
+    method: Method,
     #[command(flatten)]
     talk: TalkOptions,
 }
@@ -42,7 +42,7 @@ impl Inspect {
     fn inspect(&self) -> Result<ExitCode, Failure> {
         let target = self.output.as_deref().map(target).transpose()?;
         let resources = Resources::default();
-        let report = inspect(&Input::file(&self.file), self.method.into(), &resources)?;
+        let report = inspect(&Input::file(&self.file), self.method, &resources)?;
         if let Some((target, format)) = target {
             target.write(&report.picture(format, &resources.limits)?).map_err(Failure::writing)?;
         }

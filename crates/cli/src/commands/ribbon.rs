@@ -2,10 +2,8 @@
 
 use std::process::ExitCode;
 
-use arabesque::{
-    ClosingRule, Input, Recipe, Ribbon as RibbonJob, WidthSource, core::options::help_list, ribbon_options,
-};
-use clap::{Args, ValueEnum};
+use arabesque::{Closing, Input, Recipe, Ribbon as RibbonJob, WidthSource, core::options::help_list, ribbon_options};
+use clap::Args;
 
 use crate::{
     failure::Failure,
@@ -59,7 +57,7 @@ struct Shape {
     #[arg(long)]
     no_stitch: bool,
     /// How closed curves are closed
-    #[arg(long, value_enum)]
+    #[arg(long, value_name = "RULE", value_parser = super::fill::choice::<Closing>())]
     closing: Option<Closing>,
 }
 
@@ -115,14 +113,6 @@ struct Canvas {
     dpi: Option<f64>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Closing {
-    /// The best of the cycles that one pass finds
-    Quick,
-    /// The best of all cycles; takes longer
-    Exact,
-}
-
 fn point(text: &str) -> Result<[i64; 2], String> {
     let parsed = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
     parsed.ok_or_else(|| "expected a column and a row, such as 120,-4".to_owned())
@@ -148,10 +138,7 @@ impl Ribbon {
         ribbon.step = self.shape.step;
         ribbon.scale = self.shape.scale;
         ribbon.stitch = !self.shape.no_stitch;
-        ribbon.closing = self.shape.closing.map(|closing| match closing {
-            Closing::Quick => ClosingRule::Quick,
-            Closing::Exact => ClosingRule::Exact,
-        });
+        ribbon.closing = self.shape.closing;
         ribbon.avoid = self.shape.avoid.iter().map(|text| Input::shape(text)).collect();
         ribbon.first = self.pattern.first;
         ribbon.start = self.pattern.start;

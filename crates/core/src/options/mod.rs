@@ -11,7 +11,11 @@ mod spec;
 mod text;
 mod value;
 
+pub use choices::{Choice, schema_of};
 pub use registry::{Param, Registry};
 pub use spec::{Kind, ParamSpec, Preset};
 pub use text::{help_list, markdown_table, preset_list};
 pub use value::{Bound, ParamValue};
+
+#[doc(hidden)]
+pub use {schemars, serde};

@@ -1,9 +1,7 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use crate::{
+    choices,
     field::Fields,
     limits::Limits,
     region::{Domain, Outline},
@@ -11,21 +9,29 @@ use crate::{
     space::Bounds,
 };
 
-/// What happens where elements meet the border of the domain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Border {
-    /// Elements lie wholly inside.
-    Inside,
-    /// Elements with their centre inside stay whole and may reach over the border.
-    Cross,
-    /// Whatever reaches into the domain is used, to be cut at the border when it is drawn.
-    #[default]
-    Clip,
-    /// Strokes that reach the border turn there: they run along it to their neighbour and come back as that, or where strokes of the
-    /// exemplar branch, end on a stroke all along the border. All ink lies inside. Elements as for `Inside`. On a torus, which has no
-    /// border, and in space strokes are cut as for `Inside`.
-    Turn,
+choices! {
+    /// What happens where elements and strokes meet the border of the domain.
+    pub enum Border {
+        /// Elements lie wholly inside.
+        Inside = "inside",
+        /// Elements with their centre inside stay whole and may reach over the border.
+        Cross = "cross",
+        /// Whatever reaches into the domain is drawn, cut at the border.
+        Clip = "clip",
+        /// Strokes turn at the border and run along it; elements lie wholly inside.
+        ///
+        /// Strokes that reach the border run along it to their neighbour and come back as that, or where strokes of the exemplar branch,
+        /// end on a stroke all along the border. All ink lies inside. On a torus, which has no border, and in space strokes are cut as
+        /// for `Inside`.
+        Turn = "turn",
+    }
+}
+
+impl Default for Border {
+    /// [`Border::Clip`].
+    fn default() -> Self {
+        Self::Clip
+    }
 }
 
 /// What to make from a prepared exemplar.

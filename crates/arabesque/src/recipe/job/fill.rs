@@ -1,6 +1,6 @@
 //! Filling a part of the plane.
 
-use arabesque_core::{Border, Error, Result};
+use arabesque_core::{Border, Error, Result, choices};
 use arabesque_io::svg;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -64,19 +64,25 @@ impl Fill {
     }
 }
 
-/// What the exemplar is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Method {
-    /// The exemplar decides: filled shapes and groups are elements, open strokes and the net that they belong to are curves.
-    #[default]
-    Auto,
-    /// Every connected piece is an element.
-    Elements,
-    /// Every stroke without a fill is a curve; what is filled is an element.
-    Curves,
-    /// Repetitive structures; not yet handled.
-    Structures,
+choices! {
+    /// What the exemplar is made of.
+    pub enum Method {
+        /// The exemplar decides: filled shapes and groups are elements, open strokes and their net are curves.
+        Auto = "auto",
+        /// Every connected piece is an element.
+        Elements = "elements",
+        /// Every stroke without a fill is a curve; what is filled is an element.
+        Curves = "curves",
+        /// Repetitive structures; not yet handled.
+        Structures = "structures",
+    }
+}
+
+impl Default for Method {
+    /// [`Method::Auto`].
+    fn default() -> Self {
+        Self::Auto
+    }
 }
 
 impl Method {

@@ -9,7 +9,7 @@ mod space;
 pub use fill::{Fill, Method};
 pub use parameters::Parameters;
 pub use redo::Redo;
-pub use ribbon::{ClosingRule, Ribbon, WidthSource, ribbon_options};
+pub use ribbon::{Ribbon, WidthSource, ribbon_options};
 pub use space::Space;
 
 pub(super) use parameters::plain_values;

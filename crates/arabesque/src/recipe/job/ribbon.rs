@@ -45,7 +45,7 @@ pub struct Ribbon {
     pub end: Option<[usize; 2]>,
     /// How closed curves are closed. Default: quick.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub closing: Option<ClosingRule>,
+    pub closing: Option<Closing>,
     /// Whether neighbouring pieces are bent to meet. Default: true.
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub stitch: bool,
@@ -69,16 +69,6 @@ pub enum WidthSource {
     Constant(f64),
     /// `20..40` or `0:20,0.5:40,1:20`.
     Text(String),
-}
-
-/// How a closed curve is closed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum ClosingRule {
-    /// The best of the cycles that one pass finds.
-    Quick,
-    /// The best of all cycles; takes longer.
-    Exact,
 }
 
 fn yes() -> bool {
@@ -139,8 +129,8 @@ impl Ribbon {
             Some(WidthSource::Constant(width)) => params.width = Width::Constant(*width),
             Some(WidthSource::Text(text)) => params.set("width", text)?,
         }
-        if self.closing == Some(ClosingRule::Exact) {
-            params.closing = Closing::Exact;
+        if let Some(closing) = self.closing {
+            params.closing = closing;
         }
         if let Some(scale) = self.scale {
             params.scale = scale;

@@ -3,7 +3,10 @@
 #![no_main]
 
 use arabesque_core::Limits;
-use arabesque_io::{mesh::{gltf, obj}, raster::{image, png}};
+use arabesque_io::{
+    mesh::{gltf, obj},
+    raster::{image, png},
+};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: &[u8]| {

@@ -5,7 +5,9 @@
 use std::{collections::BTreeSet, sync::LazyLock};
 
 use arabesque_core::Limits;
-use arabesque_io::svg::{Drawing, Fragment, Method, ReadOptions, read_areas, read_exemplar, read_flow, read_lines, read_placed, read_shape};
+use arabesque_io::svg::{
+    Drawing, Fragment, Method, ReadOptions, read_areas, read_exemplar, read_flow, read_lines, read_placed, read_shape,
+};
 use libfuzzer_sys::fuzz_target;
 
 /// An exemplar that kept files are matched to.

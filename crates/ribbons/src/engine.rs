@@ -60,6 +60,15 @@ pub struct Prepared {
     full: Strip,
 }
 
+/// One curve of a run.
+struct CurveRun<'a> {
+    /// What messages call it.
+    name: &'a str,
+    seed: u64,
+    /// Rows of an earlier run that may be taken over.
+    rows: &'a [Kept],
+}
+
 impl Prepared {
     /// Prepares `exemplars`.
     ///
@@ -156,19 +165,20 @@ impl Prepared {
             let rows = if known { before.curves.get(k).map_or(&[][..], |c| c) } else { &[] };
             let demands = Plan { strip: &self.strip, params: &self.params, request, cage }.demands(free)?;
             let finished = &outcome.ribbons;
-            let solution = self.solve(cage, &demands, name, request.seed, rows, &mut |rows, energy, path| {
-                let iteration = done + rows;
-                let progress = Progress {
-                    stage: "laying pieces".into(),
-                    done: iteration,
-                    total,
-                    fraction: iteration as f64 / total as f64,
-                    energy: Some(energy),
-                    count: iteration,
-                };
-                let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };
-                watch.step(&progress, &preview).is_continue()
-            })?;
+            let solution =
+                self.solve(cage, &demands, &CurveRun { name, seed: request.seed, rows }, &mut |rows, energy, path| {
+                    let iteration = done + rows;
+                    let progress = Progress {
+                        stage: "laying pieces".into(),
+                        done: iteration,
+                        total,
+                        fraction: iteration as f64 / total as f64,
+                        energy: Some(energy),
+                        count: iteration,
+                    };
+                    let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };
+                    watch.step(&progress, &preview).is_continue()
+                })?;
             done += cage.len();
             memory.resumed += solution.resumed;
             outcome.warnings.extend(forced(name, &solution, cage));
@@ -187,12 +197,10 @@ impl Prepared {
         &self,
         cage: &Cage<D>,
         demands: &[Demands],
-        name: &str,
-        seed: u64,
-        rows: &[Kept],
+        curve: &CurveRun<'_>,
         watch: &mut crate::search::solve::Watch<'_>,
     ) -> Result<Solution> {
-        let reuse = Reuse::new(&self.params, seed, cage.len(), &cage.forms[0], &self.strip);
+        let reuse = Reuse::new(&self.params, curve.seed, cage.len(), &cage.forms[0], &self.strip);
         let places: Vec<String> = (0..cage.len()).map(|k| place(cage, k)).collect();
         let course = Course {
             strip: &self.strip,
@@ -201,10 +209,10 @@ impl Prepared {
             demands,
             closed: cage.closed,
             reuse,
-            name,
+            name: curve.name,
             places: &places,
         };
-        course.solve(rows, watch)
+        course.solve(curve.rows, watch)
     }
 
     fn preview<const D: usize>(&self, finished: &[Ribbon<D>], cage: &Cage<D>, path: &[Position]) -> Vec<Patch<D>> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use arabesque_core::Vector;
 
 use crate::{
-    constraints::bits::{Bits, ones},
+    exemplar::bits::{Bits, ones},
     exemplar::strip::Strip,
     geometry::cage::Form,
 };

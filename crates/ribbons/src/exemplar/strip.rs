@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use arabesque_core::{Error, Image, Result, Vector};
 
-use crate::constraints::bits::Bits;
+use crate::exemplar::bits::Bits;
 
 /// Alpha in [0, 255] from which a pixel counts as ink that must not be cut.
 const CUT_INK: f32 = 26.0;

@@ -47,6 +47,8 @@ pub struct Prepared(Arc<Inner>);
 struct Inner {
     /// The recipe, with its exemplar inside it where that is small.
     recipe: Recipe,
+    /// The job as it was given, before its inputs were put inside it.
+    given: Job,
     files: Files,
     ready: Arc<dyn Ready>,
     /// What was noticed while reading.
@@ -74,7 +76,7 @@ impl Recipe {
         };
         let Preparation { exemplar, job, warnings, .. } = preparation;
         let recipe = Self { exemplar, job, ..self.clone() };
-        Ok(Prepared(Arc::new(Inner { recipe, files, ready, warnings })))
+        Ok(Prepared(Arc::new(Inner { recipe, given: self.job.clone(), files, ready, warnings })))
     }
 }
 
@@ -102,7 +104,7 @@ impl Prepared {
     /// limit is reached.
     pub fn run(&self, request: &Request, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         let (asked, prepared) = (request.job.prepared_part(), self.0.recipe.job.prepared_part());
-        if asked != prepared {
+        if asked != prepared && asked != self.0.given.prepared_part() {
             let expected =
                 format!("a request for the {} that was prepared, with the same method and parameters", prepared.name());
             return Err(Error::parameter("request", asked.name(), expected));
@@ -110,7 +112,7 @@ impl Prepared {
         let context = RunContext {
             files: &self.0.files,
             recipe: &self.0.recipe,
-            job: request.job.clone(),
+            job: request.job.with_inputs_of(&self.0.recipe.job),
             seed: request.seed,
             warnings: self.0.warnings.clone(),
         };

@@ -55,7 +55,8 @@ impl Resources {
     }
 }
 
-/// The files of one prepared recipe. Each path is read once, so that all runs see the same content, and standard input can serve many.
+/// The files of one prepared recipe. They are read for each request, so that a change is seen; standard input, which can be read once
+/// only, is kept.
 #[derive(Debug)]
 pub(crate) struct Files {
     resources: Resources,
@@ -73,7 +74,7 @@ impl Files {
 
     /// The content of an input.
     pub(crate) fn read(&self, input: &Input) -> Result<Arc<[u8]>> {
-        if input.content.is_some() {
+        if input.content.is_some() || input.path != file::STANDARD {
             return self.resources.read(input);
         }
         let known = self.read.lock().unwrap_or_else(PoisonError::into_inner).get(&input.path).cloned();

@@ -156,3 +156,55 @@ fn files_in_memory_are_not_looked_for_and_limits_reach_them() {
     let png = OutputOptions { format: Some(Format::Png), ..OutputOptions::default() };
     assert!(matches!(run(&prepared, &prepared.request()).encode(&png), Err(Error::Limit { .. })));
 }
+
+#[test]
+fn the_job_that_was_prepared_is_accepted_as_it_was_written() {
+    let region = Region::Shape(Input::shape("ring.svg#ring"));
+    let redo = Redo { from: Some(Region::Box([0.0, 0.0, 60.0, 60.0])), ..Redo::of(region) };
+    let recipe = leaves(redo);
+    let prepared = recipe.prepare(&folder()).unwrap();
+    let as_written = run(&prepared, &Request::new(recipe.job));
+    assert_eq!(bytes(&as_written), bytes(&run(&prepared, &prepared.request())));
+}
+
+#[test]
+fn a_request_is_checked_like_the_recipe() {
+    let prepared = leaves(Redo::of(Region::Box([20.0, 20.0, 20.0, 20.0]))).prepare(&folder()).unwrap();
+    let mut request = prepared.request();
+    let Job::Redo(redo) = &mut request.job else { panic!() };
+    redo.border = Some(arabesque::Border::Turn);
+    assert!(matches!(prepared.run(&request, &mut Unobserved), Err(Error::Parameter { .. })));
+    for region in [[f64::NAN; 4], [20.0, 20.0, f64::INFINITY, 5.0], [40.0, 40.0, -20.0, -20.0]] {
+        let refused = leaves(Redo::of(Region::Box(region))).prepare(&folder());
+        assert!(matches!(refused, Err(Error::Parameter { .. })), "{region:?}");
+    }
+}
+
+#[test]
+fn files_are_read_for_each_request() {
+    let dir = tempfile::tempdir().unwrap();
+    let square = |side: u32| {
+        let page = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='200' viewBox='0 0 200 200'>";
+        std::fs::write(dir.path().join("d.svg"), format!("{page}<path d='M0 0h{side}v{side}h-{side}z'/></svg>"))
+            .unwrap();
+    };
+    std::fs::copy(folder().base.unwrap().join("leaves.svg"), dir.path().join("leaves.svg")).unwrap();
+    square(60);
+    let recipe = leaves(Fill { domain: Some(Input::file("d.svg")), ..Fill::default() });
+    let prepared = recipe.prepare(&Resources::beside(dir.path())).unwrap();
+    let small = run(&prepared, &prepared.request()).summary().elements;
+    square(120);
+    assert!(run(&prepared, &prepared.request()).summary().elements > 2 * small);
+}
+
+#[test]
+fn what_is_avoided_is_avoided_at_the_resolution_of_the_run() {
+    let mut ribbon = Ribbon { scale: Some(0.8), relax: true, ..Ribbon::new(Input::file("curve.svg")) };
+    let corner = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='80'><path d='M0 0h4v4h-4z'/></svg>";
+    ribbon.avoid = vec![Input::file("corner.svg").embedding(corner.as_bytes())];
+    let prepared = Recipe::new(Input::file("strip.svg"), ribbon).prepare(&folder()).unwrap();
+    let artwork = run(&prepared, &prepared.request());
+    assert!(artwork.encode(&OutputOptions::default()).is_ok());
+    let finer = OutputOptions { pixels_per_unit: Some(4.0), ..OutputOptions::default() };
+    assert!(matches!(artwork.encode(&finer), Err(Error::Unsupported { .. })));
+}

@@ -1,4 +1,4 @@
-//! Results that version 0.1 wrote carry recipes in its flat form; they repeat to the byte.
+//! Results of earlier programs carry recipes in the flat form; they repeat to the byte.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, its helpers too")]
 
@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 
 use arabesque::{Job, OutputOptions, Recipe, Resources, Unobserved, recipe_in};
 
-/// Files that version 0.1 wrote, and the fingerprints of the same results without their recipes.
+/// Files that the program wrote when recipes were flat, and the fingerprints of the same results without their recipes.
 const WRITTEN: &[(&str, &str)] = &[
     ("fill.svg", "a1765ecb1b0314c2"),
     ("tile.png", "9401fa222d44509f"),
@@ -33,7 +33,7 @@ fn recipe(name: &str) -> Recipe {
 }
 
 #[test]
-fn results_of_version_0_1_repeat_to_the_byte() {
+fn results_with_flat_recipes_repeat_to_the_byte() {
     for (name, expected) in WRITTEN {
         let recipe = recipe(name);
         // Everything that is needed travels in the file: no folder is given.

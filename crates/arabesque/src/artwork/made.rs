@@ -43,6 +43,8 @@ pub(crate) struct Sheet<'a> {
     /// The format; never [`Format::Toml`], which holds the recipe alone.
     pub(crate) format: Format,
     pub(crate) output: &'a OutputOptions,
+    /// What the recipe of the run says of its output.
+    pub(crate) ran: &'a OutputOptions,
     /// The recipe that the file carries.
     pub(crate) recipe: Option<&'a str>,
     pub(crate) limits: &'a Limits,

@@ -96,6 +96,12 @@ impl Artwork {
             return Ok(Encoded::plain(recipe));
         }
         let recipe = (!output.bare).then_some(recipe.as_str());
-        self.made.encode(&Sheet { format, output, recipe, limits: &self.origin.limits })
+        self.made.encode(&Sheet {
+            format,
+            output,
+            ran: &self.origin.recipe.output,
+            recipe,
+            limits: &self.origin.limits,
+        })
     }
 }

@@ -25,11 +25,7 @@ const OVERHANG: f64 = 0.01;
 
 /// Reads the drawing, and takes it apart into the example, the region and what stays.
 pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<PlaneExemplar> {
-    if redo.border == Some(Border::Turn) {
-        let expected =
-            "inside, cross or clip: at the border of a region that is filled again the strokes around it go on";
-        return Err(Error::parameter("border", "turn", expected));
-    }
+    check_border(redo.border)?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
     let name = preparation.exemplar.name().to_owned();
     let text = drawing_text(&name, &bytes)?;
@@ -54,6 +50,15 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
     }
     preparation.job = Job::Redo(job);
     Ok(PlaneExemplar { drawing, points: None, region: Some(region) })
+}
+
+/// Refuses strokes that turn at the border of a region.
+pub(crate) fn check_border(border: Option<Border>) -> Result<()> {
+    if border != Some(Border::Turn) {
+        return Ok(());
+    }
+    let expected = "inside, cross or clip: at the border of a region that is filled again the strokes around it go on";
+    Err(Error::parameter("border", "turn", expected))
 }
 
 /// The text of a drawing.
@@ -116,6 +121,7 @@ impl HostFile<'_, '_> {
     fn shape(&self, region: &Region, drawing: &Drawing) -> Result<Shape> {
         match region {
             Region::Box([x, y, w, h]) => {
+                region.check()?;
                 let corner = Vector::xy(*x, *y);
                 let shape = Shape::rectangle(Bounds::new(corner, corner + Vector::xy(*w, *h)));
                 shape.ok_or_else(|| Error::parameter("region", region, "a box with an area"))

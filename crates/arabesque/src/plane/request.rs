@@ -9,6 +9,7 @@ use crate::{
         exemplar::PlaneExemplar,
         fields::FieldSources,
         place::{Place, check_room},
+        redo::check_border,
         surroundings,
     },
     recipe::{Fill, Input, Job, Redo},
@@ -42,6 +43,9 @@ impl PlaneExemplar {
         };
         check_room(self.exemplar(), &place.domain, &files.limits()).map_err(|error| self.in_region(error, context))?;
         let surroundings = Surroundings::of(job)?;
+        if self.region.is_some() {
+            check_border(surroundings.border)?;
+        }
         let mut request = EngineRequest::new(place.domain);
         request.seed = context.seed;
         request.limits = files.limits();

@@ -1,11 +1,14 @@
-//! Recipes in the flat form of version 0.1, which files in the wild carry: the options of all jobs side by side, and which job was
+//! Recipes in the earlier, flat form, which files in the wild carry: the options of all jobs side by side, and which job was
 //! meant follows from what is there.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
 
 use arabesque_core::{Border, Error, Result};
 use arabesque_ribbons::Closing;
-use serde::Deserialize;
+use serde::{
+    Deserialize, Deserializer,
+    de::{IgnoredAny, MapAccess, SeqAccess, Visitor},
+};
 
 use crate::recipe::{
     field::FieldSource,
@@ -18,7 +21,7 @@ use crate::recipe::{
 };
 
 /// Keys that stand at the top of a flat recipe, and nowhere near the top of one of today.
-const FLAT_KEYS: &[&str] = &[
+pub(super) const FLAT_KEYS: &[&str] = &[
     "size",
     "tile",
     "box",
@@ -39,7 +42,7 @@ const FLAT_KEYS: &[&str] = &[
     "set",
 ];
 
-/// A recipe of version 0.1.
+/// A recipe in the flat form.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FlatRecipe {
@@ -76,6 +79,63 @@ pub(super) struct FlatRecipe {
     output: OutputOptions,
 }
 
+/// What a value of a recipe looks like, whatever is in it.
+enum Shape {
+    /// A table with these keys.
+    Table(Vec<String>),
+    /// Anything else.
+    Other,
+}
+
+impl<'de> Deserialize<'de> for Shape {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        struct Look;
+
+        impl<'de> Visitor<'de> for Look {
+            type Value = Shape;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("any value")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<Shape, A::Error> {
+                let mut keys = Vec::new();
+                while let Some((key, IgnoredAny)) = map.next_entry()? {
+                    keys.push(key);
+                }
+                Ok(Shape::Table(keys))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> std::result::Result<Shape, A::Error> {
+                while list.next_element::<IgnoredAny>()?.is_some() {}
+                Ok(Shape::Other)
+            }
+
+            fn visit_str<E>(self, _: &str) -> std::result::Result<Shape, E> {
+                Ok(Shape::Other)
+            }
+
+            fn visit_bool<E>(self, _: bool) -> std::result::Result<Shape, E> {
+                Ok(Shape::Other)
+            }
+
+            fn visit_i64<E>(self, _: i64) -> std::result::Result<Shape, E> {
+                Ok(Shape::Other)
+            }
+
+            fn visit_u64<E>(self, _: u64) -> std::result::Result<Shape, E> {
+                Ok(Shape::Other)
+            }
+
+            fn visit_f64<E>(self, _: f64) -> std::result::Result<Shape, E> {
+                Ok(Shape::Other)
+            }
+        }
+
+        deserializer.deserialize_any(Look)
+    }
+}
+
 /// What recipes of all jobs have.
 pub(super) struct Head {
     pub(super) arabesque: String,
@@ -105,17 +165,23 @@ struct FlatRibbon {
 }
 
 impl FlatRecipe {
-    /// Whether `text` is a flat recipe: it has a key that only those have at the top.
+    /// Whether `text` is a flat recipe: it has a key that only those have at the top, and no table of a job of today.
     pub(super) fn is_one(text: &str) -> bool {
-        let Ok(table) = text.parse::<toml::Table>() else { return false };
-        let has_region = table.get("redo").is_some_and(|redo| redo.is_str() || redo.get("path").is_some());
-        has_region || table.keys().any(|key| FLAT_KEYS.contains(&key.as_str()))
+        let Ok(top) = toml::from_str::<BTreeMap<String, Shape>>(text) else { return false };
+        let has = |table: &str, key: &str| matches!(top.get(table), Some(Shape::Table(keys)) if keys.iter().any(|k| k == key));
+        let is_table = |name: &str| matches!(top.get(name), Some(Shape::Table(_)));
+        let own = ["size", "scale", "avoid", "params"];
+        if is_table("fill") || is_table("space") || has("redo", "region") || own.iter().any(|key| has("ribbon", key)) {
+            return false;
+        }
+        let has_region = top.contains_key("redo") && (!is_table("redo") || has("redo", "path"));
+        has_region || top.keys().any(|key| FLAT_KEYS.contains(&key.as_str()))
     }
 
     /// What all recipes have, and the job in the form of today.
     ///
     /// # Errors
-    /// [`Error::Parameter`] or [`Error::Unsupported`] for options that do not go together, as version 0.1 had them.
+    /// [`Error::Parameter`] or [`Error::Unsupported`] for options that do not go together, as ever.
     pub(super) fn into_job(mut self) -> Result<(Head, Job)> {
         let job = match (&self.ribbon, &self.cuboid) {
             (Some(_), _) => self.ribbon()?,
@@ -144,7 +210,7 @@ impl FlatRecipe {
             (self.radius.is_some(), "radius"),
             (self.levels.is_some(), "levels"),
             (self.iterations.is_some(), "iterations"),
-            // Version 0.1 wrote these two always.
+            // These two were written always.
             (self.preset.as_ref().is_some_and(|preset| preset != "default"), "preset"),
             (self.method != Method::Auto, "method"),
         ];
@@ -305,8 +371,7 @@ mod tests {
             ("redo = \"#a\"\nkeep = \"b.svg\"\n", "keep together with redo"),
             ("redo = \"#a\"\nto = \"#b\"\n", "redo alone"),
             ("from = \"#a\"\n", "both from and to"),
-            ("preset = \"ma2011\"\n[ribbon]\nalong = \"c.svg\"\n", "preset together with ribbon"),
-            ("method = \"curves\"\n[ribbon]\nalong = \"c.svg\"\n", "method together with ribbon"),
+            ("levels = 2\n[ribbon]\nalong = \"c.svg\"\n", "levels together with ribbon"),
         ] {
             let message = read(&format!("exemplar = \"a.svg\"\n{text}")).unwrap_err().to_string();
             assert!(message.contains(words), "{message}");
@@ -317,5 +382,24 @@ mod tests {
     fn mistyped_keys_of_flat_recipes_are_told_with_their_line() {
         let message = read("exemplar = \"a\"\nsize = \"3x3\"\nbordr = \"clip\"\n").unwrap_err().to_string();
         assert!(message.contains("line 3") && message.contains("`border`"), "{message}");
+    }
+
+    #[test]
+    fn seeds_beyond_the_integers_of_toml_are_read_as_ever() {
+        let recipe = read("exemplar = \"a.svg\"\nsize = \"3x3\"\nseed = 9223372036854775808\n").unwrap();
+        assert_eq!(recipe.seed, 1 << 63);
+    }
+
+    #[test]
+    fn a_stray_key_beside_a_table_of_a_job_is_told_where_it_belongs() {
+        for (text, words) in [
+            ("size = \"40x40\"\n[fill]\n", "table of the job"),
+            ("border = \"clip\"\n[redo]\nregion = \"#a\"\n", "table of the job"),
+            ("[fill]\nlevels = 2\n", "table `params`"),
+            ("szie = \"3x3\"\n", "`size`"),
+        ] {
+            let message = read(&format!("exemplar = \"a.svg\"\n{text}")).unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+        }
     }
 }

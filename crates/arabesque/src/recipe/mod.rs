@@ -28,10 +28,11 @@ pub(crate) use input::encode;
 pub(crate) use size::pixels_per_user;
 
 use arabesque_core::{Error, Result, suggest::nearest};
+use arabesque_patterns::Params;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
-use legacy::{FlatRecipe, Head};
+use legacy::{FLAT_KEYS, FlatRecipe, Head};
 use version::version;
 
 /// A run, described completely: what to read, what to make of it, and what to write.
@@ -127,7 +128,7 @@ impl Recipe {
         Self { arabesque: version(), seed: 0, exemplar, job: job.into(), output: OutputOptions::default() }
     }
 
-    /// Reads a recipe from TOML, in the present form or in the flat one of version 0.1.
+    /// Reads a recipe from TOML, in the present form or in the earlier, flat one.
     ///
     /// # Errors
     /// [`Error::Input`] with the line: not TOML, a missing or unknown key (the nearest known one is named), a value of the wrong kind.
@@ -166,21 +167,28 @@ fn refused(name: &str, text: &str, error: &toml::de::Error) -> Error {
     let line = error.span().and_then(|span| text.get(..span.start)).map(|before| before.matches('\n').count() + 1);
     let place = line.map_or_else(|| name.to_owned(), |n| format!("{name}: line {n}"));
     let message = error.message().replace('\n', " ");
-    let advice = meant(&message).map_or_else(
-        || "see `arabesque fill --help` for what a recipe can say".to_owned(),
-        |known| format!("did you mean `{known}`?"),
-    );
+    let advice = advice(&message);
     Error::input(place, message, advice)
 }
 
-/// The known key nearest to the unknown one that a message of the parser names first.
-fn meant(message: &str) -> Option<&str> {
-    if !message.contains("unknown") {
-        return None;
-    }
+/// What to do about a message of the parser: the nearest known key to an unknown one, or the table where that belongs.
+fn advice(message: &str) -> String {
+    let usual = || "see docs/recipe.schema.json for what a recipe can say".to_owned();
     let mut quoted = message.split('`').skip(1).step_by(2);
-    let unknown = quoted.next()?;
-    nearest(unknown, quoted)
+    let Some(unknown) = quoted.next().filter(|_| message.contains("unknown")) else { return usual() };
+    let known: Vec<&str> = quoted.collect();
+    let is_top = known.contains(&"exemplar");
+    if is_top && FLAT_KEYS.contains(&unknown) {
+        return format!("move `{unknown}` into the table of the job, such as [fill]");
+    }
+    if !is_top && (matches!(unknown, "preset" | "set") || Params::specs().iter().any(|spec| spec.name == unknown)) {
+        return "move it into the table `params` of the job, such as [fill.params]".to_owned();
+    }
+    match (nearest(unknown, known.iter().copied()), nearest(unknown, FLAT_KEYS.iter().copied()).filter(|_| is_top)) {
+        (Some(near), _) => format!("did you mean `{near}`?"),
+        (None, Some(near)) => format!("did you mean `{near}`? it belongs into the table of the job, such as [fill]"),
+        (None, None) => usual(),
+    }
 }
 
 #[cfg(test)]

@@ -12,13 +12,14 @@ pub struct OutputOptions {
     /// Where to write it, when the command line does not say. Not kept in results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
-    /// File format. Default: by the extension of the path, else SVG.
+    /// File format. Default: by the extension of the path, else the usual one of the job: SVG for the plane, OBJ or CSV for a
+    /// box, PNG or GLB for ribbons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub format: Option<Format>,
     /// SVG: write every element out in place instead of linking to it. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub expand: bool,
-    /// PNG: pixels per inch. Default: 96.
+    /// PNG: pixels per inch. Default: 96; of ribbons one pixel per user unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dpi: Option<f64>,
     /// PNG: pixels per user unit, instead of `dpi`.

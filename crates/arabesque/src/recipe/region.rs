@@ -40,11 +40,22 @@ impl Region {
         if numbers.iter().all(std::result::Result::is_ok) || (numbers.len() == 4 && numbers.iter().any(|n| n.is_ok())) {
             let numbers: Vec<f64> = numbers.into_iter().flatten().collect();
             let [x, y, w, h] = <[f64; 4]>::try_from(numbers).map_err(|_| fail())?;
-            let limit = Limits::default().coordinate;
-            let sound = [x, y, w, h].iter().all(|v| v.abs() <= limit) && w > 0.0 && h > 0.0;
-            return if sound { Ok(Self::Box([x, y, w, h])) } else { Err(fail()) };
+            let region = Self::Box([x, y, w, h]);
+            return region.check().map(|()| region).map_err(|_| fail());
         }
         if text.is_empty() { Err(fail()) } else { Ok(Self::Shape(Input::shape(text))) }
+    }
+
+    /// Whether a box has an area and lies within the coordinates that are allowed.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] when it does not.
+    pub(crate) fn check(&self) -> Result<()> {
+        let Self::Box([x, y, w, h]) = *self else { return Ok(()) };
+        let limit = Limits::default().coordinate;
+        let is_sound = [x, y, w, h].iter().all(|v| v.abs() <= limit) && w > 0.0 && h > 0.0;
+        let expected = "x,y,w,h with a positive width and height in the units of the file";
+        if is_sound { Ok(()) } else { Err(Error::parameter("region", self, expected)) }
     }
 }
 

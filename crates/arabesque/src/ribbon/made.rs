@@ -18,7 +18,7 @@ use arabesque_ribbons::{Piece, Ribbon, Rung, StripExemplar, facets, rungs, shown
 
 use crate::{
     artwork::{Encoded, Geometry, Made, RibbonSummary, Sheet, Summary},
-    recipe::{Format, encode},
+    recipe::{Format, OutputOptions, encode},
     ribbon::{picture, strips::RibbonStrips, track::Track},
 };
 
@@ -73,6 +73,19 @@ impl RibbonMade {
     /// What a run in space has so far.
     pub(crate) fn of_space(strips: &Arc<RibbonStrips>, track: &Arc<Track>, snapshot: Snapshot<3>) -> Self {
         Self::new(strips, track, Laid::Space(vec![unfinished(snapshot)]), Vec::new(), StopReason::Stopped)
+    }
+
+    /// Refuses another resolution than that of the run where areas are avoided, which is done pixel by pixel.
+    fn check_resolution(&self, sheet: &Sheet<'_>) -> Result<()> {
+        let avoids = matches!(&*self.track, Track::Plane { request, .. } if request.avoid.is_some());
+        let resolution = |output: &OutputOptions| (output.dpi, output.pixels_per_unit);
+        if !avoids || resolution(sheet.output) == resolution(sheet.ran) {
+            return Ok(());
+        }
+        Err(Error::Unsupported {
+            what: "another resolution than that of the run, where areas are avoided pixel by pixel".into(),
+            advice: "give the resolution in the recipe before it is prepared".into(),
+        })
     }
 
     /// Number of pieces of each ribbon.
@@ -227,6 +240,7 @@ fn patches<const D: usize>(ribbons: &[Ribbon<D>]) -> Vec<Patch<D>> {
 impl Made for RibbonMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
         let recipe = sheet.recipe;
+        self.check_resolution(sheet)?;
         let bytes = match (sheet.format, &self.laid, &*self.track) {
             (Format::Json, ..) => self.json(recipe)?.into_bytes(),
             (Format::Obj, ..) => strips::write_strips(&self.parts(Pictures::Left)?, self.extent(), recipe).into_bytes(),
@@ -249,7 +263,10 @@ impl Made for RibbonMade {
                 return Err(Error::Unsupported { what, advice: format!("write {advice}") });
             }
         };
-        Ok(Encoded { bytes, warnings: Vec::new() })
+        let expanded = sheet.output.expand.then(|| {
+            Warning::new("ribbons are always written in place: expand has no meaning for them", "leave it out")
+        });
+        Ok(Encoded { bytes, warnings: expanded.into_iter().collect() })
     }
 
     fn summary(&self) -> Summary {

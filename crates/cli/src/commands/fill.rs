@@ -176,6 +176,12 @@ impl Fill {
 
 /// The job that the options mean.
 fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
+    if place.from.is_some() && place.to.is_none() {
+        return Err(match place.redo {
+            Some(_) => Error::parameter("redo", "given with from or to", "redo alone, or from and to"),
+            None => Error::parameter("from", "given without to", "both from and to"),
+        });
+    }
     let avoid = place.avoid.iter().map(|text| Input::shape(text)).collect();
     let (method, border) = (engine.method, place.border);
     let Fields { orient, scale, density } = fields;

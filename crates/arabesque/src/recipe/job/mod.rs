@@ -53,6 +53,20 @@ impl Job {
         }
     }
 
+    /// The same job with the inputs of `prepared` that were put inside that when it was prepared.
+    pub(crate) fn with_inputs_of(&self, prepared: &Self) -> Self {
+        let mut job = self.clone();
+        match (&mut job, prepared) {
+            (Self::Redo(job), Self::Redo(prepared)) => {
+                job.region.clone_from(&prepared.region);
+                job.from.clone_from(&prepared.from);
+            }
+            (Self::Ribbon(job), Self::Ribbon(prepared)) => job.then.clone_from(&prepared.then),
+            _ => {}
+        }
+        job
+    }
+
     /// The same job without what a request may change: jobs that are equal in this can share what is prepared.
     pub(crate) fn prepared_part(&self) -> Self {
         match self {

@@ -44,7 +44,8 @@ impl Artwork {
         self.origin.recipe.seed
     }
 
-    /// What the user should know: what was noticed while reading, preparing and running.
+    /// What the user should know: what was noticed while reading, preparing and running. Of a preview nothing yet; what was noticed
+    /// before the run is in [`crate::Prepared::warnings`].
     pub fn warnings(&self) -> &[Warning] {
         self.made.warnings()
     }

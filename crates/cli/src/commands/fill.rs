@@ -62,7 +62,7 @@ struct Place {
     /// Elements and strokes that stay exactly where this file has them; the rest is fitted around them and joined to them
     #[arg(long, value_name = "FILE.svg")]
     keep: Option<String>,
-    /// Make a region of the exemplar's own file anew and leave the rest as it is: x,y,w,h, or #ID of a shape in the file
+    /// Fill a region of the exemplar's own file again and leave the rest as it is: x,y,w,h, or #ID of a shape in the file
     #[arg(long, value_name = "REGION", group = "where", allow_hyphen_values = true, value_parser = Region::parse)]
     redo: Option<Region>,
     /// Continue the pattern of this region of the file in the region --to

@@ -4,7 +4,7 @@
 
 use std::{collections::BTreeSet, sync::LazyLock};
 
-use arabesque_core::Limits;
+use arabesque_core::{Budget, Limits};
 use arabesque_io::svg::{
     Drawing, Fragment, Method, ReadOptions, read_areas, read_exemplar, read_flow, read_lines, read_placed, read_shape,
 };
@@ -21,7 +21,7 @@ fuzz_target!(|data: &[u8]| {
     let limits = Limits { nodes: 3000, segments: 3000, depth: 64, elements: 500, ..Limits::default() };
     // One or two ways of reading a run: more runs a second find more.
     let method = [Method::Auto, Method::Elements, Method::Curves][data.len() % 3];
-    let options = ReadOptions { method, limits, ..ReadOptions::new("fuzz.svg") };
+    let options = ReadOptions { method, budget: Budget::new(limits), ..ReadOptions::new("fuzz.svg") };
     if let Ok(drawing) = read_exemplar(text, &options) {
         check(&drawing);
     }

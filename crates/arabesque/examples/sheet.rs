@@ -6,7 +6,7 @@
 use std::{fmt::Write, fs};
 
 use arabesque::{
-    Limits,
+    Budget,
     io::raster::png::{RenderJob, Resolution, is_png, write_png},
 };
 
@@ -99,7 +99,7 @@ fn main() -> Result<()> {
         resolution: Resolution::PerUnit(1.0),
         recipe: None,
     };
-    Ok(fs::write(out, write_png(&plate, &Limits::default())?)?)
+    Ok(fs::write(out, write_png(&plate, &Budget::default())?)?)
 }
 
 /// A file as the address of an image: drawings inside images keep their names and styles to themselves.

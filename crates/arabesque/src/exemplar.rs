@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Exemplar, Limits, Outline, Result, Vector, Warning};
+use arabesque_core::{Budget, Error, Exemplar, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
@@ -35,7 +35,7 @@ impl LoadedExemplar {
     ///
     /// # Errors
     /// As [`svg::read_exemplar`], [`csv::read_points`] and [`obj::read_curves`]; [`Error::Unsupported`] for methods that do not exist yet.
-    pub fn read(input: &Input, bytes: &[u8], method: Method, limits: &Limits) -> Result<Self> {
+    pub fn read(input: &Input, bytes: &[u8], method: Method, budget: &Budget) -> Result<Self> {
         let name = input.name();
         let method = method.of_drawings()?;
         if arabesque_io::raster::png::is_png(bytes) {
@@ -44,16 +44,16 @@ impl LoadedExemplar {
         }
         let text = file::decode_text(name, bytes)?;
         if looks_like_curves(name, &text) {
-            let net = obj::read_curves(name, &text, limits)?;
+            let net = obj::read_curves(name, &text, budget)?;
             return Ok(Self::Space(net.exemplar, net.warnings));
         }
         if looks_like_points(name, &text) {
-            return Ok(match csv::read_points(name, &text, limits)? {
+            return Ok(match csv::read_points(name, &text, budget)? {
                 Points::Plane(exemplar) => Self::Points(exemplar),
                 Points::Space(exemplar) => Self::Space(exemplar, Vec::new()),
             });
         }
-        let options = ReadOptions { method, limits: *limits, ..ReadOptions::new(name) };
+        let options = ReadOptions { method, budget: budget.clone(), ..ReadOptions::new(name) };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
 }
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     fn read(name: &str, bytes: &[u8]) -> Result<LoadedExemplar> {
-        LoadedExemplar::read(&Input::file(name), bytes, Method::Auto, &Limits::default())
+        LoadedExemplar::read(&Input::file(name), bytes, Method::Auto, &Budget::default())
     }
 
     #[test]
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn later_methods_are_refused_by_name() {
-        let err = LoadedExemplar::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Limits::default())
+        let err = LoadedExemplar::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Budget::default())
             .unwrap_err();
         assert!(err.to_string().contains("structures are not handled yet"));
     }

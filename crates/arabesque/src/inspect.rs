@@ -1,6 +1,6 @@
 //! What was understood of an exemplar.
 
-use arabesque_core::{Error, Exemplar, Limits, Result, Role, Warning};
+use arabesque_core::{Budget, Error, Exemplar, Result, Role, Warning};
 use arabesque_io::{
     mesh::obj::junctions,
     raster::png::{RenderJob, Resolution, write_png},
@@ -95,7 +95,7 @@ const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 /// As [`LoadedExemplar::read`] and [`Resources::read`].
 pub fn inspect(input: &Input, method: Method, resources: &Resources) -> Result<Report> {
     let bytes = resources.read(input)?;
-    Ok(match LoadedExemplar::read(input, &bytes, method, &resources.limits)? {
+    Ok(match LoadedExemplar::read(input, &bytes, method, &resources.budget())? {
         LoadedExemplar::Drawing(drawing) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
             report.unit = Some(drawing.page.unit.name());
@@ -181,7 +181,7 @@ impl Report {
     ///
     /// # Errors
     /// [`Error::Unsupported`] for points in space, and for formats other than SVG and PNG.
-    pub fn picture(&self, format: Format, limits: &Limits) -> Result<Vec<u8>> {
+    pub fn picture(&self, format: Format, budget: &Budget) -> Result<Vec<u8>> {
         let unsupported = |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture out".into() };
         let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of what lies in space"))?;
         let svg = write_survey(drawing);
@@ -190,7 +190,7 @@ impl Report {
             Format::Png => {
                 let units = drawing.page.view.size().0;
                 let job = RenderJob { svg: &svg, units, resolution: Resolution::default(), recipe: None };
-                write_png(&job, limits)
+                write_png(&job, budget)
             }
             Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Toml => {
                 Err(unsupported("a picture in this format"))

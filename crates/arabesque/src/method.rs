@@ -5,7 +5,7 @@
 
 use std::{fmt::Debug, ops::ControlFlow, sync::Arc};
 
-use arabesque_core::{Limits, Progress, Result, Warning, Watch};
+use arabesque_core::{Budget, Progress, Result, Warning, Watch};
 
 use crate::{
     artwork::{Artwork, Made, Origin},
@@ -44,8 +44,8 @@ pub(crate) trait Ready: Debug + Send + Sync {
 }
 
 impl RunContext<'_> {
-    pub(crate) fn limits(&self) -> Limits {
-        self.files.limits()
+    pub(crate) fn budget(&self) -> &Budget {
+        self.files.budget()
     }
 
     /// What the recipe says of its output; the resolution counts where areas are avoided pixel by pixel.
@@ -61,7 +61,7 @@ impl RunContext<'_> {
     /// Where an artwork of this context comes from; the job must be resolved by then.
     pub(crate) fn origin(&self) -> Arc<Origin> {
         let recipe = Recipe { job: self.job.clone(), seed: self.seed, ..self.recipe.clone() };
-        Arc::new(Origin { recipe, limits: self.limits() })
+        Arc::new(Origin { recipe, budget: self.budget().clone() })
     }
 }
 

@@ -109,8 +109,9 @@ impl Prepared {
                 format!("a request for the {} that was prepared, with the same method and parameters", prepared.name());
             return Err(Error::parameter("request", asked.name(), expected));
         }
+        let files = self.0.files.again();
         let context = RunContext {
-            files: &self.0.files,
+            files: &files,
             recipe: &self.0.recipe,
             job: request.job.with_inputs_of(&self.0.recipe.job),
             seed: request.seed,

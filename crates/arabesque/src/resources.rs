@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use arabesque_core::{Limits, Result};
+use arabesque_core::{Budget, Limits, Result, Stopper};
 use arabesque_io::file;
 
 use crate::recipe::Input;
@@ -18,6 +18,8 @@ pub struct Resources {
     pub base: Option<PathBuf>,
     /// Limits for everything that is read and made.
     pub limits: Limits,
+    /// Asks whatever is prepared, run or encoded with these resources to stop.
+    pub stopper: Stopper,
     /// Files that are already in memory, by the path that the recipe has for them; they are not looked for on disk.
     pub inputs: BTreeMap<String, Arc<[u8]>>,
 }
@@ -43,10 +45,15 @@ impl Resources {
         let bytes = match (input.held()?, self.inputs.get(&input.path)) {
             (Some(held), _) => held.into(),
             (None, Some(bytes)) => Arc::clone(bytes),
-            (None, None) => file::read_bytes(&self.resolved(&input.path), &self.limits)?.into(),
+            (None, None) => file::read_bytes(&self.resolved(&input.path), &self.budget())?.into(),
         };
         input.check(&bytes)?;
         Ok(bytes)
+    }
+
+    /// A fresh account within the limits, which the stopper ends.
+    pub fn budget(&self) -> Budget {
+        Budget::with_stopper(self.limits, self.stopper.clone())
     }
 
     fn resolved(&self, path: &str) -> String {
@@ -57,19 +64,26 @@ impl Resources {
 
 /// The files of one prepared recipe. They are read for each request, so that a change is seen; standard input, which can be read once
 /// only, is kept.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Files {
     resources: Resources,
-    read: Mutex<BTreeMap<String, Arc<[u8]>>>,
+    read: Arc<Mutex<BTreeMap<String, Arc<[u8]>>>>,
+    budget: Budget,
 }
 
 impl Files {
     pub(crate) fn new(resources: Resources) -> Self {
-        Self { resources, read: Mutex::default() }
+        Self { budget: resources.budget(), resources, read: Arc::default() }
     }
 
-    pub(crate) fn limits(&self) -> Limits {
-        self.resources.limits
+    /// The same files, with a fresh account for another run.
+    pub(crate) fn again(&self) -> Self {
+        Self { budget: self.resources.budget(), ..self.clone() }
+    }
+
+    /// What reading, analysing and running may use up.
+    pub(crate) fn budget(&self) -> &Budget {
+        &self.budget
     }
 
     /// The content of an input.

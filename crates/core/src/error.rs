@@ -36,6 +36,14 @@ pub enum Error {
         /// What to do.
         advice: String,
     },
+    /// Somebody asked to stop before there was a result.
+    #[error("stopped: {stage} was not finished")]
+    Stopped {
+        /// What was being done.
+        stage: String,
+        /// Why.
+        cause: crate::budget::Cause,
+    },
     /// The request is understood but not handled.
     #[error("{what} is not supported; {advice}")]
     Unsupported {

@@ -11,13 +11,13 @@
 //! Methods take an exemplar and a request, tell whoever keeps [`Watch`] how they fare, and return an outcome.
 //! Nothing here reads files, prints, or synthesises.
 
+mod budget;
 mod curve;
 mod error;
 mod exemplar;
 mod field;
 mod image;
 mod index;
-mod limits;
 mod numerics;
 pub mod options;
 mod random;
@@ -27,6 +27,7 @@ mod space;
 pub mod suggest;
 mod text;
 
+pub use budget::{Budget, Cause, Held, Limits, Meter, Stopper};
 pub use curve::{
     Cubic, Measured, Path, arc_lengths, cubic_at, cubic_part, net_line_spacing, parallel_line_spacing, polyline_length,
     spans_inside, straight,
@@ -36,7 +37,6 @@ pub use exemplar::{Class, Contents, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
-pub use limits::Limits;
 pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
 pub use random::{Stage, Stream};
 pub use region::{

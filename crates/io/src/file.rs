@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use arabesque_core::{Error, Limits, Result};
+use arabesque_core::{Budget, Error, Result};
 
 /// The name that stands for standard input and standard output.
 pub const STANDARD: &str = "-";
@@ -14,21 +14,22 @@ pub const STANDARD: &str = "-";
 /// Reads a file, or standard input for `-`.
 ///
 /// # Errors
-/// [`Error::Io`] when the system refuses, [`Error::Limit`] when there are more than [`Limits::file_bytes`] bytes.
-pub fn read_bytes(path: &str, limits: &Limits) -> Result<Vec<u8>> {
+/// [`Error::Io`] when the system refuses, [`Error::Limit`] when there are more than [`arabesque_core::Limits::file_bytes`] bytes.
+pub fn read_bytes(path: &str, budget: &Budget) -> Result<Vec<u8>> {
     let fail = |source| Error::Io { path: path.to_owned(), source };
+    let most = budget.limits().file_bytes;
     let mut bytes = Vec::new();
     if path == STANDARD {
-        std::io::stdin().lock().take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(fail)?;
+        std::io::stdin().lock().take(most as u64 + 1).read_to_end(&mut bytes).map_err(fail)?;
     } else {
         let file = fs::File::open(path).map_err(fail)?;
-        file.take(limits.file_bytes + 1).read_to_end(&mut bytes).map_err(fail)?;
+        file.take(most as u64 + 1).read_to_end(&mut bytes).map_err(fail)?;
     }
-    if bytes.len() as u64 > limits.file_bytes {
+    if bytes.len() > most {
         return Err(Error::Limit {
             what: format!("{path}: size of the file"),
-            found: format!("more than {} bytes", limits.file_bytes),
-            limit: format!("{} bytes", limits.file_bytes),
+            found: format!("more than {most} bytes"),
+            limit: format!("{most} bytes"),
             advice: "use a smaller file".into(),
         });
     }

@@ -1,7 +1,7 @@
 //! Traits of SVG files as artists save them, each in a tiny file of its own.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
-use arabesque_core::{Error, Region, Role, Vector};
+use arabesque_core::{Budget, Error, Limits, Region, Role, Vector};
 use arabesque_io::svg::{
     Drawing, Method, ReadOptions, Stacking, Unit, read_exemplar, read_flow, read_placed, read_shape,
 };
@@ -580,10 +580,10 @@ fn limits_are_errors_that_name_themselves() {
     let deep = page(&format!("{}{}", "<g>".repeat(10_000), "</g>".repeat(10_000)));
     assert!(matches!(read_with(&deep, Method::Auto), Err(Error::Limit { .. })));
     let mut options = ReadOptions::new("t.svg");
-    options.limits.elements = 5;
+    options.budget = Budget::new(Limits { elements: 5, ..Limits::default() });
     let message = read_exemplar(&page(DOTS), &options).unwrap_err().to_string();
     assert!(message.contains("elements: 6 is over the limit of 5"), "{message}");
-    options.limits.segments = 10;
+    options.budget = Budget::new(Limits { segments: 10, ..Limits::default() });
     assert!(read_exemplar(&page(DOTS), &options).unwrap_err().to_string().contains("path segments"));
 }
 

@@ -2,7 +2,7 @@
 //!
 //! One thread, unless `RAYON_NUM_THREADS` says otherwise.
 
-use arabesque_core::{Bounds, Class, Curve, Exemplar, Path, Stream, Vector};
+use arabesque_core::{Bounds, Budget, Class, Curve, Exemplar, Path, Stream, Vector};
 use arabesque_patterns::{
     Params, Prepared,
     stages::{Setup, Stage},
@@ -101,7 +101,7 @@ mod prepare {
 
     fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
         let params = Params::default();
-        bencher.bench_local(|| Prepared::new(exemplar.clone(), &params));
+        bencher.bench_local(|| Prepared::new(exemplar.clone(), &params, &Budget::default()));
     }
 
     #[divan::bench(sample_count = 5)]

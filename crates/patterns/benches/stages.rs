@@ -3,7 +3,8 @@
 //! One thread, unless `RAYON_NUM_THREADS` says otherwise.
 
 use arabesque_core::{
-    Bounds, Class, Domain, Element, Exemplar, Outcome, Outline, Request, Role, Similarity, Stream, Unobserved, Vector,
+    Bounds, Budget, Class, Domain, Element, Exemplar, Outcome, Outline, Request, Role, Similarity, Stream, Unobserved,
+    Vector,
 };
 use arabesque_patterns::{
     Params, Prepared,
@@ -83,7 +84,8 @@ fn params(settings: &[(&str, &str)]) -> Params {
 }
 
 fn fill(bencher: Bencher, exemplar: &Exemplar<2>, n: usize, settings: &[(&str, &str)]) {
-    let prepared = Prepared::new(exemplar.clone(), &params(settings)).expect("the exemplar can be analysed");
+    let prepared =
+        Prepared::new(exemplar.clone(), &params(settings), &Budget::default()).expect("the exemplar can be analysed");
     let request = page(exemplar, n);
     bencher.bench_local(|| -> Outcome<2> { prepared.run(&request, &mut Unobserved).expect("the page can be filled") });
 }
@@ -123,7 +125,7 @@ mod prepare {
 
     fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
         let params = Params::default();
-        bencher.bench_local(|| Prepared::new(exemplar.clone(), &params));
+        bencher.bench_local(|| Prepared::new(exemplar.clone(), &params, &Budget::default()));
     }
 
     #[divan::bench(sample_count = 20)]

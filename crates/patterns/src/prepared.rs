@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Warning, Watch,
+    Budget, Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Warning, Watch,
 };
 
 use crate::{
@@ -55,7 +55,7 @@ pub trait Compiled<const D: usize>: Dimension<D> {
     ///
     /// # Errors
     /// As there.
-    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params) -> Result<Prepared<D>>;
+    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Prepared<D>>;
 
     /// See [`Prepared::run`].
     ///
@@ -67,8 +67,12 @@ pub trait Compiled<const D: usize>: Dimension<D> {
 macro_rules! compiled {
     ($dimension:literal) => {
         impl Compiled<$dimension> for Vector<$dimension> {
-            fn analysed(exemplar: &Arc<Exemplar<$dimension>>, params: &Params) -> Result<Prepared<$dimension>> {
-                Prepared::analysed(exemplar, params)
+            fn analysed(
+                exemplar: &Arc<Exemplar<$dimension>>,
+                params: &Params,
+                budget: &Budget,
+            ) -> Result<Prepared<$dimension>> {
+                Prepared::analysed(exemplar, params, budget)
             }
 
             fn filled(
@@ -109,15 +113,16 @@ where
     /// when the exemplar shows no curve and fewer than two elements that may be copied, for then nothing tells how far
     /// apart they belong, or when its curves lie outside its frame; [`Error::Limit`] when its curves meet in too many
     /// places or lie too densely.
-    pub fn new(exemplar: impl Into<Arc<Exemplar<D>>>, params: &Params) -> Result<Self>
+    pub fn new(exemplar: impl Into<Arc<Exemplar<D>>>, params: &Params, budget: &Budget) -> Result<Self>
     where
         Vector<D>: Compiled<D>,
     {
-        Vector::<D>::analysed(&exemplar.into(), params)
+        Vector::<D>::analysed(&exemplar.into(), params, budget)
     }
 
-    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params) -> Result<Self> {
+    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Self> {
         params.check()?;
+        budget.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
             let problem = "one element only, expected at least two";
             let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
@@ -281,7 +286,7 @@ where
     }
 
     fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {
-        let limit = request.limits.output_elements;
+        let limit = request.budget.limits().output_elements;
         if expected.is_nan() || expected > limit as f64 {
             return Err(Error::Limit {
                 what: "elements of the result".into(),

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Bounds, Domain, Exemplar, Numbered, Outcome, Placement, Request, Unobserved, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, Numbered, Outcome, Placement, Request, Unobserved, Vector};
 
 use crate::{
     border::Extent,
@@ -85,7 +85,8 @@ impl Setup {
     /// # Panics
     /// When the exemplar cannot be analysed.
     pub fn new(exemplar: &Exemplar<2>, n: usize) -> Self {
-        let prepared = Prepared::new(exemplar.clone(), &Params::default()).expect("the exemplar can be analysed");
+        let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default())
+            .expect("the exemplar can be analysed");
         let side = (n as f64 / density(finest(&prepared))).sqrt();
         let request = Request::new(Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(side))));
         Self { prepared, request }

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use arabesque_core::{
-    Border, Bounds, Class, Curve, Domain, Drawn, Exemplar, Measured, Outcome, Path, Request, Stage, Stream, Unobserved,
-    Vector,
+    Border, Bounds, Budget, Class, Curve, Domain, Drawn, Exemplar, Measured, Outcome, Path, Request, Stage, Stream,
+    Unobserved, Vector,
 };
 use arabesque_patterns::{Params, Prepared};
 
@@ -56,7 +56,7 @@ fn grid(n: usize, wobble: f64) -> Exemplar<2> {
 }
 
 fn fill(exemplar: &Exemplar<2>, params: &Params, request: &Request<2>) -> Outcome<2> {
-    Prepared::new(exemplar.clone(), params).unwrap().run(request, &mut Unobserved).unwrap()
+    Prepared::new(exemplar.clone(), params, &Budget::default()).unwrap().run(request, &mut Unobserved).unwrap()
 }
 
 fn length<const D: usize>(outcome: &Outcome<D>) -> f64 {
@@ -311,7 +311,7 @@ fn a_lattice_in_space_goes_on() {
     )
     .unwrap();
     let domain = Domain::Box(Bounds::new(Vector([0.0; 3]), Vector([60.0, 60.0, 40.0])));
-    let prepared = Prepared::new(exemplar.clone(), &Params::default()).unwrap();
+    let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
     let outcome = prepared.run(&Request::new(domain), &mut Unobserved).unwrap();
     // 6 x 4 bars of 60 twice, 6 x 6 bars of 40.
     let total = 2.0 * 24.0 * 60.0 + 36.0 * 40.0;
@@ -331,6 +331,6 @@ fn curves_that_never_repeat_are_warned_of() {
 fn curves_outside_the_frame_are_refused() {
     let exemplar =
         exemplar(vec![curve(&[Vector::xy(-50.0, -50.0), Vector::xy(-10.0, -20.0)], false)], page(10.0, 10.0));
-    let error = Prepared::new(exemplar.clone(), &Params::default()).unwrap_err();
+    let error = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap_err();
     assert!(error.to_string().contains("outside the frame"), "{error}");
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic, its helpers as well")]
 
 use arabesque_core::{
-    Bounds, Class, Curve, Domain, Drawn, Exemplar, Outcome, Path, Request, Stage, Stream, Unobserved, Vector,
+    Bounds, Budget, Class, Curve, Domain, Drawn, Exemplar, Outcome, Path, Request, Stage, Stream, Unobserved, Vector,
 };
 use arabesque_patterns::{Params, Prepared};
 
@@ -41,7 +41,7 @@ fn bricks() -> Exemplar<2> {
 fn fill(settings: &[(&str, &str)], request: &Request<2>) -> Outcome<2> {
     let mut params = Params::default();
     settings.iter().for_each(|(name, value)| params.set(name, value).unwrap());
-    Prepared::new(bricks(), &params).unwrap().run(request, &mut Unobserved).unwrap()
+    Prepared::new(bricks(), &params, &Budget::default()).unwrap().run(request, &mut Unobserved).unwrap()
 }
 
 /// Energy of the last search.
@@ -117,7 +117,10 @@ fn progress_never_goes_back() {
     let mut params = Params::default();
     params.set("initialisation", "white-noise").unwrap();
     let mut seen = Fractions(Vec::new());
-    Prepared::new(bricks(), &params).unwrap().run(&Request::new(page(200.0, 160.0)), &mut seen).unwrap();
+    Prepared::new(bricks(), &params, &Budget::default())
+        .unwrap()
+        .run(&Request::new(page(200.0, 160.0)), &mut seen)
+        .unwrap();
     assert!(seen.0.windows(2).all(|pair| pair[0] <= pair[1]), "{:?}", seen.0);
     assert!(seen.0.iter().all(|f| (0.0..=1.0).contains(f)));
 }

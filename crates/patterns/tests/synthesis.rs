@@ -5,8 +5,8 @@
 use std::ops::ControlFlow;
 
 use arabesque_core::{
-    Border, Bounds, Domain, Exemplar, Fields, FillRule, Matrix, OrientationField, Outcome, Placement, Progress, Region,
-    Request, ScalarField, Shape, Similarity, Snapshot, StopReason, Unobserved, Vector, Watch,
+    Border, Bounds, Budget, Domain, Exemplar, Fields, FillRule, Matrix, OrientationField, Outcome, Placement, Progress,
+    Region, Request, ScalarField, Shape, Similarity, Snapshot, StopReason, Unobserved, Vector, Watch,
 };
 use arabesque_patterns::{Params, Prepared};
 
@@ -24,7 +24,10 @@ fn page(w: f64, h: f64) -> Domain<2> {
 }
 
 fn fill(exemplar: &Exemplar<2>, request: &Request<2>) -> Outcome<2> {
-    Prepared::new(exemplar.clone(), &Params::default()).unwrap().run(request, &mut Unobserved).unwrap()
+    Prepared::new(exemplar.clone(), &Params::default(), &Budget::default())
+        .unwrap()
+        .run(request, &mut Unobserved)
+        .unwrap()
 }
 
 fn centres(exemplar: &Exemplar<2>, outcome: &Outcome<2>) -> Vec<(usize, Vector<2>)> {
@@ -171,7 +174,7 @@ fn a_lattice_in_space_stays_a_lattice() {
         (0..216).map(|i| Vector([f64::from(i % 6), f64::from(i / 6 % 6), f64::from(i / 36)])).collect();
     let exemplar = Exemplar::from_points("lattice", &points, &[0; 216], &["a".into()]).unwrap();
     let domain = Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(9.0)));
-    let outcome = Prepared::new(exemplar.clone(), &Params::default())
+    let outcome = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default())
         .unwrap()
         .run(&Request::new(domain), &mut Unobserved)
         .unwrap();
@@ -204,7 +207,7 @@ impl Watch<Snapshot<2>> for Stopper {
 fn an_observer_sees_previews_and_may_stop() {
     let exemplar = grid(8, |_, _| 0);
     let mut observer = Stopper { steps: 0, preview: 0 };
-    let prepared = Prepared::new(exemplar.clone(), &Params::default()).unwrap();
+    let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
     let outcome = prepared.run(&Request::new(page(15.0, 15.0)), &mut observer).unwrap();
     assert_eq!(outcome.stopped, StopReason::Stopped);
     assert!(observer.steps > 1 && observer.preview > 100);
@@ -233,7 +236,10 @@ fn every_preset_and_component_gives_a_result() {
         all.push(params);
     }
     for params in all {
-        let outcome = Prepared::new(exemplar.clone(), &params).unwrap().run(&request, &mut Unobserved).unwrap();
+        let outcome = Prepared::new(exemplar.clone(), &params, &Budget::default())
+            .unwrap()
+            .run(&request, &mut Unobserved)
+            .unwrap();
         assert!((100..=320).contains(&outcome.placements.len()), "{params:?}: {}", outcome.placements.len());
     }
 }
@@ -244,7 +250,8 @@ fn a_grid_grows_out_of_white_noise() {
     let mut params = Params::default();
     params.set("initialisation", "white-noise").unwrap();
     let request = Request::new(page(20.0, 20.0));
-    let outcome = Prepared::new(exemplar.clone(), &params).unwrap().run(&request, &mut Unobserved).unwrap();
+    let outcome =
+        Prepared::new(exemplar.clone(), &params, &Budget::default()).unwrap().run(&request, &mut Unobserved).unwrap();
     let gaps = nearest(&centres(&exemplar, &outcome));
     let regular = gaps.iter().filter(|(_, _, d)| (d - 1.0).abs() < 0.15).count();
     assert!(regular * 100 >= gaps.len() * 80, "{regular} of {}", gaps.len());
@@ -256,11 +263,11 @@ fn a_grid_grows_out_of_white_noise() {
 #[test]
 fn what_cannot_work_is_refused() {
     let one = Exemplar::from_points("one", &[Vector::xy(1.0, 1.0)], &[0], &["a".into()]);
-    assert!(one.and_then(|e| Prepared::new(e, &Params::default())).is_err());
+    assert!(one.and_then(|e| Prepared::new(e, &Params::default(), &Budget::default())).is_err());
     let exemplar = grid(5, |_, _| 0);
     let wide = Params { radius: Some(50.0), ..Params::default() };
-    assert!(Prepared::new(exemplar.clone(), &wide).unwrap_err().to_string().contains("radius"));
-    let prepared = Prepared::new(exemplar.clone(), &Params::default()).unwrap();
+    assert!(Prepared::new(exemplar.clone(), &wide, &Budget::default()).unwrap_err().to_string().contains("radius"));
+    let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
     let error = prepared.run(&Request::new(page(1e7, 1e7)), &mut Unobserved).unwrap_err();
     assert!(error.to_string().contains("over the limit"), "{error}");
 }

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 #![allow(missing_docs, reason = "the macros of divan make items without any")]
 
-use arabesque_core::{Image, Path, Unobserved, Vector};
+use arabesque_core::{Budget, Image, Path, Unobserved, Vector};
 use arabesque_ribbons::{Prepared, RibbonParams, RibbonRequest, Search, StripExemplar, Width};
 
 fn main() {
@@ -90,7 +90,7 @@ fn curve(bencher: divan::Bencher<'_, '_>, case: &Case) {
         params =
             RibbonParams { context: 0.0, repetition: 0.0, variety: 0.0, centring: 0.0, wander: Some(1.0), ..params };
     }
-    let prepared = Prepared::new(vec![beads(case.width, case.height)], params).unwrap();
+    let prepared = Prepared::new(vec![beads(case.width, case.height)], params, &Budget::default()).unwrap();
     let request = RibbonRequest::new(vec![("wave".into(), wave(case.pieces, step))]);
     bencher.bench(|| prepared.run(&request, &mut Unobserved).unwrap());
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
+use arabesque_core::{Budget, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
 
 use crate::{
     constraints::demands::Plan,
@@ -75,8 +75,9 @@ impl Prepared {
     /// # Errors
     /// [`arabesque_core::Error::Parameter`] for a parameter out of range, [`arabesque_core::Error::Input`] for an exemplar that has no pattern on a transparent
     /// background, [`arabesque_core::Error::Limit`] beyond [`strip::PIXELS`].
-    pub fn new(exemplars: Vec<StripExemplar>, params: RibbonParams) -> Result<Self> {
+    pub fn new(exemplars: Vec<StripExemplar>, params: RibbonParams, budget: &Budget) -> Result<Self> {
         params.check()?;
+        budget.check()?;
         strip::check(&exemplars, params.coarse, params.relax)?;
         let (strip, full) = (Strip::new(&exemplars, params.coarse), Strip::new(&exemplars, 1));
         Ok(Self { exemplars: Arc::new(exemplars), params, strip, full })

@@ -1,6 +1,6 @@
 //! What is asked of a run.
 
-use arabesque_core::Path;
+use arabesque_core::{Budget, Path};
 
 use crate::constraints::mask::Mask;
 
@@ -18,11 +18,13 @@ pub struct RibbonRequest<const D: usize> {
     pub changes: Vec<f64>,
     /// Seed of the random preference.
     pub seed: u64,
+    /// What the run may use up.
+    pub budget: Budget,
 }
 
 impl<const D: usize> RibbonRequest<D> {
     /// Lays the pattern along `curves` with everything else at its default.
     pub fn new(curves: Vec<(String, Path<D>)>) -> Self {
-        Self { curves, avoid: None, first: None, changes: Vec::new(), seed: 0 }
+        Self { curves, avoid: None, first: None, changes: Vec::new(), seed: 0, budget: Budget::default() }
     }
 }

@@ -5,7 +5,8 @@
 use std::ops::ControlFlow;
 
 use arabesque_core::{
-    Bounds, Error, Image, Path, Progress, Snapshot, Stage, StopReason, Stream, Unobserved, Vector, Watch, straight,
+    Bounds, Budget, Error, Image, Path, Progress, Snapshot, Stage, StopReason, Stream, Unobserved, Vector, Watch,
+    straight,
 };
 use arabesque_ribbons::{
     Canvas, Closing, Mask, Prepared, RibbonOutcome, RibbonParams, RibbonRequest, Search, StripExemplar, Width, render,
@@ -55,7 +56,10 @@ fn request(path: Path<2>) -> RibbonRequest<2> {
 }
 
 fn run(exemplar: &StripExemplar, params: &RibbonParams, request: &RibbonRequest<2>) -> RibbonOutcome<2> {
-    Prepared::new(vec![exemplar.clone()], params.clone()).unwrap().run(request, &mut Unobserved).unwrap()
+    Prepared::new(vec![exemplar.clone()], params.clone(), &Budget::default())
+        .unwrap()
+        .run(request, &mut Unobserved)
+        .unwrap()
 }
 
 fn plain() -> RibbonParams {
@@ -110,7 +114,7 @@ fn the_exact_cycle_is_no_worse_than_the_quick_one_and_as_good_as_the_best_of_all
 /// The cheapest cycle by fixing the first piece to every position in turn and closing exactly.
 fn best_cycle(exemplar: &StripExemplar, wanted: &RibbonRequest<2>) -> f64 {
     let params = RibbonParams { closing: Closing::Exact, search: Search::Exhaustive, ..plain() };
-    let prepared = Prepared::new(vec![exemplar.clone()], params).unwrap();
+    let prepared = Prepared::new(vec![exemplar.clone()], params, &Budget::default()).unwrap();
     let (width, height) = (exemplar.image.width, exemplar.image.height as i64);
     let starts = (0..width).flat_map(|x| (-2..=height / 4).map(move |y| (x, y)));
     let costs = starts.filter_map(|first| {
@@ -137,7 +141,9 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn a_run_that_goes_on_from_another_equals_a_full_one() {
     let exemplar = strip(60, 24, 9);
-    let prepared = Prepared::new(vec![exemplar], RibbonParams { step: Some(6.0), ..RibbonParams::default() }).unwrap();
+    let prepared =
+        Prepared::new(vec![exemplar], RibbonParams { step: Some(6.0), ..RibbonParams::default() }, &Budget::default())
+            .unwrap();
     let before = request(line(&[(10.0, 40.0), (120.0, 40.0), (170.0, 80.0)]));
     let after = request(line(&[(10.0, 40.0), (120.0, 40.0), (170.0, 20.0)]));
     let first = prepared.run(&before, &mut Unobserved).unwrap();
@@ -192,7 +198,7 @@ fn no_way_through_is_an_error_that_names_the_piece_and_relaxing_cuts_it() {
     let mask = spot(100.0, 50.0, 30.0);
     let wanted = RibbonRequest { avoid: Some(mask.clone()), ..request(line(&[(10.0, 50.0), (190.0, 50.0)])) };
     let params = RibbonParams { step: Some(5.0), ..RibbonParams::default() };
-    let prepared = Prepared::new(vec![exemplar.clone()], params.clone()).unwrap();
+    let prepared = Prepared::new(vec![exemplar.clone()], params.clone(), &Budget::default()).unwrap();
     let error = prepared.run(&wanted, &mut Unobserved).unwrap_err();
     assert!(matches!(error, Error::NoResult { .. }));
     let text = error.to_string();
@@ -222,7 +228,7 @@ fn ends_are_shown_at_the_ends_and_nowhere_else() {
 fn several_exemplars_pass_into_one_another() {
     let exemplars = vec![strip(60, 24, 20), strip(60, 20, 21)];
     let params = RibbonParams { step: Some(6.0), ..RibbonParams::default() };
-    let prepared = Prepared::new(exemplars, params).unwrap();
+    let prepared = Prepared::new(exemplars, params, &Budget::default()).unwrap();
     let wanted = RibbonRequest { changes: vec![0.5], ..request(line(&[(0.0, 20.0), (300.0, 20.0)])) };
     let outcome = prepared.run(&wanted, &mut Unobserved).unwrap();
     let sources: Vec<usize> = outcome.ribbons[0].pieces.iter().map(|p| p.patch.source).collect();
@@ -263,7 +269,7 @@ impl Watch<Snapshot<2>> for StopAfter {
 
 #[test]
 fn a_run_that_is_stopped_gives_back_the_ribbon_so_far() {
-    let prepared = Prepared::new(vec![strip(60, 24, 1)], plain()).unwrap();
+    let prepared = Prepared::new(vec![strip(60, 24, 1)], plain(), &Budget::default()).unwrap();
     let outcome = prepared.run(&request(line(&[(0.0, 20.0), (120.0, 20.0)])), &mut StopAfter(7, 0)).unwrap();
     assert_eq!((outcome.ribbons[0].pieces.len(), outcome.stopped), (7, StopReason::Stopped));
 }
@@ -277,8 +283,12 @@ fn curves_in_space_get_a_strip() {
         })
         .collect();
     let wanted = RibbonRequest::new(vec![("helix".into(), Path::polyline(&points))]);
-    let prepared =
-        Prepared::new(vec![strip(60, 24, 1)], RibbonParams { step: Some(6.0), ..RibbonParams::default() }).unwrap();
+    let prepared = Prepared::new(
+        vec![strip(60, 24, 1)],
+        RibbonParams { step: Some(6.0), ..RibbonParams::default() },
+        &Budget::default(),
+    )
+    .unwrap();
     let outcome = prepared.run_in_space(&wanted, &mut Unobserved).unwrap();
     for pair in outcome.ribbons[0].pieces.windows(2) {
         assert_eq!(pair[0].patch.corners[1], pair[1].patch.corners[0]);
@@ -293,12 +303,12 @@ fn unusable_exemplars_are_refused() {
     let opaque = StripExemplar::new(Image { pixels: vec![[9, 9, 9, 255]; 800], width: 40, height: 20 });
     let large = StripExemplar::new(Image::transparent(2000, 800));
     for (exemplar, word) in [(blank, "every pixel is transparent"), (opaque, "--relax"), (large, "transparent")] {
-        let error = Prepared::new(vec![exemplar], RibbonParams::default()).unwrap_err();
+        let error = Prepared::new(vec![exemplar], RibbonParams::default(), &Budget::default()).unwrap_err();
         assert!(error.to_string().contains(word), "{error}");
     }
     let mut large = strip(2000, 200, 1);
     large.end = None;
-    let error = Prepared::new(vec![large], RibbonParams::default()).unwrap_err();
+    let error = Prepared::new(vec![large], RibbonParams::default(), &Budget::default()).unwrap_err();
     assert!(matches!(error, Error::Limit { .. }) && error.to_string().contains("--coarse 2"), "{error}");
 }
 

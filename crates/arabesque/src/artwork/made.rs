@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use arabesque_core::{EnergyPoint, Limits, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{Budget, EnergyPoint, Result, Snapshot, StopReason, Warning};
 
 use crate::{
     artwork::{points::PlacedPoint, summary::Summary},
@@ -47,7 +47,7 @@ pub(crate) struct Sheet<'a> {
     pub(crate) ran: &'a OutputOptions,
     /// The recipe that the file carries.
     pub(crate) recipe: Option<&'a str>,
-    pub(crate) limits: &'a Limits,
+    pub(crate) budget: &'a Budget,
 }
 
 /// A file, complete.

@@ -13,7 +13,7 @@ pub(crate) use points::points;
 
 use std::sync::Arc;
 
-use arabesque_core::{EnergyPoint, Limits, Result, StopReason, Warning};
+use arabesque_core::{Budget, EnergyPoint, Result, StopReason, Warning};
 
 use crate::recipe::{Format, OutputOptions, Recipe};
 
@@ -31,7 +31,7 @@ pub struct Artwork {
 pub(crate) struct Origin {
     /// The recipe of this very artwork, with small inputs inside it.
     pub(crate) recipe: Recipe,
-    pub(crate) limits: Limits,
+    pub(crate) budget: Budget,
 }
 
 impl Artwork {
@@ -102,7 +102,7 @@ impl Artwork {
             output,
             ran: &self.origin.recipe.output,
             recipe,
-            limits: &self.origin.limits,
+            budget: &self.origin.budget.fresh().stage("encoding"),
         })
     }
 }

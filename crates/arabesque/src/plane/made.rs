@@ -116,7 +116,7 @@ impl Made for PlaneMade {
                 let written = self.svg(Style::Linked, None)?;
                 let resolution = resolution(sheet.output)?;
                 let job = RenderJob { svg: &written.text, units: size.0, resolution, recipe: sheet.recipe };
-                Ok(Encoded { bytes: write_png(&job, sheet.limits)?, warnings: written.warnings })
+                Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: written.warnings })
             }
             Format::Json => {
                 let has_unit = self.exemplar.units() == Units::OfPage;

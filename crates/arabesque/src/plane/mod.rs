@@ -39,7 +39,7 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     // What is wrong with the parameters is told before what is wrong in a file.
     fill.params.engine_params()?;
     let bytes = preparation.files.read(input)?;
-    let (drawing, points) = match LoadedExemplar::read(input, &bytes, fill.method, &preparation.files.limits())? {
+    let (drawing, points) = match LoadedExemplar::read(input, &bytes, fill.method, preparation.files.budget())? {
         LoadedExemplar::Drawing(drawing) => (*drawing, None),
         LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar))),
         LoadedExemplar::Space(..) => {
@@ -65,7 +65,7 @@ impl Plane {
     /// Analyses the exemplar.
     fn new(mut exemplar: PlaneExemplar, params: &Parameters, preparation: &mut Preparation<'_>) -> Result<Self> {
         preparation.warnings.append(&mut exemplar.drawing.warnings);
-        let engine = Engine::new(Arc::clone(exemplar.exemplar()), &params.engine_params()?)
+        let engine = Engine::new(Arc::clone(exemplar.exemplar()), &params.engine_params()?, preparation.files.budget())
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
         Ok(Self { exemplar: Arc::new(exemplar), engine })
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Domain, Error, Exemplar, Limits, Outline, Result, Shape};
+use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Outline, Result, Shape};
 use arabesque_io::svg::{self, Drawing, Page, ReadOptions};
 
 use crate::{
@@ -97,18 +97,18 @@ pub(crate) fn read_shape(input: &Input, drawing: &Drawing, units: Units, files: 
 
 /// How an SVG file beside the exemplar is read.
 pub(crate) fn options(input: &Input, files: &Files) -> ReadOptions {
-    ReadOptions { limits: files.limits(), ..ReadOptions::new(input.name()) }
+    ReadOptions { budget: files.budget().clone(), ..ReadOptions::new(input.name()) }
 }
 
 /// Refuses a domain that is too large or too small for the pattern.
-pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, limits: &Limits) -> Result<()> {
+pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, budget: &Budget) -> Result<()> {
     let spacing = spacing(exemplar);
     let expected = domain.measure() / spacing.powi(2);
-    if expected.is_nan() || expected > limits.output_elements as f64 {
+    if expected.is_nan() || expected > budget.limits().output_elements as f64 {
         return Err(Error::Limit {
             what: "size of the domain".into(),
             found: format!("room for about {expected:.0} elements"),
-            limit: format!("{} elements", limits.output_elements),
+            limit: format!("{} elements", budget.limits().output_elements),
             advice: "make it smaller; sizes without a unit are in the units of the exemplar".into(),
         });
     }

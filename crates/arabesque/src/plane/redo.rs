@@ -31,7 +31,7 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
     let text = drawing_text(&name, &bytes)?;
     let own = |region: &Region| if let Region::Own(id) = region { Some(id.clone()) } else { None };
     let options = ReadOptions {
-        limits: preparation.files.limits(),
+        budget: preparation.files.budget().clone(),
         method: redo.method.of_drawings()?,
         without: std::iter::once(&redo.region).chain(&redo.from).filter_map(own).collect(),
         ..ReadOptions::new(&*name)

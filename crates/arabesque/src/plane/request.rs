@@ -41,14 +41,14 @@ impl PlaneExemplar {
             (None, Job::Fill(fill)) => Place::of(fill, &self.drawing, self.units(), files)?,
             (None, _) => return Err(Error::parameter("request", job.name(), "a request to fill")),
         };
-        check_room(self.exemplar(), &place.domain, &files.limits()).map_err(|error| self.in_region(error, context))?;
+        check_room(self.exemplar(), &place.domain, files.budget()).map_err(|error| self.in_region(error, context))?;
         let surroundings = Surroundings::of(job)?;
         if self.region.is_some() {
             check_border(surroundings.border)?;
         }
         let mut request = EngineRequest::new(place.domain);
         request.seed = context.seed;
-        request.limits = files.limits();
+        request.budget = files.budget().clone();
         request.known = self.region.is_some().then_some(self.drawing.page.view);
         request.border = surroundings.border.unwrap_or_else(|| self.usual_border());
         request.fields = surroundings.fields.read(&self.drawing, &request.domain.bounds(), files)?;

@@ -1,6 +1,6 @@
 //! Ribbons as pictures.
 
-use arabesque_core::{Error, Image, Limits, Result, Vector};
+use arabesque_core::{Budget, Error, Image, Result, Vector};
 use arabesque_io::{
     raster::{image::draw_svg, png, size::checked_size},
     svg::Page,
@@ -36,20 +36,20 @@ pub(crate) fn resolution_of_canvas(output: &OutputOptions, page: Option<&Page>) 
 
 impl Pixels {
     /// The picture of a page.
-    fn canvas(self, page: &Page, limits: &Limits) -> Result<Canvas> {
-        let [width, height] = self.pixels(page, limits)?;
+    fn canvas(self, page: &Page, budget: &Budget) -> Result<Canvas> {
+        let [width, height] = self.pixels(page, budget)?;
         Ok(Canvas { origin: page.view.min, width, height, pixels_per_unit: self.0 })
     }
 
     /// Width and height of the picture of a page.
     ///
     /// # Errors
-    /// [`Error::Limit`] beyond [`Limits::pixels`].
-    pub(crate) fn pixels(self, page: &Page, limits: &Limits) -> Result<[usize; 2]> {
+    /// [`Error::Limit`] beyond [`Budget::pixels`].
+    pub(crate) fn pixels(self, page: &Page, budget: &Budget) -> Result<[usize; 2]> {
         // A clamp keeps NaN, which the limit below then refuses.
         let sides = page.view.size().0.map(|side| (side * self.0).round().clamp(1.0, f64::MAX));
         let advice = "ask for fewer --pixels-per-unit, or a smaller canvas with --on-canvas";
-        Ok(checked_size("size of the canvas", sides, limits, advice)?.map(|side| side as usize))
+        Ok(checked_size("size of the canvas", sides, budget, advice)?.map(|side| side as usize))
     }
 }
 
@@ -62,14 +62,14 @@ pub(crate) fn of_pieces(
     sheet: &Sheet<'_>,
 ) -> Result<Vec<u8>> {
     let scale = resolution_of_canvas(sheet.output, Some(page))?;
-    encode(&render(ribbons, exemplars, avoid, &scale.canvas(page, sheet.limits)?), scale, page, sheet)
+    encode(&render(ribbons, exemplars, avoid, &scale.canvas(page, sheet.budget)?), scale, page, sheet)
 }
 
 /// Ribbons of drawings, drawn as the vectors of `svg`, as PNG.
 pub(crate) fn of_drawing(svg: &str, avoid: Option<&Mask>, page: &Page, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
     let scale = resolution_of_canvas(sheet.output, Some(page))?;
-    let canvas = scale.canvas(page, sheet.limits)?;
-    let mut image = draw_svg("the ribbon", svg, (page.view.size().0, scale.0), sheet.limits)?;
+    let canvas = scale.canvas(page, sheet.budget)?;
+    let mut image = draw_svg("the ribbon", svg, (page.view.size().0, scale.0), sheet.budget)?;
     avoid.into_iter().for_each(|mask| clear(&mut image, mask, &canvas));
     encode(&image, scale, page, sheet)
 }

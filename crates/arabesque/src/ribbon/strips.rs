@@ -50,7 +50,7 @@ pub(crate) fn read(ribbon: &Ribbon, preparation: &mut Preparation<'_>) -> Result
     let (exemplars, sources, finer) = loading.exemplars(&mut preparation.exemplar, &mut params)?;
     preparation.warnings.extend(width_warning(&params, &exemplars));
     let names: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();
-    let engine = Engine::new(exemplars, params).map_err(|error| named(error, &names))?;
+    let engine = Engine::new(exemplars, params, preparation.files.budget()).map_err(|error| named(error, &names))?;
     preparation.job = Job::Ribbon(ribbon);
     Ok(RibbonStrips { engine, sources, finer })
 }
@@ -103,7 +103,7 @@ impl Loading<'_> {
             *finer = Some(factor);
             return Ok((image, Source { name: path, areas: Some(areas) }));
         }
-        let (image, alpha) = image::read_image(name, bytes, &self.files.limits())?;
+        let (image, alpha) = image::read_image(name, bytes, self.files.budget())?;
         if alpha == Alpha::Missing && !self.ribbon.relax {
             let problem = "a picture without an alpha channel, where a transparent background was expected to outline the pattern";
             let advice = "save it with transparency, or use --relax, which takes the picture as a texture and cuts it";
@@ -123,7 +123,7 @@ impl Loading<'_> {
         if !(factor.is_finite() && factor > 0.0) {
             return Err(Error::input(name, "a page without height", "give the page a width and a height"));
         }
-        let image = image::draw_svg(name, text, (view.size().0, factor), &self.files.limits())?;
+        let image = image::draw_svg(name, text, (view.size().0, factor), self.files.budget())?;
         let size = view.size();
         let pixels = [image.width as f64 / size[0], image.height as f64 / size[1]];
         let to_pixels = |p: Vector<2>| Vector::xy((p - view.min)[0] * pixels[0], (p - view.min)[1] * pixels[1]);

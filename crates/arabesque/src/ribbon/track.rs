@@ -88,14 +88,19 @@ fn follow(ribbon: &mut Ribbon, context: &mut RunContext<'_>) -> Result<Track> {
             let advice = "leave the canvas out";
             return Err(Error::Unsupported { what: "a canvas for curves in space".into(), advice: advice.into() });
         }
-        let curves = obj::read_lines(name, &text, &files.limits())?;
-        return Ok(Track::Space { request: RibbonRequest::new(curves) });
+        let curves = obj::read_lines(name, &text, files.budget())?;
+        return Ok(Track::Space {
+            request: RibbonRequest { budget: files.budget().clone(), ..RibbonRequest::new(curves) },
+        });
     }
     let lines = svg::read_lines(&text, input.id.as_deref(), &options(input, files))?;
     context.warnings.extend(lines.warnings);
     let own = lines.page.unwrap_or_else(|| page_around(&lines.paths));
     let page = size.map_or(own, |size| size.on(&own).1);
-    Ok(Track::Plane { request: RibbonRequest::new(lines.paths), page })
+    Ok(Track::Plane {
+        request: RibbonRequest { budget: files.budget().clone(), ..RibbonRequest::new(lines.paths) },
+        page,
+    })
 }
 
 /// The cells of the canvas that must stay free, one for each pixel of the canvas. The files are embedded.
@@ -103,13 +108,13 @@ fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Resul
     if inputs.is_empty() {
         return Ok(None);
     }
-    let (files, limits) = (context.files, context.limits());
-    let [width, height] = resolution_of_canvas(context.output(), Some(page))?.pixels(page, &limits)?;
+    let (files, budget) = (context.files, context.budget());
+    let [width, height] = resolution_of_canvas(context.output(), Some(page))?.pixels(page, budget)?;
     let mut region = MaskRaster::empty(page.view, width, height);
     for input in inputs {
         let bytes = files.embed(input)?;
         if png::is_png(&bytes) {
-            region.add_picture(&image::read_image(input.name(), &bytes, &limits)?.0);
+            region.add_picture(&image::read_image(input.name(), &bytes, budget)?.0);
             continue;
         }
         let text = file::decode_text(input.name(), &bytes)?;

@@ -5,7 +5,7 @@ mod made;
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Bounds, Domain, Error, Exemplar, Limits, Request as EngineRequest, Result, StopReason, Watch,
+    Border, Bounds, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, StopReason, Watch,
 };
 use arabesque_patterns::Prepared as Engine;
 
@@ -30,8 +30,8 @@ pub(crate) struct Volume {
 pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Result<Volume> {
     let params = space.params.engine_params()?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
-    let limits = preparation.files.limits();
-    let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, &limits)? {
+    let budget = preparation.files.budget();
+    let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, budget)? {
         LoadedExemplar::Space(exemplar, warnings) => {
             preparation.warnings.extend(warnings);
             exemplar
@@ -46,7 +46,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     };
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
     let exemplar = Arc::new(exemplar);
-    let engine = Engine::new(Arc::clone(&exemplar), &params)?;
+    let engine = Engine::new(Arc::clone(&exemplar), &params, budget)?;
     Ok(Volume { exemplar, engine })
 }
 
@@ -60,13 +60,13 @@ impl Volume {
             return Err(Error::parameter("border", "turn", expected));
         }
         let bounds = space.cuboid.bounds();
-        check_volume(&self.exemplar, &bounds, &context.limits())?;
+        check_volume(&self.exemplar, &bounds, context.budget())?;
         let mut request = EngineRequest::new(Domain::Box(bounds));
         request.border = space.border.unwrap_or(Border::Clip);
         request.fields.scale = constant_factor("scale", space.scale.as_ref())?;
         request.fields.density = constant_factor("density", space.density.as_ref())?;
         request.seed = context.seed;
-        request.limits = context.limits();
+        request.budget = context.budget().clone();
         Ok(request)
     }
 }
@@ -94,14 +94,14 @@ impl Ready for Volume {
 }
 
 /// Refuses a box that is too large or too small for the pattern.
-fn check_volume(exemplar: &Exemplar<3>, bounds: &Bounds<3>, limits: &Limits) -> Result<()> {
+fn check_volume(exemplar: &Exemplar<3>, bounds: &Bounds<3>, budget: &Budget) -> Result<()> {
     let spacing = spacing(exemplar);
     let expected = bounds.measure() / spacing.powi(3);
-    if expected.is_nan() || expected > limits.output_elements as f64 {
+    if expected.is_nan() || expected > budget.limits().output_elements as f64 {
         return Err(Error::Limit {
             what: "size of the box".into(),
             found: format!("room for about {expected:.0} elements or cells"),
-            limit: limits.output_elements.to_string(),
+            limit: budget.limits().output_elements.to_string(),
             advice: "make it smaller; its sides are in the units of the exemplar".into(),
         });
     }

@@ -44,7 +44,7 @@ impl Inspect {
         let resources = Resources::default();
         let report = inspect(&Input::file(&self.file), self.method, &resources)?;
         if let Some((target, format)) = target {
-            target.write(&report.picture(format, &resources.limits)?).map_err(Failure::writing)?;
+            target.write(&report.picture(format, &resources.budget())?).map_err(Failure::writing)?;
         }
         if self.talk.json {
             summary::print(&report)?;

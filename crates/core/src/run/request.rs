@@ -1,9 +1,9 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
 use crate::{
+    budget::Budget,
     choices,
     field::Fields,
-    limits::Limits,
     region::{Domain, Outline},
     run::{Drawn, Placement},
     space::Bounds,
@@ -53,8 +53,8 @@ pub struct Request<const D: usize> {
     pub known: Option<Bounds<D>>,
     /// Seed of all random choices. Default 0.
     pub seed: u64,
-    /// Limits of what may come out.
-    pub limits: Limits,
+    /// What the run may use up.
+    pub budget: Budget,
 }
 
 impl<const D: usize> Request<D> {
@@ -69,7 +69,7 @@ impl<const D: usize> Request<D> {
             obstacles: Vec::new(),
             known: None,
             seed: 0,
-            limits: Limits::default(),
+            budget: Budget::default(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Pictures as fields: gray as a number, hue as a direction.
 
-use arabesque_core::{Bounds, Error, Grid, Limits, Matrix, OrientationField, Result, ScalarField, Vector};
+use arabesque_core::{Bounds, Budget, Error, Grid, Matrix, OrientationField, Result, ScalarField, Vector};
 
 use crate::raster::png::is_png;
 
@@ -23,9 +23,9 @@ impl Picture {
     /// parts show white.
     ///
     /// # Errors
-    /// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
-    pub fn read(name: &str, bytes: &[u8], limits: &Limits) -> Result<Self> {
-        let raw = decode(name, bytes, limits)?;
+    /// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`].
+    pub fn read(name: &str, bytes: &[u8], budget: &Budget) -> Result<Self> {
+        let raw = decode(name, bytes, budget)?;
         let pixels = colours(&raw.samples, raw.kind, raw.depth);
         Ok(Self { width: raw.width, height: raw.height, pixels })
     }
@@ -96,7 +96,7 @@ pub(crate) struct Raw {
 ///
 /// # Errors
 /// As [`Picture::read`].
-pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Raw> {
+pub(crate) fn decode(name: &str, bytes: &[u8], budget: &Budget) -> Result<Raw> {
     if !is_png(bytes) {
         let problem = format!("{} where a PNG picture was expected", kind_of(bytes));
         return Err(Error::input(name, problem, "save the picture as PNG"));
@@ -106,11 +106,11 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Raw> {
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(broken)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
-    if (width as u64).saturating_mul(height as u64) > limits.pixels {
+    if width.saturating_mul(height) > budget.limits().pixels {
         return Err(Error::Limit {
             what: format!("{name}: size of the picture"),
             found: format!("{width} x {height} pixels"),
-            limit: format!("{} pixels", limits.pixels),
+            limit: format!("{} pixels", budget.limits().pixels),
             advice: "scale the picture down; a few hundred pixels are enough".into(),
         });
     }
@@ -184,7 +184,7 @@ mod tests {
     }
 
     fn read(bytes: &[u8]) -> Result<Picture> {
-        Picture::read("p.png", bytes, &Limits::default())
+        Picture::read("p.png", bytes, &Budget::default())
     }
 
     fn unit_box() -> Bounds<2> {

@@ -1,6 +1,6 @@
 //! Pictures as they are: straight RGBA, from PNG or drawn from SVG.
 
-use arabesque_core::{Error, Image, Limits, Result};
+use arabesque_core::{Budget, Error, Image, Result};
 use resvg::{tiny_skia, usvg};
 
 use crate::raster::{field, png::straight, size::checked_size};
@@ -17,9 +17,9 @@ pub enum Alpha {
 /// Reads a PNG picture: gray, colour or palette, up to 16 bits per channel.
 ///
 /// # Errors
-/// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`Limits::pixels`].
-pub fn read_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<(Image, Alpha)> {
-    let raw = field::decode(name, bytes, limits)?;
+/// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`].
+pub fn read_image(name: &str, bytes: &[u8], budget: &Budget) -> Result<(Image, Alpha)> {
+    let raw = field::decode(name, bytes, budget)?;
     let alpha = match raw.kind {
         png::ColorType::Rgba | png::ColorType::GrayscaleAlpha => Alpha::Given,
         _ => Alpha::Missing,
@@ -44,13 +44,13 @@ pub fn read_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<(Image, A
 /// `units`.
 ///
 /// # Errors
-/// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`Limits::pixels`].
-pub fn draw_svg(name: &str, text: &str, (units, scale): ([f64; 2], f64), limits: &Limits) -> Result<Image> {
+/// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`].
+pub fn draw_svg(name: &str, text: &str, (units, scale): ([f64; 2], f64), budget: &Budget) -> Result<Image> {
     let fail = |problem: String| Error::input(name, problem, "open the file in a drawing program and save it again");
     let tree = usvg::Tree::from_str(text, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
     let [width, height] = units.map(|u| (u * scale).round().max(1.0));
     let advice = "make the page of the drawing less long and narrow";
-    let [columns, rows] = checked_size(&format!("{name}: size as a picture"), [width, height], limits, advice)?;
+    let [columns, rows] = checked_size(&format!("{name}: size as a picture"), [width, height], budget, advice)?;
     let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
     let size = [f64::from(tree.size().width()), f64::from(tree.size().height())];
     let stretch = tiny_skia::Transform::from_scale((width / size[0]) as f32, (height / size[1]) as f32);
@@ -81,10 +81,10 @@ mod tests {
             (C::Grayscale, D::One, &[0x80], [255; 4], Alpha::Missing),
             (C::Rgba, D::Sixteen, &[1, 99, 2, 99, 3, 99, 4, 99], [1, 2, 3, 4], Alpha::Given),
         ] {
-            let (image, found) = read_image("p.png", &encoded(kind, depth, data), &Limits::default()).unwrap();
+            let (image, found) = read_image("p.png", &encoded(kind, depth, data), &Budget::default()).unwrap();
             assert_eq!((image.pixels[0], found), (pixel, alpha));
         }
-        let error = read_image("p.png", b"GIF89a", &Limits::default()).unwrap_err().to_string();
+        let error = read_image("p.png", b"GIF89a", &Budget::default()).unwrap_err().to_string();
         assert!(error.contains("p.png: a GIF picture"), "{error}");
     }
 
@@ -92,9 +92,9 @@ mod tests {
     fn drawings_become_pictures() {
         let text =
             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 4 2'><rect width='2' height='2' fill='red'/></svg>";
-        let image = draw_svg("d.svg", text, ([4.0, 2.0], 3.0), &Limits::default()).unwrap();
+        let image = draw_svg("d.svg", text, ([4.0, 2.0], 3.0), &Budget::default()).unwrap();
         assert_eq!((image.width, image.height), (12, 6));
         assert_eq!((image.pixel(5, 5), image.pixel(6, 5)), ([255, 0, 0, 255], [0; 4]));
-        assert!(matches!(draw_svg("d", text, ([1e9, 1e9], 3.0), &Limits::default()), Err(Error::Limit { .. })));
+        assert!(matches!(draw_svg("d", text, ([1e9, 1e9], 3.0), &Budget::default()), Err(Error::Limit { .. })));
     }
 }

@@ -1,6 +1,6 @@
 //! PNG: pictures of results, with their resolution and their recipe.
 
-use arabesque_core::{Error, Image, Limits, Result};
+use arabesque_core::{Budget, Error, Image, Result};
 use resvg::{tiny_skia, usvg};
 
 use crate::{
@@ -45,9 +45,9 @@ pub struct RenderJob<'a> {
 /// picture of a seamless tile is exactly one period.
 ///
 /// # Errors
-/// [`Error::Limit`] when it would have more than [`Limits::pixels`] pixels, [`Error::Input`] when the text cannot be
+/// [`Error::Limit`] when it would have more than [`arabesque_core::Limits::pixels`] pixels, [`Error::Input`] when the text cannot be
 /// drawn.
-pub fn write_png(job: &RenderJob<'_>, limits: &Limits) -> Result<Vec<u8>> {
+pub fn write_png(job: &RenderJob<'_>, budget: &Budget) -> Result<Vec<u8>> {
     let fail = |problem: String| Error::input("drawing the result", problem, "write it as SVG instead");
     let tree = usvg::Tree::from_str(job.svg, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
     let page = [f64::from(tree.size().width()), f64::from(tree.size().height())];
@@ -59,7 +59,7 @@ pub fn write_png(job: &RenderJob<'_>, limits: &Limits) -> Result<Vec<u8>> {
     let side = |k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX);
     let (width, height) = (side(0), side(1));
     let advice = "ask for fewer pixels, or write SVG";
-    let [columns, rows] = checked_size("size of the picture", [width, height], limits, advice)?;
+    let [columns, rows] = checked_size("size of the picture", [width, height], budget, advice)?;
     let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
     let stretch = tiny_skia::Transform::from_scale((width / page[0]) as f32, (height / page[1]) as f32);
     resvg::render(&tree, stretch, &mut pixmap.as_mut());
@@ -127,7 +127,7 @@ mod tests {
 
     fn picture(resolution: Resolution) -> Result<Vec<u8>> {
         let job = RenderJob { svg: SQUARE, units: [20.0, 10.0], resolution, recipe: Some("ümlaut = 1\n") };
-        write_png(&job, &Limits::default())
+        write_png(&job, &Budget::default())
     }
 
     fn size(bytes: &[u8]) -> (u32, u32) {

@@ -1,6 +1,6 @@
 //! How an SVG file is to be read.
 
-use arabesque_core::Limits;
+use arabesque_core::Budget;
 
 /// What open strokes are taken for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Method {
 }
 
 /// How an SVG file is to be read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ReadOptions {
     /// Name of the file, for messages.
     pub name: String,
@@ -25,13 +25,13 @@ pub struct ReadOptions {
     /// Ids (or labels) of items that are not part of the drawing, because they only say where something is. Default:
     /// none.
     pub without: Vec<String>,
-    /// Upper bounds. Default: [`Limits::default`].
-    pub limits: Limits,
+    /// What reading may use up. Default: an account of its own with the usual limits.
+    pub budget: Budget,
 }
 
 impl ReadOptions {
     /// Default options for the file called `name` in messages.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), method: Method::default(), without: Vec::new(), limits: Limits::default() }
+        Self { name: name.into(), method: Method::default(), without: Vec::new(), budget: Budget::default() }
     }
 }

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Decimals, Error, Exemplar, Limits, Placement, Result, Vector};
+use arabesque_core::{Bounds, Budget, Decimals, Error, Exemplar, Placement, Result, Vector};
 
 /// Points of a file, by dimension.
 #[derive(Clone, Debug)]
@@ -32,14 +32,14 @@ const ONLY_CLASS: &str = "point";
 /// # Errors
 /// [`Error::Input`] with the line when a value is not a finite number within the limits, a column is missing or a line
 /// has the wrong number of fields; [`Error::Limit`] for too many points.
-pub fn read_points(name: &str, text: &str, limits: &Limits) -> Result<Points> {
+pub fn read_points(name: &str, text: &str, budget: &Budget) -> Result<Points> {
     let table = Table::new(name, text)?;
     let count = table.rows.len();
-    if count > limits.elements {
+    if count > budget.limits().elements {
         return Err(Error::Limit {
             what: format!("{name}: number of points"),
             found: count.to_string(),
-            limit: limits.elements.to_string(),
+            limit: budget.limits().elements.to_string(),
             advice: "keep a smaller part of the pattern as the exemplar".into(),
         });
     }
@@ -54,8 +54,8 @@ pub fn read_points(name: &str, text: &str, limits: &Limits) -> Result<Points> {
     let x = table.column("x").ok_or_else(|| missing("x"))?;
     let y = table.column("y").ok_or_else(|| missing("y"))?;
     match table.column("z") {
-        None => Ok(Points::Plane(exemplar(&table, [x, y], &class_of, &names, limits)?)),
-        Some(z) => Ok(Points::Space(exemplar(&table, [x, y, z], &class_of, &names, limits)?)),
+        None => Ok(Points::Plane(exemplar(&table, [x, y], &class_of, &names, budget)?)),
+        Some(z) => Ok(Points::Space(exemplar(&table, [x, y, z], &class_of, &names, budget)?)),
     }
 }
 
@@ -64,11 +64,11 @@ fn exemplar<const D: usize>(
     columns: [usize; D],
     class_of: &[usize],
     names: &[String],
-    limits: &Limits,
+    budget: &Budget,
 ) -> Result<Exemplar<D>> {
-    let points = table.points(columns, limits)?;
+    let points = table.points(columns, budget)?;
     let size = Bounds::around(points.iter().copied()).size();
-    if points.len() > 1 && size.0.iter().all(|s| *s < limits.extent) {
+    if points.len() > 1 && size.0.iter().all(|s| *s < budget.limits().extent) {
         return Err(Error::input(table.name, "all points lie at one place", "give points that are spread out"));
     }
     Exemplar::from_points(table.name, &points, class_of, names)
@@ -133,17 +133,18 @@ impl<'a> Table<'a> {
         (class_of.collect(), names)
     }
 
-    fn points<const D: usize>(&self, columns: [usize; D], limits: &Limits) -> Result<Vec<Vector<D>>> {
+    fn points<const D: usize>(&self, columns: [usize; D], budget: &Budget) -> Result<Vec<Vector<D>>> {
         let value = |line: usize, fields: &[String], k: usize| {
             let text = &fields[columns[k]];
             let place = || format!("{}: line {line}, column {}", self.name, self.header[columns[k]]);
             let v: f64 = text.parse().map_err(|_| {
                 Error::input(place(), format!("\"{text}\" is not a number"), "write numbers like 12.5 or 1.25e1")
             })?;
-            if v.is_finite() && v.abs() <= limits.coordinate {
+            if v.is_finite() && v.abs() <= budget.limits().coordinate {
                 return Ok(v);
             }
-            let expected = format!("{text} where a coordinate between -{0} and {0} was expected", limits.coordinate);
+            let expected =
+                format!("{text} where a coordinate between -{0} and {0} was expected", budget.limits().coordinate);
             Err(Error::input(place(), expected, "correct or remove the line"))
         };
         self.rows
@@ -318,7 +319,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Points> {
-        read_points("t.csv", text, &Limits::default())
+        read_points("t.csv", text, &Budget::default())
     }
 
     fn plane(text: &str) -> Exemplar<2> {
@@ -380,8 +381,8 @@ mod tests {
 
     #[test]
     fn too_many_points_are_a_limit() {
-        let limits = Limits { elements: 2, ..Limits::default() };
-        let err = read_points("t", "0,0\n1,0\n1,1\n", &limits).unwrap_err();
+        let budget = Budget::new(arabesque_core::Limits { elements: 2, ..Default::default() });
+        let err = read_points("t", "0,0\n1,0\n1,1\n", &budget).unwrap_err();
         assert!(matches!(err, Error::Limit { .. }));
     }
 

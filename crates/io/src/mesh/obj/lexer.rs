@@ -2,7 +2,7 @@
 //!
 //! Nothing here knows what is read of a file: polylines now, and whatever else refers to numbered vertices.
 
-use arabesque_core::{Error, Limits, Result, Vector};
+use arabesque_core::{Budget, Error, Result, Vector};
 
 use crate::table::csv;
 
@@ -38,7 +38,7 @@ fn is_box(comment: &str) -> bool {
 pub(crate) struct Lexer<'a> {
     /// Name of the file, for messages.
     pub(crate) name: &'a str,
-    pub(crate) limits: &'a Limits,
+    pub(crate) budget: &'a Budget,
     /// What to do about a file beyond a limit.
     pub(crate) advice: &'a str,
 }
@@ -51,7 +51,7 @@ impl Lexer<'_> {
 
     /// A coordinate within the limits.
     pub(crate) fn coordinate(&self, line: usize, word: &str) -> Result<f64> {
-        let most = self.limits.coordinate;
+        let most = self.budget.limits().coordinate;
         match word.parse::<f64>() {
             Ok(v) if v.is_finite() && v.abs() <= most => Ok(v),
             Ok(_) => {

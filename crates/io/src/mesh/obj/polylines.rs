@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Class, Contents, Curve, Error, Exemplar, Limits, Path, Result, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Class, Contents, Curve, Error, Exemplar, Path, Result, Vector, Warning};
 
 use crate::mesh::obj::lexer::{Lexer, logical_lines};
 
@@ -28,8 +28,8 @@ pub struct Net {
 /// [`Error::Input`] with the line: a coordinate that is not a finite number within the limits, a polyline to a vertex
 /// that does not exist, a broken box comment, no polyline at all, or curves that lie in one plane and no box;
 /// [`Error::Limit`] for too many vertices or lines.
-pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
-    let mut reader = Reader::new(name, limits);
+pub fn read_curves(name: &str, text: &str, budget: &Budget) -> Result<Net> {
+    let mut reader = Reader::new(name, budget);
     for (line, content) in logical_lines(text) {
         reader.statement(line, &content)?;
     }
@@ -41,8 +41,8 @@ pub fn read_curves(name: &str, text: &str, limits: &Limits) -> Result<Net> {
 ///
 /// # Errors
 /// As [`read_curves`], except for the box.
-pub fn read_lines(name: &str, text: &str, limits: &Limits) -> Result<Vec<(String, Path<3>)>> {
-    let mut reader = Reader::new(name, limits);
+pub fn read_lines(name: &str, text: &str, budget: &Budget) -> Result<Vec<(String, Path<3>)>> {
+    let mut reader = Reader::new(name, budget);
     for (line, content) in logical_lines(text) {
         reader.statement(line, &content)?;
     }
@@ -79,9 +79,9 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(name: &'a str, limits: &'a Limits) -> Self {
+    fn new(name: &'a str, budget: &'a Budget) -> Self {
         Self {
-            lexer: Lexer { name, limits, advice: "keep a smaller part of the network as the exemplar" },
+            lexer: Lexer { name, budget, advice: "keep a smaller part of the network as the exemplar" },
             vertices: Vec::new(),
             lines: Vec::new(),
             references: 0,
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
 
     fn vertex(&mut self, line: usize, words: &[&str]) -> Result<()> {
         let vertex = self.lexer.vertex(line, words)?;
-        self.lexer.check_limit("vertices", self.vertices.len() + 1, self.lexer.limits.nodes as usize)?;
+        self.lexer.check_limit("vertices", self.vertices.len() + 1, self.lexer.budget.limits().nodes)?;
         self.vertices.push(vertex);
         Ok(())
     }
@@ -124,8 +124,8 @@ impl<'a> Reader<'a> {
             return self.lexer.fail(line, problem, "write at least two, such as l 1 2");
         }
         self.references += words.len();
-        self.lexer.check_limit("line segments", self.references, self.lexer.limits.segments)?;
-        self.lexer.check_limit("lines", self.lines.len() + 1, self.lexer.limits.elements)?;
+        self.lexer.check_limit("line segments", self.references, self.lexer.budget.limits().segments)?;
+        self.lexer.check_limit("lines", self.lines.len() + 1, self.lexer.budget.limits().elements)?;
         let vertices =
             words.iter().map(|word| self.lexer.index(line, word, self.vertices.len())).collect::<Result<Vec<_>>>()?;
         let name = self.style.as_deref().unwrap_or(ONLY_STYLE);
@@ -184,7 +184,7 @@ impl<'a> Reader<'a> {
         let window = self.frame.unwrap_or(tight);
         let size = window.size();
         let largest = size.0.into_iter().fold(0.0, f64::max);
-        if size.0.iter().any(|s| *s <= 1e-9 * largest || *s < self.lexer.limits.extent) {
+        if size.0.iter().any(|s| *s <= 1e-9 * largest || *s < self.lexer.budget.limits().extent) {
             let advice = "add a comment line that says how thick the layer is, as # box x0 y0 z0 x1 y1 z1";
             return Err(Error::input(self.lexer.name, "the network lies in one plane, which fills no volume", advice));
         }
@@ -241,6 +241,8 @@ pub fn junctions(exemplar: &Exemplar<3>) -> usize {
 mod tests {
     use arabesque_core::{Drawn, Measured};
 
+    use arabesque_core::Limits;
+
     use super::*;
     use crate::mesh::obj::write::{Sheet, recipe_of, write_curves};
 
@@ -248,7 +250,7 @@ mod tests {
          1\r\nl 1 2 \\\r\n 3\r\ng strut\r\nl -1/4 1\r\nl 1 3\r\nf 1 2 3\r\nvn 0 0 1\r\n";
 
     fn read(text: &str) -> Result<Net> {
-        read_curves("t.obj", text, &Limits::default())
+        read_curves("t.obj", text, &Budget::default())
     }
 
     fn names(exemplar: &Exemplar<3>) -> Vec<&str> {
@@ -314,7 +316,7 @@ mod tests {
             Limits { segments: 3, ..Limits::default() },
             Limits { elements: 1, ..Limits::default() },
         ] {
-            assert!(matches!(read_curves("t", text, &limits), Err(Error::Limit { .. })));
+            assert!(matches!(read_curves("t", text, &Budget::new(limits)), Err(Error::Limit { .. })));
         }
     }
 

@@ -12,8 +12,8 @@ pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
     if text.trim().is_empty() {
         return Err(Error::input(name, "the file is empty, expected SVG", "choose another file"));
     }
-    if text.len() as u64 > limits.file_bytes {
-        return Err(too_much(format!("{name}: bytes"), text.len(), limits.file_bytes));
+    if text.len() > limits.file_bytes {
+        return Err(too_much(format!("{name}: bytes"), text.len(), limits.file_bytes as u64));
     }
     let deepest = depth(text);
     // XML outside of groups adds a few levels: the root, definitions, gradients and their stops.

@@ -294,6 +294,8 @@ fn parsed_transform(source: &Source<'_>, text: &str) -> Affine {
 
 #[cfg(test)]
 mod tests {
+    use arabesque_core::{Budget, Limits};
+
     use super::*;
     use crate::svg::{options::ReadOptions, parse::source::with_source};
 
@@ -370,7 +372,7 @@ mod tests {
         }
         svg += "</defs><use href='#u8'/></svg>";
         let mut options = ReadOptions::new("s.svg");
-        options.limits.nodes = 10_000;
+        options.budget = Budget::new(Limits { nodes: 10_000, ..Limits::default() });
         let read = with_source(&svg, &options, |source| build(source, Viewport { width: 1.0, height: 1.0 }));
         assert!(read.unwrap_err().to_string().contains("over the limit of 10000"));
     }

@@ -2,7 +2,7 @@
 
 use std::{cell::Cell, collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Error, Limits, Result};
+use arabesque_core::{Budget, Error, Limits, Result};
 use roxmltree::{Document, Node as Xml, NodeId, ParsingOptions};
 
 use crate::svg::{
@@ -15,11 +15,17 @@ use crate::svg::{
     },
 };
 
+/// Work units of reading one path segment.
+const SEGMENT: u64 = 100;
+/// Work units of reading one node.
+const NODE: u64 = 1000;
+
 /// A parsed file. A clone shares what was parsed, and goes on from the notes and counts so far by itself.
 #[derive(Clone)]
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) limits: &'a Limits,
+    pub(crate) budget: &'a Budget,
     pub(crate) text: &'a str,
     pub(crate) xml: &'a Document<'a>,
     pub(crate) sheet: StyleRules<'a>,
@@ -37,9 +43,14 @@ pub(crate) fn with_source<T>(
     options: &ReadOptions,
     work: impl FnOnce(&Source<'_>) -> Result<T>,
 ) -> Result<T> {
-    let (name, limits) = (options.name.as_str(), &options.limits);
+    let (name, limits) = (options.name.as_str(), options.budget.limits());
+    options.budget.check()?;
     guard::check(text, name, limits)?;
-    let parsing = ParsingOptions { allow_dtd: true, nodes_limit: limits.nodes, entity_resolver: None };
+    let parsing = ParsingOptions {
+        allow_dtd: true,
+        nodes_limit: u32::try_from(limits.nodes).unwrap_or(u32::MAX),
+        entity_resolver: None,
+    };
     let xml = Document::parse_with_options(text, parsing).map_err(|e| unreadable(name, limits, &e))?;
     if xml.root_element().tag_name().name() != "svg" {
         let found = xml.root_element().tag_name().name().to_owned();
@@ -49,6 +60,7 @@ pub(crate) fn with_source<T>(
     let source = Source {
         name,
         limits,
+        budget: &options.budget,
         text,
         xml: &xml,
         sheet: StyleRules::new(&css),
@@ -69,7 +81,7 @@ fn unreadable(name: &str, limits: &Limits, error: &roxmltree::Error) -> Error {
         return guard::too_much(
             format!("{name}: XML nodes"),
             format!("more than {}", limits.nodes),
-            limits.nodes.into(),
+            limits.nodes as u64,
         );
     }
     let place = format!("{name}:{}", error.pos());
@@ -155,17 +167,17 @@ impl<'a> Source<'a> {
         if total > self.limits.segments {
             return Err(guard::too_much(format!("{}: path segments", self.name), total, self.limits.segments as u64));
         }
-        Ok(())
+        self.budget.spend(SEGMENT * more as u64)
     }
 
     /// Counts one node of the drawing, `<use>` resolved, against the limit.
     pub(crate) fn count_node(&self) -> Result<()> {
         self.nodes.set(self.nodes.get() + 1);
-        if self.nodes.get() > self.limits.nodes as usize {
+        if self.nodes.get() > self.limits.nodes {
             let what = format!("{}: nodes after <use> is resolved", self.name);
-            return Err(guard::too_much(what, self.nodes.get(), self.limits.nodes.into()));
+            return Err(guard::too_much(what, self.nodes.get(), self.limits.nodes as u64));
         }
-        Ok(())
+        self.budget.spend(NODE)
     }
 }
 

@@ -104,7 +104,7 @@ pub(crate) fn by_id(source: &Source<'_>, root: &Rc<Node>, id: &str) -> Result<(A
 mod tests {
     use std::fmt::Debug;
 
-    use arabesque_core::{Outline, Vector};
+    use arabesque_core::{Budget, Limits, Outline, Vector};
 
     use super::*;
     use crate::svg::read::{
@@ -157,11 +157,11 @@ mod tests {
         let mut options = ReadOptions::new("d.svg");
         let alone = |limit: usize| {
             let mut options = ReadOptions::new("d.svg");
-            options.limits.segments = limit;
+            options.budget = Budget::new(Limits { segments: limit, ..Limits::default() });
             read_exemplar(TEXT, &options).is_ok()
         };
         let least = (1..1000).find(|&limit| alone(limit)).unwrap();
-        options.limits.segments = least;
+        options.budget = Budget::new(Limits { segments: least, ..Limits::default() });
         let read = Document::with(TEXT, &options, |document| {
             document.exemplar()?;
             document.painted_areas()?;

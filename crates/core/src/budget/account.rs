@@ -1,0 +1,327 @@
+//! What is left of the limits.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+use super::{Limits, Meter, Stopper};
+use crate::error::{Error, Result};
+
+/// Work units in one unit of [`Limits::work`].
+const MILLION: u64 = 1_000_000;
+
+/// The limits of one command, and what was drawn of them so far. Clones draw on the same account; the stage is a clone's own.
+///
+/// Every loop that input can lengthen draws on a budget: [`Budget::spend`] for work, [`Budget::hold`] for memory, [`Budget::within`] for
+/// what is counted once. Work is counted, never timed, so that a run ends at the same place on every machine and with any number of
+/// threads: whether a parallel step is over its budget depends on its sum alone, and a step that was cut short is given up as a whole.
+///
+/// ```
+/// use arabesque_core::{Budget, Limits};
+///
+/// let budget = Budget::new(Limits { work: 1, ..Limits::default() }).stage("counting");
+/// budget.spend(400_000)?;
+/// let error = budget.spend(700_000).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "counting: more than 1 million units of work is over the limit of 1; give it less to do, or raise the limit with --limit work=2"
+/// );
+/// # Ok::<(), arabesque_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Budget {
+    account: Arc<Account>,
+    stage: &'static str,
+}
+
+#[derive(Debug)]
+struct Account {
+    limits: Limits,
+    stopper: Stopper,
+    /// Requests to stop that came before this account was opened, and do not count for it.
+    heard: u32,
+    work: AtomicU64,
+    /// Work that may be done, in units.
+    allowed: AtomicU64,
+    memory: AtomicU64,
+    /// For tests: the check that asks to stop, and how many there were.
+    stop_at: Option<u64>,
+    checks: AtomicU64,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self::new(Limits::default())
+    }
+}
+
+impl Budget {
+    /// An account of which nothing is drawn, and which nobody asks to stop.
+    pub fn new(limits: Limits) -> Self {
+        Self::with_stopper(limits, Stopper::default())
+    }
+
+    /// An account that ends early when `stopper` asks from now on. Earlier requests do not count: the best so far of a run that was
+    /// stopped is drawn on a fresh account.
+    pub fn with_stopper(limits: Limits, stopper: Stopper) -> Self {
+        let heard = stopper.asked();
+        Self::open(limits, stopper, heard, None)
+    }
+
+    /// An account that asks to stop by itself at the `n`-th check, counted from 1: for tests of what stopping leaves behind. Checks of
+    /// one parallel step may come in any order; which step the `n`-th one falls into does not depend on it.
+    pub fn stopping_at(limits: Limits, n: u64) -> Self {
+        Self::open(limits, Stopper::default(), 0, Some(n))
+    }
+
+    fn open(limits: Limits, stopper: Stopper, heard: u32, stop_at: Option<u64>) -> Self {
+        let account = Account {
+            limits,
+            stopper,
+            heard,
+            work: AtomicU64::new(0),
+            allowed: AtomicU64::new((limits.work as u64).saturating_mul(MILLION)),
+            memory: AtomicU64::new(0),
+            stop_at,
+            checks: AtomicU64::new(0),
+        };
+        Self { account: Arc::new(account), stage: "" }
+    }
+
+    /// A fresh account with the same limits, for another part of the same command that has its own share, or for what is still to be
+    /// done with the best so far. Requests to stop that were made before it was opened do not count for it.
+    #[must_use]
+    pub fn fresh(&self) -> Self {
+        Self { stage: self.stage, ..Self::with_stopper(self.account.limits, self.account.stopper.clone()) }
+    }
+
+    /// The same account, with a name for what is being done: what errors begin with.
+    #[must_use]
+    pub fn stage(&self, stage: &'static str) -> Self {
+        Self { account: Arc::clone(&self.account), stage }
+    }
+
+    /// The limits.
+    pub fn limits(&self) -> &Limits {
+        &self.account.limits
+    }
+
+    /// Asks for everything that draws on this account to stop.
+    pub fn stopper(&self) -> &Stopper {
+        &self.account.stopper
+    }
+
+    /// Work done so far, in units.
+    pub fn work(&self) -> u64 {
+        self.account.work.load(Ordering::Relaxed)
+    }
+
+    /// Checks made so far; counted on accounts of [`Budget::stopping_at`] alone.
+    pub fn checks(&self) -> u64 {
+        self.account.checks.load(Ordering::Relaxed)
+    }
+
+    /// Allows the work that `elements` more elements of the result may take.
+    pub fn allow_elements(&self, elements: f64) {
+        let each = (self.account.limits.work_per_element as u64).saturating_mul(MILLION) as f64;
+        // A float too large for the integer becomes its largest value.
+        let more = (elements.max(0.0) * each) as u64;
+        let add = |allowed: u64| Some(allowed.saturating_add(more));
+        // The closure never declines.
+        let _ = self.account.allowed.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add);
+    }
+
+    /// Whether somebody asked to stop.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when somebody did.
+    pub fn check(&self) -> Result<()> {
+        let account = &*self.account;
+        let hook = account.stop_at.is_some_and(|n| account.checks.fetch_add(1, Ordering::Relaxed) + 1 >= n);
+        if hook || account.stopper.hint() > account.heard {
+            return Err(Error::Stopped { stage: self.stage_name().to_owned(), cause: account.stopper.cause() });
+        }
+        Ok(())
+    }
+
+    /// Counts work, in units of about a nanosecond, and checks as [`Budget::check`] does. A step of a loop that calls it should not take
+    /// longer than a millisecond.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when somebody asked to stop, [`Error::Limit`] when the work is used up.
+    pub fn spend(&self, units: u64) -> Result<()> {
+        let account = &*self.account;
+        let done = account.work.fetch_add(units, Ordering::Relaxed).saturating_add(units);
+        if done > account.allowed.load(Ordering::Relaxed) {
+            return Err(self.overworked());
+        }
+        self.check()
+    }
+
+    /// Whether `units` more of work would still be within the limit; nothing is drawn.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub fn foresee(&self, units: u64) -> Result<()> {
+        let account = &*self.account;
+        if self.work().saturating_add(units) > account.allowed.load(Ordering::Relaxed) {
+            return Err(self.overworked());
+        }
+        self.check()
+    }
+
+    /// A meter for the small steps of a tight loop.
+    pub fn meter(&self) -> Meter<'_> {
+        Meter::new(self)
+    }
+
+    /// Memory that is in use as long as the answer lives.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when more than [`Limits::memory`] would be in use.
+    pub fn hold(&self, what: &str, bytes: usize) -> Result<Held> {
+        let account = &self.account;
+        let held = account.memory.fetch_add(bytes as u64, Ordering::Relaxed).saturating_add(bytes as u64);
+        let guard = Held { account: Arc::clone(account), bytes: bytes as u64 };
+        if held <= account.limits.memory as u64 {
+            return Ok(guard);
+        }
+        Err(self.over(what, format!("{held} bytes of memory"), ("memory", account.limits.memory), held))
+    }
+
+    /// A list with room for `count` items, its memory held; an allocation that fails is an error.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when more than [`Limits::memory`] would be in use, or when there is no such memory.
+    pub fn list<T>(&self, what: &str, count: usize) -> Result<(Vec<T>, Held)> {
+        let bytes = count.saturating_mul(size_of::<T>());
+        let held = self.hold(what, bytes)?;
+        let mut list = Vec::new();
+        match list.try_reserve_exact(count) {
+            Ok(()) => Ok((list, held)),
+            Err(_) => Err(Error::Limit {
+                what: self.named(what),
+                found: format!("{bytes} bytes of memory"),
+                limit: "what this machine has".into(),
+                advice: "make the input smaller, or use a machine with more memory".into(),
+            }),
+        }
+    }
+
+    /// Refuses a count over one of the limits; `limit` is its name.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when `found` is larger.
+    pub fn within(&self, what: &str, found: usize, limit: (&'static str, usize)) -> Result<()> {
+        if found <= limit.1 {
+            return Ok(());
+        }
+        Err(self.over(what, found.to_string(), limit, found as u64))
+    }
+
+    fn over(&self, what: &str, found: String, (name, limit): (&str, usize), enough: u64) -> Error {
+        Error::Limit {
+            what: self.named(what),
+            found,
+            limit: limit.to_string(),
+            advice: format!("make it smaller, or raise the limit with --limit {name}={enough}"),
+        }
+    }
+
+    fn overworked(&self) -> Error {
+        // How much more there was depends on the threads: it is not told.
+        let limit = self.account.allowed.load(Ordering::Relaxed) / MILLION;
+        let work = self.account.limits.work;
+        Error::Limit {
+            what: self.stage_name().to_owned(),
+            found: format!("more than {limit} million units of work"),
+            limit: limit.to_string(),
+            advice: format!("give it less to do, or raise the limit with --limit work={}", work.saturating_mul(2)),
+        }
+    }
+
+    fn stage_name(&self) -> &'static str {
+        if self.stage.is_empty() { "the work" } else { self.stage }
+    }
+
+    fn named(&self, what: &str) -> String {
+        if self.stage.is_empty() { what.to_owned() } else { format!("{}: {what}", self.stage) }
+    }
+}
+
+/// Memory that is accounted for until this is dropped.
+#[derive(Debug)]
+pub struct Held {
+    account: Arc<Account>,
+    bytes: u64,
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.account.memory.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::budget::Cause;
+
+    #[test]
+    fn work_is_one_account_for_all_clones() {
+        let budget = Budget::new(Limits { work: 1, work_per_element: 1, ..Limits::default() });
+        budget.stage("a").spend(600_000).unwrap();
+        assert!(matches!(budget.stage("b").foresee(600_000), Err(Error::Limit { what, .. }) if what == "b"));
+        budget.allow_elements(1.0);
+        budget.spend(600_000).unwrap();
+        assert_eq!(budget.work(), 1_200_000);
+        assert_eq!(budget.fresh().work(), 0);
+    }
+
+    #[test]
+    fn meters_pay_all_they_owe() {
+        let budget = Budget::default();
+        let mut meter = budget.meter();
+        (0..100_000).try_for_each(|_| meter.spend(3)).unwrap();
+        drop(meter);
+        assert_eq!(budget.work(), 300_000);
+    }
+
+    #[test]
+    fn memory_is_given_back() {
+        let budget = Budget::new(Limits { memory: 1 << 20, ..Limits::default() });
+        let first = budget.list::<u8>("a list", 1 << 20).unwrap();
+        assert!(budget.hold("another", 1).unwrap_err().to_string().contains("--limit memory=1048577"));
+        drop(first);
+        assert!(budget.list::<u8>("another", 1 << 20).is_ok());
+        assert!(budget.list::<u64>("another", usize::MAX).is_err());
+    }
+
+    #[test]
+    fn a_request_to_stop_counts_for_accounts_that_were_open() {
+        let budget = Budget::default();
+        budget.stopper().stop(Cause::Time);
+        assert!(matches!(budget.check(), Err(Error::Stopped { cause: Cause::Time, .. })));
+        let fresh = budget.fresh();
+        fresh.check().unwrap();
+        budget.stopper().stop(Cause::Asked);
+        assert!(matches!(fresh.check(), Err(Error::Stopped { cause: Cause::Asked, .. })));
+    }
+
+    #[test]
+    fn the_hook_stops_at_its_check_and_after() {
+        let budget = Budget::stopping_at(Limits::default(), 3);
+        assert_eq!([(); 4].map(|()| budget.check().is_ok()), [true, true, false, false]);
+        assert_eq!(budget.checks(), 4);
+    }
+
+    #[test]
+    fn counts_over_a_limit_name_it() {
+        let error = Budget::default().stage("reading").within("leaves.svg: nodes", 9, ("nodes", 8)).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "reading: leaves.svg: nodes: 9 is over the limit of 8; make it smaller, or raise the limit with --limit nodes=9"
+        );
+    }
+}

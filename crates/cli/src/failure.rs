@@ -14,7 +14,8 @@ pub(crate) const USAGE: u8 = 2;
 pub(crate) const BAD_INPUT: u8 = 3;
 /// The constraints exclude every result.
 pub(crate) const NO_RESULT: u8 = 4;
-/// Stopped by Ctrl-C.
+/// Stopped by Ctrl-C, where signals have no numbers.
+#[cfg(not(unix))]
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Why the program ends early, and with which exit code.
@@ -33,6 +34,16 @@ impl Failure {
     /// A result could not be written.
     pub(crate) fn writing(error: Error) -> Self {
         Self { code: FAILURE, cause: anyhow::Error::new(error).context("cannot write the result") }
+    }
+
+    /// A failure with an exit code of its own.
+    pub(crate) fn with(code: u8, message: &str) -> Self {
+        Self { code, cause: anyhow::Error::msg(message.to_owned()) }
+    }
+
+    /// The same failure with its reason.
+    pub(crate) fn because(self, reason: &'static str) -> Self {
+        Self { cause: self.cause.context(reason), ..self }
     }
 
     /// The same failure under another exit code.
@@ -80,7 +91,7 @@ impl From<Error> for Failure {
         let code = match &error {
             Error::Parameter { .. } => USAGE,
             Error::Input { .. } | Error::Limit { .. } | Error::Unsupported { .. } | Error::Io { .. } => BAD_INPUT,
-            Error::NoResult { .. } => NO_RESULT,
+            Error::NoResult { .. } | Error::Stopped { .. } => NO_RESULT,
             _ => FAILURE,
         };
         Self { code, cause: anyhow::Error::new(error) }

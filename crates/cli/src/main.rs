@@ -2,19 +2,27 @@
 
 mod app;
 mod commands;
-mod control;
 mod duration;
 mod failure;
+mod limits;
+mod memory;
+mod pair;
 mod produce;
 mod progress;
 mod say;
+mod sentinel;
+mod signals;
 mod summary;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
+#[global_allocator]
+static ALLOCATOR: memory::Counting = memory::Counting;
+
 fn main() -> ExitCode {
+    sentinel::began();
     let app = app::App::parse();
     match app.execute() {
         Ok(code) => code,

@@ -3,17 +3,19 @@
 use std::{path::Path, process::ExitCode, time::Duration};
 
 use arabesque::{
-    Artwork, EnergyPoint, Format, OutputOptions, Prepared, Recipe, Resources, StopReason, Summary, Warning, in_pool,
-    io::file,
+    Artwork, Cause, EnergyPoint, Error, Format, OutputOptions, Prepared, Recipe, Resources, StopReason, Stopper,
+    Summary, Warning, in_pool, io::file,
 };
 use clap::Args;
 
 use crate::{
-    control::{self, Deadline, is_interrupted},
     duration,
-    failure::{Failure, INTERRUPTED},
+    failure::Failure,
+    limits::LimitOptions,
+    memory,
     progress::Watch,
     say::{self, Level},
+    sentinel::{self, Orders, Phase},
     summary::{self, Output, Outputs},
 };
 
@@ -26,7 +28,7 @@ pub(crate) struct RunOptions {
     /// Make N results with the seeds SEED, SEED+1, ...; OUT gets -1, -2, ... before its extension
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(crate) variations: Option<u32>,
-    /// Stop each run after this time and write the best so far: seconds, or 1m30s
+    /// Stop this long after the start of the command and write the best so far: seconds, or 1m30s
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub(crate) time_limit: Option<Duration>,
     /// File format, where the extension of OUT does not say: svg, png, json, csv, obj, glb or toml (the recipe alone)
@@ -35,6 +37,8 @@ pub(crate) struct RunOptions {
     /// Leave the recipe out of the result, which then cannot be repeated by `arabesque run`
     #[arg(long)]
     pub(crate) no_recipe: bool,
+    #[command(flatten)]
+    pub(crate) limit: LimitOptions,
     #[command(flatten)]
     pub(crate) talk: TalkOptions,
 }
@@ -78,14 +82,28 @@ pub(crate) fn produce(
     options: &RunOptions,
 ) -> Result<ExitCode, Failure> {
     let result = check(&mut recipe, path, options).and_then(|plans| {
-        control::listen();
-        in_pool(options.threads, || make_all(&recipe, base, plans, options))?
+        let resources = resources(base, path, options)?;
+        in_pool(options.threads, || make_all(&recipe, &resources, plans, options))?
     });
     match &result {
         Err(failure) if options.talk.json && path != file::STANDARD => summary::print_failure(failure),
         _ => {}
     }
     result
+}
+
+/// Where files are and how much may be used up; from here on the program can be stopped.
+fn resources(base: Option<&Path>, path: &str, options: &RunOptions) -> Result<Resources, Failure> {
+    let (limits, stopper) = (options.limit.limits()?, Stopper::default());
+    let orders = Orders {
+        time_limit: options.time_limit,
+        limits,
+        json: options.talk.json,
+        piped: path == file::STANDARD,
+        quiet: options.talk.level() == Level::Quiet,
+    };
+    sentinel::watch(orders, stopper.clone())?;
+    Ok(Resources { base: base.map(Path::to_path_buf), limits, stopper, ..Resources::default() })
 }
 
 /// Settles the format and makes sure that every file can be written, before any work is done.
@@ -127,24 +145,29 @@ fn variation(path: &str, number: u64) -> String {
     path.with_file_name(name).to_string_lossy().into_owned()
 }
 
-fn make_all(recipe: &Recipe, base: Option<&Path>, plans: Vec<Plan>, options: &RunOptions) -> Result<ExitCode, Failure> {
+fn make_all(
+    recipe: &Recipe,
+    resources: &Resources,
+    plans: Vec<Plan>,
+    options: &RunOptions,
+) -> Result<ExitCode, Failure> {
     let level = options.talk.level();
-    let prepared = recipe.prepare(&base.map_or_else(Resources::default, Resources::beside))?;
+    let prepared = recipe.prepare(resources)?;
     if level == Level::Verbose {
         say::note(&prepared.understood());
     }
-    let run = Run { prepared: &prepared, output: &recipe.output, level, time_limit: options.time_limit };
+    let run = Run { prepared: &prepared, output: &recipe.output, level };
     let mut outputs = Vec::new();
     for plan in &plans {
         outputs.push(run.make(plan)?);
-        if is_interrupted() {
+        if sentinel::signal().is_some() || sentinel::is_late() {
             break;
         }
     }
     if options.talk.json {
         summary::print(&Outputs { version: env!("CARGO_PKG_VERSION"), outputs })?;
     }
-    Ok(if is_interrupted() { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+    Ok(sentinel::signal().map_or(ExitCode::SUCCESS, ExitCode::from))
 }
 
 /// What all files of a command have in common.
@@ -152,17 +175,17 @@ struct Run<'a> {
     prepared: &'a Prepared,
     output: &'a OutputOptions,
     level: Level,
-    time_limit: Option<Duration>,
 }
 
 impl Run<'_> {
     /// Makes one file and writes it.
     fn make(&self, plan: &Plan) -> Result<Output, Failure> {
-        let mut watch = Watch::new(self.level, Deadline::after(self.time_limit));
+        sentinel::enter(Phase::Reading);
+        let mut watch = Watch::new(self.level);
         let ran = self.run(plan.seed, &mut watch);
         watch.finish();
-        let interrupted = |failure: Failure| if is_interrupted() { failure.with_code(INTERRUPTED) } else { failure };
-        let (artwork, bytes, warnings) = ran.map_err(|e| interrupted(e.into()))?;
+        let (artwork, bytes, warnings) = ran.map_err(stopped)?;
+        sentinel::enter(Phase::Writing);
         plan.target.write(&bytes).map_err(Failure::writing)?;
         let made = self.describe(&artwork, plan, warnings, watch.elapsed());
         tell(&made, artwork.energy(), self.level);
@@ -172,6 +195,7 @@ impl Run<'_> {
     /// An artwork, its file, and what the user should know of both.
     fn run(&self, seed: u64, watch: &mut Watch) -> arabesque::Result<(Artwork, Vec<u8>, Vec<Warning>)> {
         let artwork = self.prepared.run(&self.prepared.request().with_seed(seed), watch)?;
+        sentinel::enter(Phase::Encoding);
         watch.finish();
         let encoded = artwork.encode(self.output)?;
         let warnings = artwork.warnings().iter().cloned().chain(encoded.warnings).collect();
@@ -186,12 +210,24 @@ impl Run<'_> {
             made: artwork.summary(),
             stopped: match artwork.stopped() {
                 StopReason::Finished => "finished",
-                StopReason::Stopped if is_interrupted() => "interrupted",
+                StopReason::Stopped if sentinel::signal().is_some() => "interrupted",
                 StopReason::Stopped => "time limit",
             },
             seconds: elapsed.as_secs_f64(),
+            memory: memory::peak(),
             warnings,
         }
+    }
+}
+
+/// A failure, which a signal explains better.
+fn stopped(error: Error) -> Failure {
+    let late = matches!(error, Error::Stopped { cause: Cause::Time, .. });
+    let failure = Failure::from(error);
+    match sentinel::signal() {
+        Some(code) => failure.with_code(code),
+        None if late => failure.because("the time was up before there was anything to write; give it more time"),
+        None => failure,
     }
 }
 

@@ -1,6 +1,7 @@
-//! The progress bar, and the reasons to stop.
+//! The progress bar.
 
 use std::{
+    borrow::Cow,
     ops::ControlFlow,
     time::{Duration, Instant},
 };
@@ -9,8 +10,8 @@ use arabesque::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::{
-    control::{Deadline, is_interrupted},
     say::{self, Level},
+    sentinel::{self, Phase},
 };
 
 /// Steps of the bar.
@@ -20,12 +21,13 @@ const STEPS: u64 = 1000;
 pub(crate) struct Watch {
     bar: ProgressBar,
     started: Instant,
-    deadline: Deadline,
+    /// The last stage that was told, where stages are told.
+    told: Option<Cow<'static, str>>,
 }
 
 impl Watch {
     /// Shows a bar when standard error is a terminal and the user wants to hear something.
-    pub(crate) fn new(level: Level, deadline: Deadline) -> Self {
+    pub(crate) fn new(level: Level) -> Self {
         let bar = if level > Level::Quiet && say::is_terminal() {
             ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr_with_hz(10))
         } else {
@@ -34,12 +36,20 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template(&format!("{} {{percent:>3}}% {{msg}}", say::bar_style())) {
             bar.set_style(style);
         }
-        Self { bar, started: Instant::now(), deadline }
+        Self { bar, started: Instant::now(), told: (level == Level::Verbose).then_some(Cow::Borrowed("")) }
     }
 
     /// Takes the bar off the screen.
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// Says which stage begins, to who wants to know.
+    fn tell(&mut self, progress: &Progress) {
+        let Some(told) = self.told.as_mut().filter(|told| **told != progress.stage) else { return };
+        told.clone_from(&progress.stage);
+        let stage = progress.stage.as_ref();
+        self.bar.suspend(|| say::note(stage));
     }
 
     pub(crate) fn elapsed(&self) -> Duration {
@@ -49,11 +59,17 @@ impl Watch {
 
 impl<P> arabesque::Watch<P> for Watch {
     fn step(&mut self, progress: &Progress, _: &dyn Fn() -> P) -> ControlFlow<()> {
+        sentinel::enter(Phase::Running);
+        self.tell(progress);
         if !self.bar.is_hidden() {
             self.bar.set_position((progress.fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
             self.bar.set_message(describe(progress, self.started.elapsed()));
         }
-        if is_interrupted() || self.deadline.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if sentinel::signal().is_some() || sentinel::is_late() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 }
 

@@ -38,6 +38,16 @@ fn line(label: &str, code: &str, message: &str) {
     let _ = writeln!(std::io::stderr().lock(), "arabesque: {label}{message}");
 }
 
+/// Tells why the program ends, past whoever else may be writing just now.
+pub(crate) fn last_words(message: &str) {
+    let clear = if is_terminal() { "\r\x1b[K" } else { "" };
+    let text = format!("{clear}arabesque: error: {message}\n");
+    #[cfg(unix)]
+    let _ = rustix::io::write(rustix::stdio::stderr(), text.as_bytes());
+    #[cfg(not(unix))]
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
 pub(crate) fn error(message: &str) {
     line("error: ", "31", message);
 }

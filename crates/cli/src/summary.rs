@@ -22,9 +22,11 @@ pub(crate) struct Output {
     pub(crate) seed: u64,
     #[serde(flatten)]
     pub(crate) made: Summary,
-    /// `finished`, `interrupted` or `time limit`.
+    /// `finished`, `interrupted`, `time limit` or `limit`.
     pub(crate) stopped: &'static str,
     pub(crate) seconds: f64,
+    /// Bytes that were in use at most, by everything so far.
+    pub(crate) memory: usize,
     pub(crate) warnings: Vec<Warning>,
 }
 

@@ -296,8 +296,12 @@ fn a_file_can_be_a_whole_job() {
 #[test]
 fn a_time_limit_is_told() {
     let folder = Folder::new();
-    // Too short for any machine: the run stops at its first report.
-    let output = folder.ok("fill points.csv --size 8x8 --time-limit 0.000001s -o a.csv");
+    // Too short for any machine: there is nothing to be written.
+    let message = folder.fails(4, "fill points.csv --size 8x8 --time-limit 0.000001s -o a.csv");
+    assert!(message.contains("the time was up"), "{message}");
+    assert!(!folder.names().contains(&"a.csv".to_owned()));
+    // Too long for none: an hour's work on any machine.
+    let output = folder.ok("fill points.csv --size 25x25 --iterations 1000 --time-limit 2s -o a.csv");
     assert!(stderr(&output).contains("stopped early (time limit)"), "{}", stderr(&output));
     assert!(folder.text("a.csv").lines().count() > 2);
 }

@@ -66,7 +66,7 @@ fn long_run(folder: &Folder, more: &str) -> (Child, BufReader<ChildStderr>) {
         .unwrap();
     let mut told = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
-    while !line.contains("exemplar:") {
+    while !line.contains("level 1") {
         line.clear();
         assert!(told.read_line(&mut line).unwrap() > 0, "the run ended before it began");
     }

@@ -14,6 +14,7 @@ use clap::{
 
 use crate::{
     failure::Failure,
+    pair::pair,
     produce::{RunOptions, produce},
 };
 
@@ -132,13 +133,6 @@ struct Writing {
 pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     let known = T::CHOICES.iter().map(|(name, help)| PossibleValue::new(*name).help(help.trim_end_matches('.')));
     PossibleValuesParser::new(known).try_map(|text| text.parse::<T>())
-}
-
-pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
-        _ => Err("expected NAME=VALUE, such as levels=2".to_owned()),
-    }
 }
 
 /// The parameters that `--set` knows, for the long help.

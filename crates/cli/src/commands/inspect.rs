@@ -2,14 +2,16 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{Format, Input, Method, Report, Resources, inspect, io::file};
+use arabesque::{Format, Input, Limits, Method, Report, Resources, Stopper, inspect, io::file};
 use clap::Args;
 
 use super::fill::choice;
 use crate::{
     failure::Failure,
+    limits::LimitOptions,
     produce::TalkOptions,
     say::{self, Level},
+    sentinel::{self, Orders, Phase},
     summary,
 };
 
@@ -25,6 +27,8 @@ pub(crate) struct Inspect {
     #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
     method: Method,
     #[command(flatten)]
+    limit: LimitOptions,
+    #[command(flatten)]
     talk: TalkOptions,
 }
 
@@ -39,12 +43,26 @@ impl Inspect {
         result
     }
 
+    fn orders(&self, limits: Limits) -> Orders {
+        Orders {
+            time_limit: None,
+            limits,
+            json: self.talk.json,
+            piped: self.output.as_deref() == Some(file::STANDARD),
+            quiet: self.talk.level() == Level::Quiet,
+        }
+    }
+
     fn inspect(&self) -> Result<ExitCode, Failure> {
+        let (limits, stopper) = (self.limit.limits()?, Stopper::default());
         let target = self.output.as_deref().map(target).transpose()?;
-        let resources = Resources::default();
+        sentinel::watch(self.orders(limits), stopper.clone())?;
+        let resources = Resources { limits, stopper, ..Resources::default() };
         let report = inspect(&Input::file(&self.file), self.method, &resources)?;
         if let Some((target, format)) = target {
-            target.write(&report.picture(format, &resources.budget())?).map_err(Failure::writing)?;
+            let picture = report.picture(format, &resources.budget())?;
+            sentinel::enter(Phase::Writing);
+            target.write(&picture).map_err(Failure::writing)?;
         }
         if self.talk.json {
             summary::print(&report)?;

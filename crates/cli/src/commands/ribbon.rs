@@ -95,7 +95,7 @@ struct Pattern {
     #[arg(long, value_name = "N")]
     coarse: Option<usize>,
     /// Set one parameter by its name (listed under --help); may be given several times
-    #[arg(long, value_name = "NAME=VALUE", value_parser = super::fill::pair)]
+    #[arg(long, value_name = "NAME=VALUE", value_parser = crate::pair::pair)]
     set: Vec<(String, String)>,
 }
 

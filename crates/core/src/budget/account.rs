@@ -5,11 +5,13 @@ use std::sync::{
     atomic::{AtomicU64, Ordering},
 };
 
-use super::{Limits, Meter, Stopper};
+use super::{Limits, Stopper};
 use crate::error::{Error, Result};
 
 /// Work units in one unit of [`Limits::work`].
 const MILLION: u64 = 1_000_000;
+/// Work units after which a meter pays.
+const INSTALMENT: u64 = 1 << 14;
 
 /// The limits of one command, and what was drawn of them so far. Clones draw on the same account; the stage is a clone's own.
 ///
@@ -247,6 +249,36 @@ impl Budget {
 
     fn named(&self, what: &str) -> String {
         if self.stage.is_empty() { what.to_owned() } else { format!("{}: {what}", self.stage) }
+    }
+}
+
+/// Collects the work of a tight loop on one thread, and pays it in instalments.
+#[derive(Debug)]
+pub struct Meter<'a> {
+    budget: &'a Budget,
+    owed: u64,
+}
+
+impl<'a> Meter<'a> {
+    /// A meter that owes nothing.
+    fn new(budget: &'a Budget) -> Self {
+        Self { budget, owed: 0 }
+    }
+
+    /// Counts some work, and pays when enough has come together.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub fn spend(&mut self, units: u64) -> Result<()> {
+        self.owed = self.owed.saturating_add(units);
+        if self.owed < INSTALMENT { Ok(()) } else { self.budget.spend(std::mem::take(&mut self.owed)) }
+    }
+}
+
+impl Drop for Meter<'_> {
+    fn drop(&mut self) {
+        // What is left is counted; whoever draws next is told.
+        let _ = self.budget.spend(std::mem::take(&mut self.owed));
     }
 }
 

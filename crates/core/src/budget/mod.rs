@@ -2,10 +2,8 @@
 
 mod account;
 mod limits;
-mod meter;
 mod stop;
 
-pub use account::{Budget, Held};
+pub use account::{Budget, Held, Meter};
 pub use limits::Limits;
-pub use meter::Meter;
 pub use stop::{Cause, Stopper};

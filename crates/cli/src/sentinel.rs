@@ -1,0 +1,201 @@
+//! What ends the program early: signals, the time limit, a reader that went away, and the limit of memory.
+//!
+//! A thread of its own keeps watch, so that everything is heard at once, whatever the others are doing. While a run is going on, it asks
+//! the run to stop, and the best so far is written. While something is read or encoded there is nothing to be saved: it ends the program.
+
+use std::{
+    process,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, AtomicU8, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use arabesque::{Cause, Limits, Stopper};
+
+use crate::{
+    failure::{BAD_INPUT, FAILURE, Failure, NO_RESULT},
+    memory, say,
+    signals::Signals,
+    summary,
+};
+
+/// How often the sentinel looks around.
+const TICK: Duration = Duration::from_millis(10);
+
+/// When the command began.
+static BEGAN: OnceLock<Instant> = OnceLock::new();
+/// Exit code of the first signal; 0 before there was one.
+static SIGNAL: AtomicU8 = AtomicU8::new(0);
+/// Whether the time is up.
+static TIME: AtomicBool = AtomicBool::new(false);
+static PHASE: AtomicU8 = AtomicU8::new(Phase::Reading as u8);
+
+/// What the program is doing, as far as stopping is concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Phase {
+    /// Files are read and analysed: there is nothing yet.
+    Reading = 0,
+    /// A method is at work: it is asked to stop, and gives the best so far.
+    Running = 1,
+    /// A result becomes a file in memory.
+    Encoding = 2,
+    /// The file is written, which takes no time worth interrupting.
+    Writing = 3,
+}
+
+impl Phase {
+    fn now() -> Self {
+        match PHASE.load(Ordering::SeqCst) {
+            1 => Self::Running,
+            2 => Self::Encoding,
+            3 => Self::Writing,
+            _ => Self::Reading,
+        }
+    }
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Reading => "the exemplar and what goes with it were read and analysed",
+            Self::Running => "the pattern was made",
+            Self::Encoding => "the result was encoded",
+            Self::Writing => "the result was written",
+        }
+    }
+}
+
+/// What the sentinel minds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Orders {
+    /// Time that the command may take.
+    pub(crate) time_limit: Option<Duration>,
+    pub(crate) limits: Limits,
+    /// Whether a summary goes to standard output.
+    pub(crate) json: bool,
+    /// Whether standard output is where the result goes.
+    pub(crate) piped: bool,
+    /// Whether people want to be told.
+    pub(crate) quiet: bool,
+}
+
+/// When the command began: the first call.
+pub(crate) fn began() -> Instant {
+    *BEGAN.get_or_init(Instant::now)
+}
+
+/// Says what the program is doing from here on.
+pub(crate) fn enter(phase: Phase) {
+    PHASE.store(phase as u8, Ordering::SeqCst);
+}
+
+/// Exit code of the signal that asked to stop, if there was one.
+pub(crate) fn signal() -> Option<u8> {
+    Some(SIGNAL.load(Ordering::SeqCst)).filter(|code| *code > 0)
+}
+
+/// Whether the time is up.
+pub(crate) fn is_late() -> bool {
+    TIME.load(Ordering::SeqCst)
+}
+
+/// Starts the watch.
+///
+/// # Errors
+/// When the system gives no thread.
+pub(crate) fn watch(orders: Orders, stopper: Stopper) -> Result<(), Failure> {
+    let signals = Signals::listen();
+    let watch = move || {
+        memory::limit(orders.limits.memory);
+        let mut sentinel = Sentinel { orders, stopper, signals };
+        loop {
+            sentinel.look();
+            thread::sleep(TICK);
+        }
+    };
+    thread::Builder::new().name("sentinel".into()).spawn(watch)?;
+    Ok(())
+}
+
+struct Sentinel {
+    orders: Orders,
+    stopper: Stopper,
+    signals: Signals,
+}
+
+impl Sentinel {
+    fn look(&mut self) {
+        if memory::is_exhausted() {
+            self.no_memory();
+        }
+        let came: Vec<u8> = self.signals.pending().collect();
+        for code in came {
+            self.on_signal(code);
+        }
+        let late = self.orders.time_limit.is_some_and(|limit| began().elapsed() >= limit);
+        if late && !TIME.swap(true, Ordering::SeqCst) {
+            self.on_time();
+        }
+        if (self.orders.piped || self.orders.json) && is_reader_gone() {
+            self.leave(FAILURE, "standard output: whoever reads it went away; nothing more was written");
+        }
+    }
+
+    fn on_signal(&self, code: u8) {
+        if let Some(first) = signal() {
+            self.leave(first, "stopped at once, as asked a second time; nothing more was written");
+        }
+        SIGNAL.store(code, Ordering::SeqCst);
+        self.stopper.stop(Cause::Asked);
+        match Phase::now() {
+            phase @ (Phase::Reading | Phase::Encoding) => {
+                self.leave(code, &format!("stopped while {}; nothing more was written", phase.in_words()));
+            }
+            Phase::Running if !self.orders.quiet => say::note("stopping with the best so far; once more ends at once"),
+            Phase::Running | Phase::Writing => {}
+        }
+    }
+
+    fn on_time(&self) {
+        if Phase::now() == Phase::Reading {
+            let what = Phase::Reading.in_words();
+            self.leave(NO_RESULT, &format!("the time was up while {what}; nothing was written; give it more time"));
+        }
+        self.stopper.stop(Cause::Time);
+    }
+
+    fn no_memory(&self) -> ! {
+        let limit = self.orders.limits.memory;
+        let advice =
+            format!("make the input or the result smaller, or raise the limit with --limit memory={}", 2 * limit);
+        let what = Phase::now().in_words();
+        self.leave(BAD_INPUT, &format!("more than {limit} bytes of memory were asked for while {what}; {advice}"));
+    }
+
+    /// Tells why, and ends the program.
+    fn leave(&self, code: u8, message: &str) -> ! {
+        say::last_words(message);
+        if self.orders.json && !is_reader_gone() {
+            summary::print_failure(&Failure::with(code, message));
+        }
+        process::exit(i32::from(code));
+    }
+}
+
+/// Whether standard output is a pipe that nobody reads any more.
+#[cfg(unix)]
+fn is_reader_gone() -> bool {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    let out = std::io::stdout();
+    let mut polled = [PollFd::new(&out, PollFlags::empty())];
+    let ready = poll(&mut polled, Some(&Timespec { tv_sec: 0, tv_nsec: 0 }));
+    ready.is_ok_and(|n| n > 0) && polled[0].revents().intersects(PollFlags::ERR | PollFlags::HUP)
+}
+
+#[cfg(not(unix))]
+fn is_reader_gone() -> bool {
+    // The write itself fails there.
+    false
+}

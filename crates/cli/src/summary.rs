@@ -5,7 +5,7 @@ use std::io::Write;
 use arabesque::{Summary, Warning};
 use serde::Serialize;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, memory};
 
 /// What a command made.
 #[derive(Debug, Serialize)]
@@ -41,7 +41,7 @@ pub(crate) fn print(value: &impl Serialize) -> Result<(), Failure> {
 
 /// Tells a machine about a failure, where it asked for JSON.
 pub(crate) fn print_failure(failure: &Failure) {
-    let value = serde_json::json!({ "error": { "code": failure.code(), "message": failure.message() } });
+    let value = serde_json::json!({ "error": { "code": failure.code(), "message": failure.message(), "memory": memory::peak() } });
     // The failure itself is reported in any case.
     let _ = print(&value);
 }

@@ -58,7 +58,7 @@ fn take(
     let fail = |source| Error::Io { path: name.to_owned(), source };
     let budget = budget.stage("reading");
     let most = budget.limits().file_bytes as u64;
-    let (mut bytes, _held) = budget.list(name, expected.min(most) as usize + 1)?;
+    let (mut bytes, _held) = budget.list(name, (expected.min(most) + CHUNK) as usize)?;
     loop {
         budget.check()?;
         if !wait().map_err(fail)? {

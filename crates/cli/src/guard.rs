@@ -23,12 +23,14 @@ pub(crate) struct WriteOptions {
 #[derive(Debug, Default)]
 pub(crate) struct Guard {
     inputs: Vec<(String, Identity)>,
+    /// An input that is not there.
+    missing: Option<arabesque::Error>,
     force: bool,
 }
 
 impl Guard {
     pub(crate) fn new(options: WriteOptions) -> Self {
-        Self { inputs: Vec::new(), force: options.force }
+        Self { inputs: Vec::new(), missing: None, force: options.force }
     }
 
     /// Adds a file, by what it is read for.
@@ -38,21 +40,25 @@ impl Guard {
         self
     }
 
-    /// Adds every file that a recipe reads, or was written from.
+    /// Adds every file that a recipe reads, or was written from. One that is not there is told once the outputs are known to be in
+    /// order; of the exemplar the run itself says it, after what is wrong with the parameters.
     pub(crate) fn with_inputs(mut self, recipe: &Recipe, resources: &Resources) -> Self {
-        for (role, input) in recipe.inputs() {
-            if let Some(path) = resources.file_of(input) {
-                self = self.with_input(role, &path.to_string_lossy());
+        for (k, (role, input)) in recipe.inputs().into_iter().enumerate() {
+            match resources.file_of(role, input) {
+                Ok(Some(path)) => self = self.with_input(role, &path.to_string_lossy()),
+                Err(error) if k > 0 && self.missing.is_none() => self.missing = Some(error),
+                Ok(None) | Err(_) => {}
             }
         }
         self
     }
 
     /// Makes sure that a file can be written at each of `paths`, and that nothing is lost by it.
-    pub(crate) fn targets(&self, paths: &[String]) -> Result<Vec<Target>, Failure> {
+    pub(crate) fn targets(self, paths: &[String]) -> Result<Vec<Target>, Failure> {
         let targets = Target::all(paths).map_err(Failure::writing)?;
         let pairs = paths.iter().zip(targets);
-        pairs.map(|(path, target)| self.check(path, target)).collect()
+        let checked = pairs.map(|(path, target)| self.check(path, target)).collect::<Result<_, _>>()?;
+        self.missing.map_or(Ok(checked), |error| Err(error.into()))
     }
 
     /// The same for one file.
@@ -70,11 +76,11 @@ impl Guard {
                     Some(_) => "name another file, or give --force, which keeps a copy of it as NAME.orig",
                     None => "name another file",
                 };
-                Err(refusal(path, &format!("it is the file of {input}; {advice}")))
+                Err(refusal(path, &format!("it is an input as well ({input}); {advice}")))
             }
             (None, Some(existing)) if !self.force && !may_replace(existing) => Err(refusal(
                 path,
-                "it exists, and carries nothing that says that arabesque made it; name another file, or give --force to replace it",
+                "there is a file already, and nothing in it says that arabesque made it; name another file, or give --force to replace it",
             )),
             (None, _) => Ok(target),
         }

@@ -66,16 +66,19 @@ impl Resources {
         self.read(input).map_err(|error| in_role(role, error))
     }
 
-    /// The file that [`Resources::read`] reads; of an input whose content the recipe holds, the file that it comes from, as far as it is
-    /// still there under its name. `-` is standard input.
-    pub fn file_of(&self, input: &Input) -> Option<PathBuf> {
+    /// The file that [`Resources::read_as`] reads; of an input whose content the recipe holds, the file that it comes from, as far as it
+    /// is still there under its name; `None` for what is in memory alone. `-` is standard input.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the role when there is no such file.
+    pub fn file_of(&self, role: &str, input: &Input) -> Result<Option<PathBuf>> {
         if self.inputs.contains_key(&input.path) {
-            return None;
+            return Ok(None);
         }
         if input.content.is_some() {
-            return self.search(input).named();
+            return Ok(self.search(input).named());
         }
-        self.find(input).ok().map(|found| found.path)
+        self.find(input).map(|found| Some(found.path)).map_err(|error| in_role(role, error))
     }
 
     fn search<'a>(&'a self, input: &'a Input) -> Search<'a> {

@@ -45,19 +45,19 @@ impl Files {
     /// What the caller opened, such as standard input, is read once.
     pub(crate) fn read(&self, input: &Input) -> Result<Arc<[u8]>> {
         if input.content.is_some() || !file::is_stream(&input.path) {
-            return self.from_resources(input);
+            return self.read_anew(input);
         }
         let known = self.read.lock().unwrap_or_else(PoisonError::into_inner).get(&input.path).cloned();
         if let Some(bytes) = known {
             input.check(&bytes)?;
             return Ok(bytes);
         }
-        let bytes = self.from_resources(input)?;
+        let bytes = self.read_anew(input)?;
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(input.path.clone(), Arc::clone(&bytes));
         Ok(bytes)
     }
 
-    fn from_resources(&self, input: &Input) -> Result<Arc<[u8]>> {
+    fn read_anew(&self, input: &Input) -> Result<Arc<[u8]>> {
         match self.roles.get(&input.path) {
             Some(role) => self.resources.read_as(role, input),
             None => self.resources.read(input),

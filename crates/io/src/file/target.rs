@@ -98,7 +98,7 @@ impl Target {
         let (real, kind) = resolved(path).map_err(fail)?;
         let target = Self::at(real, kind);
         if let Some(path) = target.replaced() {
-            Part::create(path, true).map_err(fail)?;
+            Part::create(path, true).map_err(|e| fail(beside(e)))?;
         }
         Ok(target)
     }
@@ -189,6 +189,16 @@ impl Target {
         let _ = fs::File::open(part::folder(&self.path)).and_then(|folder| folder.sync_all());
         Ok(copy)
     }
+}
+
+/// What the system says of a temporary file, for those who know of none.
+fn beside(source: io::Error) -> io::Error {
+    if source.kind() != ErrorKind::PermissionDenied {
+        return source;
+    }
+    let text =
+        format!("{source}; name a place in a folder that you may write to: a result is written beside its place first");
+    io::Error::new(ErrorKind::PermissionDenied, text)
 }
 
 /// Refuses names that no file can have.

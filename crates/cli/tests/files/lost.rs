@@ -1,10 +1,6 @@
 //! No file is lost: outputs that are inputs, files of others, places that a recipe names.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
-
-mod common;
-
-use common::{Folder, stderr};
+use crate::common::{self, Folder, stderr};
 
 /// A folder with inputs of every role, small enough for all of them to be run.
 fn workshop() -> Folder {

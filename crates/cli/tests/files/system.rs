@@ -1,10 +1,5 @@
 //! Links, pipes, devices, rights and room: what a file system has in store.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
-
-mod common;
-
 use std::{
     fs,
     io::{self, Write},
@@ -15,7 +10,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use common::{Folder, stderr};
+use crate::common::{self, Folder, stderr};
 
 /// Says why a test does not test everything here.
 fn skipped(reason: &str) {

@@ -179,7 +179,9 @@ impl Target {
         watch(Step::Synced)?;
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Stamp::of(&self.path);
-        let is_foreign = now.as_ref().is_some_and(|stamp| stamp.0 > 0) && now != *seen;
+        let is_changed = now.as_ref().is_some_and(|stamp| stamp.0 > 0) && now != *seen;
+        // Two runs of the same command at once write the same.
+        let is_foreign = is_changed && !holds(&self.path, bytes);
         let copy = if now.is_some() && (self.keeps_copy || is_foreign) { Some(copy::keep(&self.path)?) } else { None };
         watch(Step::Kept)?;
         part.rename(&self.path)?;
@@ -199,6 +201,12 @@ fn beside(source: io::Error) -> io::Error {
     let text =
         format!("{source}; name a place in a folder that you may write to: a result is written beside its place first");
     io::Error::new(ErrorKind::PermissionDenied, text)
+}
+
+/// Whether the file has exactly this content.
+fn holds(path: &Path, bytes: &[u8]) -> bool {
+    let is_as_long = fs::symlink_metadata(path).is_ok_and(|m| m.is_file() && m.len() == bytes.len() as u64);
+    is_as_long && fs::read(path).is_ok_and(|there| there == bytes)
 }
 
 /// Refuses names that no file can have.
@@ -304,6 +312,8 @@ mod tests {
         let path = folder.path().join("out.txt");
         let copy = |k: &str| folder.path().join(format!("out.txt.orig{k}"));
         let target = Target::new(path.to_str().unwrap()).unwrap();
+        fs::write(&path, "the same").unwrap();
+        assert_eq!(target.write(b"the same").unwrap(), None);
         fs::write(&path, "saved by somebody else").unwrap();
         assert_eq!(target.write(b"new").unwrap().unwrap().file_name(), copy("").file_name());
         assert_eq!(fs::read_to_string(copy("")).unwrap(), "saved by somebody else");

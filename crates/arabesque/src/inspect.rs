@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
-    recipe::{Format, Input, Method},
+    recipe::{Format, Input, Method, NO_RECIPE},
     resources::Resources,
     spacing::{length, spacing},
 };
@@ -189,7 +189,7 @@ impl Report {
             Format::Svg => Ok(svg.into_bytes()),
             Format::Png => {
                 let units = drawing.page.view.size().0;
-                let job = RenderJob { svg: &svg, units, resolution: Resolution::default(), recipe: None };
+                let job = RenderJob { svg: &svg, units, resolution: Resolution::default(), recipe: Some(NO_RECIPE) };
                 write_png(&job, budget)
             }
             Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Toml => {

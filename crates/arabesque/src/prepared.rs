@@ -61,7 +61,7 @@ impl Recipe {
     /// # Errors
     /// Whatever the files or the parameters are wrong with; the message names the file or the parameter.
     pub fn prepare(&self, resources: &Resources) -> Result<Prepared> {
-        let files = Files::new(resources.clone());
+        let files = Files::new(resources.clone(), self);
         let mut preparation = Preparation {
             files: &files,
             exemplar: self.exemplar.clone(),

@@ -23,22 +23,38 @@ pub(crate) const INTERRUPTED: u8 = 130;
 pub(crate) struct Failure {
     code: u8,
     cause: anyhow::Error,
+    /// Whether it is about a text for people, of which they may read as much as they like.
+    is_of_text: bool,
 }
 
 impl Failure {
     /// The command line contradicts itself.
     pub(crate) fn usage(message: impl Into<String>) -> Self {
-        Self { code: USAGE, cause: anyhow::Error::msg(message.into()) }
+        Self::of(USAGE, anyhow::Error::msg(message.into()))
     }
 
     /// A result could not be written.
     pub(crate) fn writing(error: Error) -> Self {
-        Self { code: FAILURE, cause: anyhow::Error::new(error).context("cannot write the result") }
+        Self::of(FAILURE, anyhow::Error::new(error).context("cannot write the result"))
+    }
+
+    /// A summary for machines could not be written.
+    pub(crate) fn summary(error: io::Error) -> Self {
+        Self::of(FAILURE, anyhow::Error::new(error).context("cannot write the summary: standard output"))
+    }
+
+    /// Something would be lost.
+    pub(crate) fn refused(message: impl Into<String>) -> Self {
+        Self::of(FAILURE, anyhow::Error::msg(message.into()))
+    }
+
+    fn of(code: u8, cause: anyhow::Error) -> Self {
+        Self { code, cause, is_of_text: false }
     }
 
     /// A failure with an exit code of its own.
     pub(crate) fn with(code: u8, message: &str) -> Self {
-        Self { code, cause: anyhow::Error::msg(message.to_owned()) }
+        Self::of(code, anyhow::Error::msg(message.to_owned()))
     }
 
     /// The same failure with its reason.
@@ -55,10 +71,10 @@ impl Failure {
         self.code
     }
 
-    /// Whether whoever reads our output has gone away, which is no failure of ours.
-    fn is_broken_pipe(&self) -> bool {
+    /// Whether whoever read a text has seen enough of it, which is no failure. A result that was not read to its end is one.
+    fn is_read_enough(&self) -> bool {
         let system = |e: &io::Error| e.kind() == io::ErrorKind::BrokenPipe;
-        self.cause.chain().any(|c| c.downcast_ref::<io::Error>().is_some_and(system))
+        self.is_of_text && self.cause.chain().any(|c| c.downcast_ref::<io::Error>().is_some_and(system))
     }
 
     /// The chain of causes on one line.
@@ -78,7 +94,7 @@ impl Failure {
 
     /// Tells the user and gives the exit code.
     pub(crate) fn report(&self) -> ExitCode {
-        if self.is_broken_pipe() {
+        if self.is_read_enough() {
             return ExitCode::SUCCESS;
         }
         say::error(&self.message());
@@ -94,13 +110,14 @@ impl From<Error> for Failure {
             Error::NoResult { .. } | Error::Stopped { .. } => NO_RESULT,
             _ => FAILURE,
         };
-        Self { code, cause: anyhow::Error::new(error) }
+        Self::of(code, anyhow::Error::new(error))
     }
 }
 
 impl From<io::Error> for Failure {
+    /// A text for people could not be written to standard output.
     fn from(error: io::Error) -> Self {
-        Self { code: FAILURE, cause: anyhow::Error::new(error).context("standard output") }
+        Self { is_of_text: true, ..Self::of(FAILURE, anyhow::Error::new(error).context("standard output")) }
     }
 }
 
@@ -124,8 +141,11 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_pipe_is_no_failure() {
-        let failure = Failure::from(io::Error::from(io::ErrorKind::BrokenPipe));
-        assert_eq!(failure.report(), ExitCode::SUCCESS);
+    fn texts_may_be_cut_and_results_may_not() {
+        let broken = || io::Error::from(io::ErrorKind::BrokenPipe);
+        assert_eq!(Failure::from(broken()).report(), ExitCode::SUCCESS);
+        assert_eq!(Failure::summary(broken()).report(), ExitCode::from(FAILURE));
+        let result = Failure::writing(Error::Io { path: "standard output".into(), source: broken() });
+        assert_eq!(result.report(), ExitCode::from(FAILURE));
     }
 }

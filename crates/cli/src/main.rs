@@ -4,6 +4,7 @@ mod app;
 mod commands;
 mod duration;
 mod failure;
+mod guard;
 mod limits;
 mod memory;
 mod pair;
@@ -12,6 +13,7 @@ mod progress;
 mod say;
 mod sentinel;
 mod signals;
+mod standard;
 mod summary;
 
 use std::process::ExitCode;

@@ -11,6 +11,7 @@ use clap::Args;
 use crate::{
     duration,
     failure::Failure,
+    guard::{Guard, RecipeFile, WriteOptions},
     limits::LimitOptions,
     memory,
     progress::Watch,
@@ -37,6 +38,8 @@ pub(crate) struct RunOptions {
     /// Leave the recipe out of the result, which then cannot be repeated by `arabesque run`
     #[arg(long)]
     pub(crate) no_recipe: bool,
+    #[command(flatten)]
+    pub(crate) write: WriteOptions,
     #[command(flatten)]
     pub(crate) limit: LimitOptions,
     #[command(flatten)]
@@ -74,14 +77,16 @@ struct Plan {
     target: file::Target,
 }
 
-/// Runs `recipe`, whose files lie beside `base`, and writes the result to `path`.
+/// Runs `recipe`, whose files lie beside the file that it was read from, and writes the result to `path`.
 pub(crate) fn produce(
     mut recipe: Recipe,
-    base: Option<&Path>,
+    from: Option<RecipeFile<'_>>,
     path: &str,
     options: &RunOptions,
 ) -> Result<ExitCode, Failure> {
-    let result = check(&mut recipe, path, options).and_then(|plans| {
+    let path = if file::is_standard_output(path) { file::STANDARD } else { path };
+    let base = from.as_ref().map(RecipeFile::folder);
+    let result = check(&mut recipe, from, path, options).and_then(|plans| {
         let resources = resources(base, path, options)?;
         in_pool(options.threads, || make_all(&recipe, &resources, plans, options))?
     });
@@ -107,7 +112,12 @@ fn resources(base: Option<&Path>, path: &str, options: &RunOptions) -> Result<Re
 }
 
 /// Settles the format and makes sure that every file can be written, before any work is done.
-fn check(recipe: &mut Recipe, path: &str, options: &RunOptions) -> Result<Vec<Plan>, Failure> {
+fn check(
+    recipe: &mut Recipe,
+    from: Option<RecipeFile<'_>>,
+    path: &str,
+    options: &RunOptions,
+) -> Result<Vec<Plan>, Failure> {
     let standard = path == file::STANDARD;
     if standard && options.talk.json {
         return Err(Failure::usage("--json and -o - both write to standard output; give a file for one of them"));
@@ -119,19 +129,24 @@ fn check(recipe: &mut Recipe, path: &str, options: &RunOptions) -> Result<Vec<Pl
     let format = options.format.or(by_name).or(recipe.output.format).unwrap_or_else(|| recipe.usual_format());
     recipe.output.format = Some(format);
     recipe.output.bare |= options.no_recipe;
-    let numbered = |n: u64| match options.variations {
-        Some(_) => variation(path, n),
-        None => path.to_owned(),
+    let seeds: Vec<u64> = (0..u64::from(options.variations.unwrap_or(1)))
+        .map(|k| recipe.seed.checked_add(k).ok_or_else(|| Failure::usage("the seed is too large")))
+        .collect::<Result<_, _>>()?;
+    let paths: Vec<String> = match options.variations {
+        // An empty name is told as such.
+        Some(count) if !path.is_empty() => (1..=u64::from(count)).map(|n| variation(path, n)).collect(),
+        _ => vec![path.to_owned()],
     };
-    let count = u64::from(options.variations.unwrap_or(1));
-    (0..count)
-        .map(|k| {
-            let path = numbered(k + 1);
-            let target = file::Target::new(&path).map_err(Failure::writing)?;
-            let seed = recipe.seed.checked_add(k).ok_or_else(|| Failure::usage("the seed is too large"))?;
-            Ok(Plan { path, seed, target })
-        })
-        .collect()
+    let targets = guard(recipe, from, options.write).targets(&paths)?;
+    let plans = paths.into_iter().zip(seeds).zip(targets);
+    Ok(plans.map(|((path, seed), target)| Plan { path, seed, target }).collect())
+}
+
+/// What must not be written over.
+fn guard(recipe: &Recipe, from: Option<RecipeFile<'_>>, options: WriteOptions) -> Guard {
+    let resources = from.map_or_else(Resources::default, |from| Resources::beside(from.folder()));
+    let guard = Guard::new(options).with_inputs(recipe, &resources);
+    from.into_iter().fold(guard, |guard, from| guard.with_input("recipe", from.0))
 }
 
 /// `out.svg` as `out-3.svg`.
@@ -186,9 +201,12 @@ impl Run<'_> {
         watch.finish();
         let (artwork, bytes, warnings) = ran.map_err(stopped)?;
         sentinel::enter(Phase::Writing);
-        plan.target.write(&bytes).map_err(Failure::writing)?;
+        let copy = plan.target.write(&bytes).map_err(Failure::writing)?;
         let made = self.describe(&artwork, plan, warnings, watch.elapsed());
         tell(&made, artwork.energy(), self.level);
+        if let Some(copy) = copy.filter(|_| self.level > Level::Quiet) {
+            say::note(&format!("{}: what was there before is kept as {}", plan.path, copy.display()));
+        }
         Ok(made)
     }
 

@@ -5,7 +5,7 @@ use std::io::Write;
 use arabesque::{Summary, Warning};
 use serde::Serialize;
 
-use crate::{failure::Failure, memory};
+use crate::{failure::Failure, memory, standard};
 
 /// What a command made.
 #[derive(Debug, Serialize)]
@@ -32,11 +32,9 @@ pub(crate) struct Output {
 
 /// Writes `value` to standard output as JSON.
 pub(crate) fn print(value: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(std::io::Error::from)?;
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{text}")?;
-    out.flush()?;
-    Ok(())
+    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::summary(e.into()))?;
+    let written = standard::output().and_then(|mut out| writeln!(out, "{text}").and_then(|()| out.flush()));
+    written.map_err(Failure::summary)
 }
 
 /// Tells a machine about a failure, where it asked for JSON.

@@ -77,7 +77,7 @@ fn a_recipe_by_hand_is_short_and_relative_to_itself() {
     folder.ok("run sub/job.toml");
     folder.ok("fill leaves.svg --size 80x80 --seed 8 --set levels=2 -o a.svg");
     let without_name = |name: &str| folder.text(name).replace("mine.svg", "leaves.svg");
-    assert_eq!(without_name("made.svg"), without_name("a.svg"));
+    assert_eq!(without_name("sub/made.svg"), without_name("a.svg"));
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn the_summary_is_one_json_object() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_failure() {
+fn a_reader_that_goes_away_before_the_end_is_told() {
     let folder = Folder::new();
     let mut child = folder
         .command("fill leaves.svg --size 400x400 --iterations 0 -o -")
@@ -97,6 +97,6 @@ fn a_reader_that_goes_away_is_no_failure() {
     child.stdout.take().unwrap().read_exact(&mut first).unwrap();
     let mut said = String::new();
     child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(0), "{said}");
-    assert!(!said.contains("error"), "{said}");
+    assert_eq!(child.wait().unwrap().code(), Some(1), "{said}");
+    assert!(said.contains("standard output: the reader has gone away"), "{said}");
 }

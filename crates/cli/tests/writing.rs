@@ -27,18 +27,21 @@ fn a_place_that_cannot_be_written_is_noticed_first() {
 fn a_failed_run_leaves_the_old_result() {
     let folder = Folder::new();
     folder.write("out.svg", "precious");
-    folder.fails(4, "fill leaves.svg --size 1x1 -o out.svg");
-    folder.fails(3, "fill ring.csv --size 80x80 -o out.svg");
+    folder.fails(1, "fill leaves.svg --size 80x80 -o out.svg");
+    folder.fails(4, "fill leaves.svg --size 1x1 --force -o out.svg");
+    folder.fails(3, "fill ring.csv --size 80x80 --force -o out.svg");
     assert_eq!(folder.text("out.svg"), "precious");
-    folder.ok("fill leaves.svg --size 80x80 -o out.svg");
+    folder.ok("fill leaves.svg --size 80x80 --force -o out.svg");
     assert!(folder.text("out.svg").starts_with("<?xml"));
     assert!(folder.names().iter().all(|n| !n.ends_with(".part")));
 }
 
 #[test]
-fn the_exemplar_may_be_replaced_by_its_result() {
+fn the_exemplar_may_be_replaced_by_its_result_where_that_is_meant() {
     let folder = Folder::new();
-    folder.ok("fill leaves.svg --size 80x80 -o leaves.svg");
+    let before = folder.read("leaves.svg");
+    folder.ok("fill leaves.svg --size 80x80 -o leaves.svg --force");
+    assert!(folder.read("leaves.svg.orig") == before);
     folder.ok("run leaves.svg -o again.svg");
     assert!(folder.read("leaves.svg") == folder.read("again.svg"));
 }
@@ -49,7 +52,7 @@ fn links_and_devices_keep_what_they_are() {
     let folder = Folder::new();
     folder.write("real.svg", "old");
     std::os::unix::fs::symlink("real.svg", folder.path("link.svg")).unwrap();
-    folder.ok("fill leaves.svg --size 80x80 -o link.svg");
+    folder.ok("fill leaves.svg --size 80x80 --force -o link.svg");
     assert!(folder.path("link.svg").is_symlink());
     assert!(folder.text("real.svg").starts_with("<?xml"));
     folder.ok("fill leaves.svg --size 80x80 --format svg -o /dev/null");

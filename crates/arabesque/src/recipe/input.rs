@@ -137,26 +137,30 @@ impl Input {
 
     /// Refuses content that is not the one that the fingerprint was taken of.
     pub(crate) fn check(&self, bytes: &[u8]) -> Result<()> {
-        match &self.hash {
-            Some(hash) if *hash != fingerprint(bytes) => Err(Error::input(
-                self.name(),
-                "the file has changed since the recipe was written",
-                "restore it, or remove the line `hash` from the recipe",
-            )),
-            _ => Ok(()),
+        let Some(wanted) = &self.hash else { return Ok(()) };
+        let found = fingerprint(bytes);
+        if *wanted == found {
+            return Ok(());
         }
+        Err(Error::input(
+            self.name(),
+            format!(
+                "the file has changed since the recipe was written: its digest is {found}, and {wanted} was expected"
+            ),
+            "restore it, or remove the line `hash` from the recipe",
+        ))
     }
 
     /// The name for messages.
     pub fn name(&self) -> &str {
-        if self.path == file::STANDARD { "standard input" } else { &self.path }
+        if file::is_standard_input(&self.path) { "standard input" } else { &self.path }
     }
 
     /// This input as a recipe carries it: with its fingerprint, and with its content where that is small or cannot be read twice.
     #[must_use]
     pub fn embedding(&self, bytes: &[u8]) -> Self {
         let mut kept = Self { hash: Some(fingerprint(bytes)), content: None, encoding: None, ..self.clone() };
-        if bytes.len() > EMBEDDED_BYTES && self.path != file::STANDARD {
+        if bytes.len() > EMBEDDED_BYTES && !file::is_stream(&self.path) {
             return kept;
         }
         match std::str::from_utf8(bytes) {

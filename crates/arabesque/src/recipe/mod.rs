@@ -15,7 +15,7 @@ mod region;
 mod size;
 mod version;
 
-pub use embedded::recipe_in;
+pub use embedded::{Carrier, carried_recipe, is_result, recipe_in};
 pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
@@ -24,6 +24,7 @@ pub use output::OutputOptions;
 pub use region::Region;
 pub use size::{Cuboid, Size};
 
+pub(crate) use embedded::NO_RECIPE;
 pub(crate) use input::encode;
 pub(crate) use size::pixels_per_user;
 
@@ -148,6 +149,11 @@ impl Recipe {
     pub fn to_toml(&self) -> Result<String> {
         toml::to_string_pretty(self)
             .map_err(|e| Error::input("recipe", e.to_string(), "use a seed below 9223372036854775808"))
+    }
+
+    /// Every file that the recipe reads, with what it is read for: `exemplar`, or the option that wants it.
+    pub fn inputs(&self) -> Vec<(&'static str, &Input)> {
+        std::iter::once(("exemplar", &self.exemplar)).chain(self.job.inputs()).collect()
     }
 
     /// The JSON schema of recipes.

@@ -5,7 +5,7 @@ use std::{io::Write, process::ExitCode};
 use clap::Args;
 use clap_complete::Shell;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, standard};
 
 /// Write the completion script of a shell
 #[derive(Args, Debug)]
@@ -18,7 +18,7 @@ impl Completions {
     pub(crate) fn execute(self, mut program: clap::Command) -> Result<ExitCode, Failure> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut program, "arabesque", &mut script);
-        std::io::stdout().lock().write_all(&script)?;
+        standard::output()?.write_all(&script)?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -8,11 +8,12 @@ use clap::Args;
 use super::fill::choice;
 use crate::{
     failure::Failure,
+    guard::{Guard, WriteOptions},
     limits::LimitOptions,
     produce::TalkOptions,
     say::{self, Level},
     sentinel::{self, Orders, Phase},
-    summary,
+    standard, summary,
 };
 
 /// Say what was understood of an exemplar
@@ -26,6 +27,8 @@ pub(crate) struct Inspect {
     /// What the exemplar is made of
     #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
     method: Method,
+    #[command(flatten)]
+    write: WriteOptions,
     #[command(flatten)]
     limit: LimitOptions,
     #[command(flatten)]
@@ -48,25 +51,29 @@ impl Inspect {
             time_limit: None,
             limits,
             json: self.talk.json,
-            piped: self.output.as_deref() == Some(file::STANDARD),
+            piped: self.output.as_deref().is_some_and(file::is_standard_output),
             quiet: self.talk.level() == Level::Quiet,
         }
     }
 
     fn inspect(&self) -> Result<ExitCode, Failure> {
         let (limits, stopper) = (self.limit.limits()?, Stopper::default());
-        let target = self.output.as_deref().map(target).transpose()?;
+        let guard = Guard::new(self.write).with_input("exemplar", &self.file);
+        let target = self.output.as_deref().map(|path| target(path, &guard)).transpose()?;
         sentinel::watch(self.orders(limits), stopper.clone())?;
         let resources = Resources { limits, stopper, ..Resources::default() };
         let report = inspect(&Input::file(&self.file), self.method, &resources)?;
         if let Some((target, format)) = target {
             let picture = report.picture(format, &resources.budget())?;
             sentinel::enter(Phase::Writing);
-            target.write(&picture).map_err(Failure::writing)?;
+            let copy = target.write(&picture).map_err(Failure::writing)?;
+            if let Some(copy) = copy.filter(|_| self.talk.level() > Level::Quiet) {
+                say::note(&format!("what was there before is kept as {}", copy.display()));
+            }
         }
         if self.talk.json {
             summary::print(&report)?;
-        } else if self.output.as_deref() != Some(file::STANDARD) {
+        } else if !self.output.as_deref().is_some_and(file::is_standard_output) {
             print(&report)?;
         }
         if self.talk.level() > Level::Quiet {
@@ -76,17 +83,17 @@ impl Inspect {
     }
 }
 
-fn target(path: &str) -> Result<(file::Target, Format), Failure> {
+fn target(path: &str, guard: &Guard) -> Result<(file::Target, Format), Failure> {
     let format = match Format::of_path(path)? {
         None | Some(Format::Svg) => Format::Svg,
         Some(Format::Png) => Format::Png,
         Some(_) => return Err(Failure::usage(format!("{path}: a picture is written as .svg or .png"))),
     };
-    Ok((file::Target::new(path).map_err(Failure::writing)?, format))
+    Ok((guard.target(path)?, format))
 }
 
 fn print(report: &Report) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = standard::output()?;
     let join = |v: &[f64]| {
         v.iter()
             .map(|x| format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned())

@@ -4,7 +4,7 @@ use std::{io::Write, process::ExitCode};
 
 use clap::Args;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, standard};
 
 /// Write the manual page
 #[derive(Args, Debug)]
@@ -22,7 +22,7 @@ impl Man {
         };
         let mut page = Vec::new();
         clap_mangen::Man::new(command).render(&mut page)?;
-        std::io::stdout().lock().write_all(&page)?;
+        standard::output()?.write_all(&page)?;
         Ok(ExitCode::SUCCESS)
     }
 }

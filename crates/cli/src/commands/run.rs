@@ -1,12 +1,13 @@
 //! `arabesque run`: a run again, from its recipe or from its result.
 
-use std::{io::IsTerminal, path::Path, process::ExitCode};
+use std::{io::IsTerminal, process::ExitCode};
 
-use arabesque::{Input, Resources, io::file, recipe_in};
+use arabesque::{Carrier, Input, Resources, carried_recipe, io::file};
 use clap::Args;
 
 use crate::{
     failure::Failure,
+    guard::RecipeFile,
     produce::{RunOptions, produce},
 };
 
@@ -14,14 +15,17 @@ use crate::{
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct Run {
-    /// A recipe (TOML), or a result (SVG, PNG, JSON, CSV or OBJ); - is standard input
+    /// A recipe (TOML), or a result (SVG, PNG, JSON, CSV, OBJ or GLB); - is standard input
     file: String,
-    /// Where to write [default: where the recipe says, else standard output]
+    /// Where to write [default: where a recipe (TOML) says, in its own folder; else standard output]
     #[arg(short, long, value_name = "OUT")]
     output: Option<String>,
     /// Use another seed than the recipe
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
+    /// Let a recipe write where it says outside its own folder
+    #[arg(long)]
+    allow_path: bool,
     #[command(flatten)]
     run: RunOptions,
 }
@@ -29,20 +33,25 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
         let input = Input::file(&self.file);
-        let bytes = Resources::default().read(&input)?;
-        let mut recipe = recipe_in(input.name(), &bytes)?;
+        let bytes = Resources::default().read_as("recipe", &input)?;
+        let (mut recipe, carrier) = carried_recipe(input.name(), &bytes)?;
         if let Some(seed) = self.seed {
             recipe.seed = seed;
         }
-        let path = match self.output.or_else(|| recipe.output.path.clone()) {
-            Some(path) => path,
-            None if std::io::stdout().is_terminal() => {
-                return Err(Failure::usage(
-                    "the recipe does not say where to write; give -o OUT, or -o - for the terminal",
-                ));
+        let from = RecipeFile(&self.file);
+        // A result came from somebody else, perhaps; where it goes is for whoever runs it to say.
+        let own = recipe.output.path.take().filter(|_| carrier == Carrier::Recipe);
+        let path = match (self.output, own) {
+            (Some(path), _) => path,
+            (None, Some(path)) => from.output(&path, self.allow_path)?,
+            (None, None) if std::io::stdout().is_terminal() => {
+                let who = if carrier == Carrier::Recipe { "the recipe does" } else { "results do" };
+                return Err(Failure::usage(format!(
+                    "{who} not say where to write; give -o OUT, or -o - for the terminal"
+                )));
             }
-            None => file::STANDARD.to_owned(),
+            (None, None) => file::STANDARD.to_owned(),
         };
-        produce(recipe, Path::new(&self.file).parent(), &path, &self.run)
+        produce(recipe, Some(from), &path, &self.run)
     }
 }

@@ -1,6 +1,7 @@
 //! What is to be made of an exemplar.
 
 mod fill;
+mod inputs;
 mod parameters;
 mod redo;
 mod ribbon;

@@ -26,7 +26,7 @@ pub fn write_survey(drawing: &Drawing) -> String {
     let d = Decimals::for_extent(size[0].max(size[1]));
     let line = (0.02 * exemplar.spacing()).min(0.003 * size[0].max(size[1]));
     let page = Page { view, ..drawing.page };
-    let mut out = Root { page, decimals: d, lengths: d, prefixes: &PREFIXES[..1], attributes: "" }.start_tag();
+    let mut out = Root { page, decimals: d, lengths: d, prefixes: &PREFIXES, attributes: "" }.start_tag();
     let _ = write!(out, "<defs>{}</defs>\n<g opacity=\"0.3\">\n", drawing.definitions);
     out.extend(drawing.background.iter().chain(drawing.fragments.iter().map(|f| &f.markup)).map(|m| format!("{m}\n")));
     faded_curves(&mut out, drawing, d);

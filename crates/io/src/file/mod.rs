@@ -1,0 +1,19 @@
+//! Files: read with a limit and without waiting, written whole or not at all.
+//!
+//! What is read has to be a regular file, or comes from a descriptor that the caller opened, as standard input does. What is
+//! written lies in a file of a random name beside its target until it is complete, and is renamed then.
+
+mod copy;
+mod identity;
+mod part;
+mod read;
+mod stream;
+mod system;
+mod target;
+mod text;
+
+pub use identity::Identity;
+pub use read::read_bytes;
+pub use stream::{STANDARD, is_standard_input, is_standard_output, is_stream, standard_output_is_open};
+pub use target::{Step, Target};
+pub use text::decode_text;

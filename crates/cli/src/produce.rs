@@ -186,6 +186,7 @@ impl Run<'_> {
             made: artwork.summary(),
             stopped: match artwork.stopped() {
                 StopReason::Finished => "finished",
+                StopReason::Limit => "limit",
                 StopReason::Stopped if is_interrupted() => "interrupted",
                 StopReason::Stopped => "time limit",
             },

@@ -193,6 +193,23 @@ impl<'a, const D: usize> Extent<'a, D> {
         ink.points().any(|q| self.request.domain.contains(q))
     }
 
+    /// Whether a finished element keeps to the rule of the border, corner by corner: a quick test for elements that the
+    /// clearance check did not look at.
+    pub(crate) fn keeps_rule(&self, placement: &Placement<D>) -> bool {
+        let element = &self.exemplar.elements[placement.source];
+        let domain = &self.request.domain;
+        let depth = domain.signed_distance(placement.transform.apply(element.centre));
+        match self.request.border {
+            Border::Cross | Border::Clip => true,
+            Border::Inside | Border::Turn => {
+                let is_deep = depth >= self.radius[placement.source as u32] * placement.transform.scale;
+                let ink = || element.outline.transformed(&placement.transform);
+                (is_deep && placement.control.is_empty())
+                    || (depth >= 0.0 && ink().points().all(|q| domain.contains(q)))
+            }
+        }
+    }
+
     /// The outline of element `i` with its centre at `p`.
     fn outline_at(&self, i: u32, p: Vector<D>) -> Outline<D> {
         let element = &self.exemplar.elements[i as usize];

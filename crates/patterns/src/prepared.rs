@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Budget, Domain, Error, Exemplar, GridIndex, Numbered, Outcome, Request, Result, Role, Snapshot, Spread, StopReason,
-    Vector, Warning, Watch,
+    Budget, Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, Vector, Warning, Watch,
 };
 
 use crate::{
     border::Extent,
     dimension::Dimension,
+    ending,
     exemplar::{
+        checks,
         graph::{crowding, skeleton::Skeleton},
         level_exemplar::{LevelExemplar, expected_nodes, level_exemplars, shortest},
     },
@@ -20,7 +21,7 @@ use crate::{
     },
     optimise::{search, targets::class_targets},
     params::Params,
-    run::{LevelContext, Made, Run, last_touches},
+    run::{LevelContext, Made, Run},
 };
 
 /// Curves with more [`search::dissimilarity`] than this have nothing to repeat.
@@ -29,17 +30,11 @@ const MAX_DISSIMILARITY: f64 = 0.7;
 /// With more samples than this, curves that never repeat are taken for a random pattern.
 const MIN_RANDOM_NODES: usize = 100;
 
-/// Most samples on the curves of an exemplar at one level.
-const MAX_NODES: f64 = 10_000.0;
-
 /// Strokes that cover more of the exemplar than this run into one another.
 const CROWDED: f64 = 0.95;
 
 /// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
 const MIN_ELEMENTS: usize = 12;
-
-/// Elements of which the mean one has so many beside it lie in heaps.
-const HEAP: f64 = 1000.0;
 
 /// Work that a sample of a stroke makes, as a share of that of an element.
 const SAMPLE_SHARE: f64 = 0.2;
@@ -96,65 +91,6 @@ macro_rules! compiled {
 compiled!(2);
 compiled!(3);
 
-/// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.
-fn check_density(nodes: f64) -> Result<()> {
-    if nodes <= MAX_NODES {
-        return Ok(());
-    }
-    Err(Error::Limit {
-        what: "samples on the curves of the exemplar".into(),
-        found: format!("about {nodes:.0}"),
-        limit: MAX_NODES.to_string(),
-        advice: "show a smaller part of the pattern, draw it with fewer lines, or set a larger spacing".into(),
-    })
-}
-
-/// Refuses elements that lie on top of one another: nothing tells how they are to be laid out, and every one of them would
-/// have to be compared with all others.
-fn check_places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
-    let centres: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
-    let advice = "draw them apart, so that the exemplar shows distances and directions";
-    if exemplar.curves.is_empty() && Spread::of(centres.iter().copied()) == Spread::Place {
-        let problem = format!("all {} elements lie at one place", centres.len());
-        return Err(Error::input("exemplar", problem, advice));
-    }
-    let index = GridIndex::new(&centres, exemplar.spacing(), &Domain::Box(exemplar.window));
-    match index.fullest().filter(|_| index.crowding() > HEAP) {
-        Some((count, place)) => {
-            let problem = format!("{count} elements lie in one heap, around {:.4?}", place.0);
-            Err(Error::input("exemplar", problem, advice))
-        }
-        None => Ok(()),
-    }
-}
-
-/// Refuses an exemplar of elements that are all out of proportion.
-fn check_sizes<const D: usize>(exemplar: &Exemplar<D>, levels: &[LevelExemplar<D>]) -> Result<()> {
-    let Some(library) = levels.first().map(|s| &s.library).filter(|l| l.giants > 0 && exemplar.curves.is_empty())
-    else {
-        return Ok(());
-    };
-    if library.copyable.iter().any(|copyable| *copyable) {
-        return Ok(());
-    }
-    let problem = "every element is far larger than the frame";
-    Err(Error::input("exemplar", problem, "make the frame larger, or draw the elements smaller"))
-}
-
-/// Why a run ended; a warning tells the limit that cut it short.
-fn stop_reason(cut_short: Option<Error>, warnings: &mut Vec<Warning>) -> Result<StopReason> {
-    match cut_short {
-        None => Ok(StopReason::Finished),
-        Some(Error::Stopped { .. }) => Ok(StopReason::Stopped),
-        Some(Error::Limit { what, found, limit, advice }) => {
-            let message = format!("{what}: {found} is over the limit of {limit}; the result is the best so far");
-            warnings.push(Warning::new(message, advice));
-            Ok(StopReason::Limit)
-        }
-        Some(other) => Err(other),
-    }
-}
-
 impl<const D: usize> Prepared<D>
 where
     Vector<D>: Dimension<D>,
@@ -182,7 +118,7 @@ where
             let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
             return Err(Error::input("exemplar", problem, advice));
         }
-        check_places(exemplar)?;
+        checks::places(exemplar)?;
         let side = exemplar.view().side();
         if let Some(radius) = params.radius.filter(|r| *r > side) {
             return Err(Error::parameter(
@@ -200,9 +136,9 @@ where
             return Err(Error::input("exemplar", problem, "draw longer curves inside the frame of the page"));
         }
         let skeleton = skeleton.filter(|s| !s.lines.is_empty());
-        check_density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
+        checks::density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
         let levels = level_exemplars(exemplar, skeleton.as_ref(), params, budget)?;
-        check_sizes(exemplar, &levels)?;
+        checks::sizes(exemplar, &levels)?;
         let dissimilarity = match levels.first().filter(|_| skeleton.is_some()) {
             Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
             None => None,
@@ -269,10 +205,13 @@ where
         let mut trace = Vec::new();
         let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
         let last = &extents[extents.len() - 1];
-        let budget = if cut_short.is_some() { last_touches(&request.budget) } else { request.budget.clone() };
+        let budget = if cut_short.is_some() { ending::last_touches(&request.budget) } else { request.budget.clone() };
         match placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params, &budget) {
             Ok(mended) => warnings.extend(mended),
-            Err(error) => cut_short = cut_short.or(Some(error)),
+            Err(error) => {
+                found.placements.retain(|p| p.frozen.is_some() || last.keeps_rule(p));
+                cut_short = cut_short.or(Some(error));
+            }
         }
         if found.placements.is_empty() && found.curves.is_empty() {
             if let Some(error) = cut_short {
@@ -284,7 +223,7 @@ where
                 "make the domain larger, lower the scale, or allow elements to cross its border",
             ));
         }
-        let stopped = stop_reason(cut_short, &mut warnings)?;
+        let stopped = ending::reason(cut_short, &mut warnings)?;
         Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
     }
 

@@ -1,24 +1,20 @@
 //! One run: initialise, then level by level search and assign, then place and draw.
 
-use arabesque_core::{
-    Budget, Cause, Drawn, EnergyPoint, Error, Limits, Matrix, Numbered, Progress, Request, Result, Snapshot, Vector,
-    Watch,
-};
+use arabesque_core::{Drawn, EnergyPoint, Error, Matrix, Numbered, Progress, Request, Result, Snapshot, Vector, Watch};
 
 use crate::{
     border::Extent,
     curves::{
-        draw::{
-            chains::{self, Chain},
-            resample, shape,
-        },
+        draw::resample,
         repair::mend,
+        strokes,
         votes::{
             edge_votes::{self, Votes},
             edges, tangents,
         },
     },
     dimension::Dimension,
+    ending::{heard, last_touches},
     exemplar::level_exemplar::LevelExemplar,
     finish::placements,
     frozen,
@@ -71,9 +67,6 @@ pub(crate) struct Run<'a, const D: usize> {
     pub(crate) iterations: usize,
 }
 
-/// Millions of units of work that are spent on what was cut short before it is drawn as it is.
-const LAST_TOUCHES: usize = 20;
-
 /// A level as it ended.
 struct Finished<const D: usize> {
     /// What the next level starts from, or after the last one, the elements.
@@ -93,22 +86,6 @@ struct CutShort<'s, const D: usize> {
 pub(crate) struct Made<const D: usize> {
     pub(crate) snapshot: Snapshot<D>,
     pub(crate) cut_short: Option<Error>,
-}
-
-/// A small account for what is still to be done with a result that was cut short: a page that needs more is drawn as it is.
-pub(crate) fn last_touches(budget: &Budget) -> Budget {
-    let limits = Limits { work: LAST_TOUCHES.min(budget.limits().work), ..*budget.limits() };
-    Budget::with_stopper(limits, budget.stopper().clone())
-}
-
-/// What the watch answers, as a result.
-fn heard(flow: std::ops::ControlFlow<()>, progress: &Progress) -> Result<()> {
-    match flow {
-        std::ops::ControlFlow::Continue(()) => Ok(()),
-        std::ops::ControlFlow::Break(()) => {
-            Err(Error::Stopped { stage: progress.stage.to_string(), cause: Cause::Asked })
-        }
-    }
 }
 
 impl<const D: usize> Run<'_, D>
@@ -166,7 +143,7 @@ where
             Some(net)
                 if self.contexts.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) =>
             {
-                let chains = self.chains(&mut state)?;
+                let chains = strokes::chains(self.params, &mut state)?;
                 let frozen = frozen::draft(self.request, coarsest.sampled)?;
                 resample::resample(&state, &chains, net, coarsest.sampled.level.base, frozen)
             }
@@ -186,10 +163,8 @@ where
             return Err(error);
         }
         state.drop_dead_links();
-        let curves = match self.strokes(self.drawing(&state, last_touches(&self.request.budget))) {
-            Err(Error::Limit { .. }) => {
-                self.plain_strokes(self.drawing(&state, self.request.budget.fresh()), &votes)?
-            }
+        let curves = match strokes::strokes(self.params, state.on(last_touches(&self.request.budget))) {
+            Err(Error::Limit { .. }) => strokes::plain(self.params, &state.on(self.request.budget.fresh()), &votes)?,
             curves => curves?,
         };
         let base = state.level.base;
@@ -198,19 +173,6 @@ where
         let context = self.contexts.iter().find(|context| std::ptr::eq(&context.sampled.level, state.level));
         let done = Finished { draft: Draft { items, links: Vec::new() }, bends, curves };
         Ok(Made { snapshot: self.result(&done, context), cut_short: Some(error) })
-    }
-
-    /// The same state, to be drawn on another account.
-    fn drawing<'s>(&self, state: &State<'s, D>, budget: Budget) -> State<'s, D> {
-        let mut state = state.clone();
-        state.budget = budget;
-        state
-    }
-
-    /// The strokes as the last votes have them, neither mended nor fitted.
-    fn plain_strokes(&self, state: State<'_, D>, votes: &Votes) -> Result<Vec<Drawn<D>>> {
-        let chains = chains::chains(&state, votes, self.params.orientations == Switch::On)?;
-        shape::strokes(&state, &chains)
     }
 
     fn layout<'s>(&'s self, context: &LevelContext<'s, D>) -> Layout<'s, D> {
@@ -291,7 +253,7 @@ where
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
         let placements = placements::placements(&items, self.request, context.extent, context.sampled.level.base);
         let state = self.state(context, &Draft { items, links: Vec::new() });
-        Snapshot { placements, curves: self.preview_strokes(state), ..Snapshot::default() }
+        Snapshot { placements, curves: self.preview_strokes(&state), ..Snapshot::default() }
     }
 
     fn state<'s>(&'s self, context: &LevelContext<'s, D>, draft: &Draft<D>) -> State<'s, D> {
@@ -434,13 +396,13 @@ where
         let finer = next.and_then(|next| next.sampled.level.net.as_deref().map(|net| (next, net)));
         let Some((next, net)) = finer else {
             let items = living(state).into_iter().filter(|(item, _)| next.is_some() || item.source < base).collect();
-            let curves = if next.is_some() { Vec::new() } else { self.strokes(state.clone())? };
+            let curves = if next.is_some() { Vec::new() } else { strokes::strokes(self.params, state.clone())? };
             return Ok(Finished { draft: Draft { items, links: Vec::new() }, bends, curves });
         };
         if std::ptr::eq(net, state.level.net.as_deref().unwrap_or(net)) {
             return Ok(Finished { draft: self.as_it_is(state)?, bends, curves: Vec::new() });
         }
-        let chains = self.chains(state)?;
+        let chains = strokes::chains(self.params, state)?;
         let frozen = frozen::draft(self.request, next.sampled)?;
         let draft = resample::resample(state, &chains, net, next.sampled.level.base, frozen)?;
         Ok(Finished { draft, bends, curves: Vec::new() })
@@ -461,35 +423,10 @@ where
         Ok(Draft { items: living(state), links })
     }
 
-    /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.
-    fn chains(&self, state: &mut State<'_, D>) -> Result<Vec<Chain>> {
-        let params = self.params;
-        let votes = edge_votes::collect_votes(state)?;
-        if params.mending == Switch::On {
-            mend::mend(state, &votes)?;
-            state.reindex();
-        }
-        let chains = chains::chains(state, &votes, params.orientations == Switch::On)?;
-        if params.shapes == Switch::On {
-            let position = shape::polish(state, &chains)?;
-            state.set_positions(position);
-        }
-        Ok(chains)
-    }
-
-    fn strokes(&self, mut state: State<'_, D>) -> Result<Vec<Drawn<D>>> {
-        if state.level.net.is_none() {
-            return Ok(Vec::new());
-        }
-        let chains = self.chains(&mut state)?;
-        shape::strokes(&state, &chains)
-    }
-
     /// The strokes for a preview, on an account of its own: how often somebody looks must not change the result. None
     /// where somebody asks to stop.
-    fn preview_strokes(&self, mut state: State<'_, D>) -> Vec<Drawn<D>> {
-        state.budget = self.request.budget.fresh();
-        self.strokes(state).unwrap_or_default()
+    fn preview_strokes(&self, state: &State<'_, D>) -> Vec<Drawn<D>> {
+        strokes::strokes(self.params, state.on(self.request.budget.fresh())).unwrap_or_default()
     }
 
     fn snapshot(&self, context: &LevelContext<'_, D>, state: &State<'_, D>) -> Snapshot<D> {
@@ -498,7 +435,7 @@ where
         for (placement, control) in placements.iter_mut().zip(placements::bends(state).into_iter().flatten()) {
             placement.control = control;
         }
-        Snapshot { placements, curves: self.preview_strokes(state.clone()), ..Snapshot::default() }
+        Snapshot { placements, curves: self.preview_strokes(state), ..Snapshot::default() }
     }
 }
 

@@ -221,6 +221,11 @@ impl<'a, const D: usize> State<'a, D> {
         self.index.within(p, radius, |slot, offset| visit(self.living[slot], offset))
     }
 
+    /// The same state, for work that draws on another account.
+    pub(crate) fn on(&self, budget: Budget) -> Self {
+        Self { budget, ..self.clone() }
+    }
+
     /// Holds the memory that the neighbourhoods of the samples will take, once for each state.
     ///
     /// # Errors

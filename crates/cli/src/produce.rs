@@ -228,6 +228,7 @@ impl Run<'_> {
             made: artwork.summary(),
             stopped: match artwork.stopped() {
                 StopReason::Finished => "finished",
+                StopReason::Limit => "limit",
                 StopReason::Stopped if sentinel::signal().is_some() => "interrupted",
                 StopReason::Stopped => "time limit",
             },

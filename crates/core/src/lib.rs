@@ -47,5 +47,5 @@ pub use run::{
     Border, Drawn, EnergyPoint, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason, Unobserved,
     Warning, Watch,
 };
-pub use space::{Bounds, Matrix, Similarity, Vector, Warp, cell_index, cell_place, warp};
+pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};
 pub use text::Decimals;

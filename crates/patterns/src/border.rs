@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use arabesque_core::{
     Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Numbered, Outline, Placement, Region,
-    Request, ScalarField, Shape, Similarity, Vector,
+    Request, Result, ScalarField, Shape, Similarity, Vector,
 };
 
-use crate::dimension::Dimension;
+use crate::{dimension::Dimension, exemplar::library::Library};
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
@@ -29,28 +29,37 @@ pub(crate) struct Extent<'a, const D: usize> {
 
 impl<'a, const D: usize> Extent<'a, D> {
     /// `base`: first pseudo element, see [`crate::exemplar::level::Level::base`].
-    pub(crate) fn new(request: &'a Request<D>, exemplar: &'a Exemplar<D>, radius: &'a Numbered<f64>, base: u32) -> Self
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(
+        request: &'a Request<D>,
+        exemplar: &'a Exemplar<D>,
+        library: &'a Library<D>,
+        base: u32,
+    ) -> Result<Self>
     where
         Vector<D>: Dimension<D>,
     {
+        let radius = &library.radius;
         let largest = |field: &ScalarField<D>| field.range().1;
         let scale = largest(&request.fields.scale);
-        let reach = radius.iter().copied().fold(0.0, f64::max) * scale;
+        let reach = library.reach * scale;
         let dense = request.fields.density.range().1.powf(-1.0 / D as f64);
         let smallest_spacing_scale = request.fields.scale.range().0 * dense;
         let strokes = radius.iter().skip(base as usize).copied().fold(0.0, f64::max) * scale;
         let margin = if request.border == Border::Clip { reach } else { strokes };
-        Self {
+        Ok(Self {
             request,
             exemplar,
             radius,
             obstacles: obstacles(request),
-            drawn: drawn(request, strokes),
+            drawn: drawn(request, strokes)?,
             margin,
             base,
             largest_spacing_scale: Self::largest_spacing_scale(request),
             smallest_spacing_scale,
-        }
+        })
     }
 
     /// What is asked for.
@@ -184,6 +193,23 @@ impl<'a, const D: usize> Extent<'a, D> {
         ink.points().any(|q| self.request.domain.contains(q))
     }
 
+    /// Whether a finished element keeps to the rule of the border, corner by corner: a quick test for elements that the
+    /// clearance check did not look at.
+    pub(crate) fn keeps_rule(&self, placement: &Placement<D>) -> bool {
+        let element = &self.exemplar.elements[placement.source];
+        let domain = &self.request.domain;
+        let depth = domain.signed_distance(placement.transform.apply(element.centre));
+        match self.request.border {
+            Border::Cross | Border::Clip => true,
+            Border::Inside | Border::Turn => {
+                let is_deep = depth >= self.radius[placement.source as u32] * placement.transform.scale;
+                let ink = || element.outline.transformed(&placement.transform);
+                (is_deep && placement.control.is_empty())
+                    || (depth >= 0.0 && ink().points().all(|q| domain.contains(q)))
+            }
+        }
+    }
+
     /// The outline of element `i` with its centre at `p`.
     fn outline_at(&self, i: u32, p: Vector<D>) -> Outline<D> {
         let element = &self.exemplar.elements[i as usize];
@@ -204,21 +230,23 @@ impl<'a, const D: usize> Extent<'a, D> {
 }
 
 /// Places along the frozen strokes, `step` apart.
-fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Option<GridIndex<D>> {
+fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Result<Option<GridIndex<D>>> {
     if request.frozen_curves.is_empty() || step <= 0.0 {
-        return None;
+        return Ok(None);
     }
-    let places: Vec<_> = request
-        .frozen_curves
-        .iter()
-        .flat_map(|drawn| {
-            let measured = Measured::new(drawn.path.clone(), 0.1 * step);
-            let count = (measured.length() / step).ceil().clamp(1.0, 1e5) as usize;
-            (0..=count).map(|k| measured.point(measured.length() * k as f64 / count as f64)).collect::<Vec<_>>()
-        })
-        .collect();
+    let budget = request.budget.stage("looking at what is kept");
+    let mut places = Vec::new();
+    let mut held = Vec::new();
+    for drawn in &request.frozen_curves {
+        budget.spend(1000 * drawn.path.cubics.len() as u64)?;
+        let measured = Measured::new(drawn.path.clone(), 0.1 * step);
+        let count = (measured.length() / step).ceil().clamp(1.0, 1e5) as usize;
+        held.push(budget.hold("places along kept strokes", 4 * count * size_of::<Vector<D>>())?);
+        budget.spend(100 * count as u64)?;
+        places.extend((0..=count).map(|k| measured.point(measured.length() * k as f64 / count as f64)));
+    }
     let around = Domain::Box(Bounds::around(places.iter().copied()));
-    Some(GridIndex::new(&places, step, &around))
+    Ok(Some(GridIndex::new(&places, step, &around)))
 }
 
 /// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Vector};
+use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Result, Vector};
 
 mod sealed {
     pub trait Sealed {}
@@ -25,7 +25,13 @@ pub trait Dimension<const D: usize>: sealed::Sealed {
     fn plane_placements(placements: &mut Vec<Placement<D>>) -> Option<&mut Vec<Placement<2>>>;
 
     /// Changes strokes that are in the plane; those in space stay as they are.
-    fn map_plane_strokes(strokes: Vec<Drawn<D>>, change: impl FnOnce(Vec<Drawn<2>>) -> Vec<Drawn<2>>) -> Vec<Drawn<D>>;
+    ///
+    /// # Errors
+    /// What `change` gives.
+    fn map_plane_strokes(
+        strokes: Vec<Drawn<D>>,
+        change: impl FnOnce(Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>>,
+    ) -> Result<Vec<Drawn<D>>>;
 
     /// A region of the plane, as one of this dimension.
     fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<D>>>;
@@ -44,7 +50,10 @@ impl Dimension<2> for Vector<2> {
         Some(placements)
     }
 
-    fn map_plane_strokes(strokes: Vec<Drawn<2>>, change: impl FnOnce(Vec<Drawn<2>>) -> Vec<Drawn<2>>) -> Vec<Drawn<2>> {
+    fn map_plane_strokes(
+        strokes: Vec<Drawn<2>>,
+        change: impl FnOnce(Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>>,
+    ) -> Result<Vec<Drawn<2>>> {
         change(strokes)
     }
 
@@ -66,8 +75,11 @@ impl Dimension<3> for Vector<3> {
         None
     }
 
-    fn map_plane_strokes(strokes: Vec<Drawn<3>>, _: impl FnOnce(Vec<Drawn<2>>) -> Vec<Drawn<2>>) -> Vec<Drawn<3>> {
-        strokes
+    fn map_plane_strokes(
+        strokes: Vec<Drawn<3>>,
+        _: impl FnOnce(Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>>,
+    ) -> Result<Vec<Drawn<3>>> {
+        Ok(strokes)
     }
 
     fn from_plane(_: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<3>>> {

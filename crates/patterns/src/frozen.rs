@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Matrix, Measured, Numbered, Path, Request, Vector};
+use arabesque_core::{Bounds, Matrix, Measured, Numbered, Path, Request, Result, Vector};
 
 use crate::{
     exemplar::{
@@ -17,12 +17,15 @@ use crate::{
 const NEAR_BORDER: f64 = 2e-3;
 
 /// Frozen elements and samples of frozen strokes.
-pub(crate) fn draft<const D: usize>(request: &Request<D>, sampled: &LevelExemplar<D>) -> Draft<D> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn draft<const D: usize>(request: &Request<D>, sampled: &LevelExemplar<D>) -> Result<Draft<D>> {
     let mut draft = Draft { items: elements(request, &sampled.library), links: Vec::new() };
     if let Some(net) = &sampled.level.net {
-        strokes(request, sampled, net, &mut draft);
+        strokes(request, sampled, net, &mut draft)?;
     }
-    draft
+    Ok(draft)
 }
 
 fn elements<const D: usize>(request: &Request<D>, library: &Library<D>) -> Items<D> {
@@ -37,10 +40,17 @@ fn elements<const D: usize>(request: &Request<D>, library: &Library<D>) -> Items
 }
 
 /// Samples the frozen strokes near the domain as densely as the exemplar.
-fn strokes<const D: usize>(request: &Request<D>, sampled: &LevelExemplar<D>, net: &Net<D>, draft: &mut Draft<D>) {
+fn strokes<const D: usize>(
+    request: &Request<D>,
+    sampled: &LevelExemplar<D>,
+    net: &Net<D>,
+    draft: &mut Draft<D>,
+) -> Result<()> {
     if request.frozen_curves.is_empty() {
-        return;
+        return Ok(());
     }
+    let budget = request.budget.stage("sampling what is kept");
+    let mut meter = budget.meter();
     let scale = request.fields.frame(request.domain.bounds().centre()).spacing_scale;
     let side = sampled.library.view.side();
     let ends = request.frozen_curves.iter().flat_map(|drawn| drawn.path.cubics.iter().flat_map(|c| [c[0], c[3]]));
@@ -55,8 +65,8 @@ fn strokes<const D: usize>(request: &Request<D>, sampled: &LevelExemplar<D>, net
         line.is_cut = [drawn.path.start(), drawn.path.end()].map(|p| p.is_some_and(on_border));
         line
     });
-    let skeleton = Arc::new(Skeleton::of_lines(lines.collect(), side));
-    let drawn = Net::new(&skeleton, net.spacing * scale);
+    let skeleton = Arc::new(Skeleton::of_lines(lines.collect(), side, &budget)?);
+    let drawn = Net::new(&skeleton, net.spacing * scale, &budget)?;
     // Farther out nothing sees them.
     let reach = 2.0 * sampled.level.radius * scale;
     let mut item_of = Numbered::filled(None, drawn.nodes.len());
@@ -66,6 +76,7 @@ fn strokes<const D: usize>(request: &Request<D>, sampled: &LevelExemplar<D>, net
         }
         let ways = drawn.directions(n);
         let style = request.frozen_curves[node.curve as usize].source;
+        meter.spend(80 * net.nodes.len() as u64)?;
         let source = alike(sampled, net, &ways, sampled.exemplar.curves[style].style);
         item_of[n] = Some(draft.items.len() as u32);
         let item = Item { source: sampled.level.base + source, position: node.position, frozen: Some(Frozen::Stroke) };
@@ -78,6 +89,7 @@ fn strokes<const D: usize>(request: &Request<D>, sampled: &LevelExemplar<D>, net
             }
         }
     }
+    Ok(())
 }
 
 fn line<const D: usize>(number: u32, path: Path<D>, width: f64, tolerance: f64) -> Line<D> {

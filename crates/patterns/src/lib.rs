@@ -42,6 +42,7 @@
 mod border;
 mod curves;
 mod dimension;
+mod ending;
 mod exemplar;
 mod finish;
 mod frozen;

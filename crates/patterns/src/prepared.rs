@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Budget, Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Warning, Watch,
+    Budget, Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, Vector, Warning, Watch,
 };
 
 use crate::{
     border::Extent,
     dimension::Dimension,
+    ending,
     exemplar::{
+        checks,
         graph::{crowding, skeleton::Skeleton},
         level_exemplar::{LevelExemplar, expected_nodes, level_exemplars, shortest},
     },
@@ -19,7 +21,7 @@ use crate::{
     },
     optimise::{search, targets::class_targets},
     params::Params,
-    run::{LevelContext, Run},
+    run::{LevelContext, Made, Run},
 };
 
 /// Curves with more [`search::dissimilarity`] than this have nothing to repeat.
@@ -28,14 +30,14 @@ const MAX_DISSIMILARITY: f64 = 0.7;
 /// With more samples than this, curves that never repeat are taken for a random pattern.
 const MIN_RANDOM_NODES: usize = 100;
 
-/// Most samples on the curves of an exemplar at one level.
-const MAX_NODES: f64 = 10_000.0;
-
 /// Strokes that cover more of the exemplar than this run into one another.
 const CROWDED: f64 = 0.95;
 
 /// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
 const MIN_ELEMENTS: usize = 12;
+
+/// Work that a sample of a stroke makes, as a share of that of an element.
+const SAMPLE_SHARE: f64 = 0.2;
 
 /// An exemplar, analysed once, ready for any number of runs.
 #[derive(Clone, Debug)]
@@ -89,19 +91,6 @@ macro_rules! compiled {
 compiled!(2);
 compiled!(3);
 
-/// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.
-fn check_density(nodes: f64) -> Result<()> {
-    if nodes <= MAX_NODES {
-        return Ok(());
-    }
-    Err(Error::Limit {
-        what: "samples on the curves of the exemplar".into(),
-        found: format!("about {nodes:.0}"),
-        limit: MAX_NODES.to_string(),
-        advice: "show a smaller part of the pattern, draw it with fewer lines, or set a larger spacing".into(),
-    })
-}
-
 impl<const D: usize> Prepared<D>
 where
     Vector<D>: Dimension<D>,
@@ -122,12 +111,14 @@ where
 
     fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Self> {
         params.check()?;
+        let budget = &budget.stage("analysing the exemplar");
         budget.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
             let problem = "one element only, expected at least two";
             let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
             return Err(Error::input("exemplar", problem, advice));
         }
+        checks::places(exemplar)?;
         let side = exemplar.view().side();
         if let Some(radius) = params.radius.filter(|r| *r > side) {
             return Err(Error::parameter(
@@ -138,20 +129,24 @@ where
         }
         let skeleton = match exemplar.curves.as_slice() {
             [] => None,
-            curves => Some(Arc::new(Skeleton::new(curves, &exemplar.view())?)),
+            curves => Some(Arc::new(Skeleton::new(curves, &exemplar.view(), budget)?)),
         };
         if skeleton.as_ref().is_some_and(|s| s.lines.is_empty()) && exemplar.elements.is_empty() {
             let problem = "every curve lies outside the frame or is too short to be seen";
             return Err(Error::input("exemplar", problem, "draw longer curves inside the frame of the page"));
         }
         let skeleton = skeleton.filter(|s| !s.lines.is_empty());
-        check_density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
-        let levels = level_exemplars(exemplar, skeleton.as_ref(), params);
-        let coarsest = levels.first().filter(|_| skeleton.is_some());
+        checks::density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
+        let levels = level_exemplars(exemplar, skeleton.as_ref(), params, budget)?;
+        checks::sizes(exemplar, &levels)?;
+        let dissimilarity = match levels.first().filter(|_| skeleton.is_some()) {
+            Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
+            None => None,
+        };
         Ok(Self {
             exemplar: Arc::clone(exemplar),
-            clearance: clearance::measure(exemplar),
-            dissimilarity: coarsest.and_then(|s| search::dissimilarity(&s.level, &s.library, params.matching)),
+            clearance: clearance::measure(exemplar, budget)?,
+            dissimilarity,
             levels,
             params: params.clone(),
         })
@@ -172,7 +167,8 @@ where
     ///
     /// # Errors
     /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too
-    /// large; [`Error::NoResult`] when nothing fits into the domain.
+    /// large, or a limit is reached before there is anything; [`Error::Stopped`] when somebody asks to stop so early;
+    /// [`Error::NoResult`] when nothing fits into the domain.
     pub fn run(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>>
     where
         Vector<D>: Compiled<D>,
@@ -190,19 +186,14 @@ where
         let extents: Vec<_> = used
             .iter()
             .map(|&k| {
-                Extent::new(
-                    request,
-                    &self.levels[k].exemplar,
-                    &self.levels[k].library.radius,
-                    self.levels[k].level.base,
-                )
+                Extent::new(request, &self.levels[k].exemplar, &self.levels[k].library, self.levels[k].level.base)
             })
-            .collect();
+            .collect::<Result<_>>()?;
         let targets: Vec<_> = used
             .iter()
             .zip(&extents)
             .map(|(&k, extent)| class_targets(&self.levels[k].library, request, extent, self.levels[k].level.base))
-            .collect();
+            .collect::<Result<_>>()?;
         self.check_request(request, targets.iter().map(|t| t.iter().sum()).fold(0.0, f64::max))?;
         let context = |(n, &k): (usize, &usize)| {
             let shared = n.min(used.len() - 1);
@@ -210,24 +201,52 @@ where
         };
         let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
         let run = Run { params: &self.params, request, contexts, iterations };
+        request.budget.allow_elements(self.share_of_work(&targets, used));
         let mut trace = Vec::new();
-        let (mut found, flow) = run.synthesise(&mut trace, watch);
+        let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
         let last = &extents[extents.len() - 1];
-        warnings.extend(placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params));
+        let budget = if cut_short.is_some() { ending::last_touches(&request.budget) } else { request.budget.clone() };
+        match placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params, &budget) {
+            Ok(mended) => warnings.extend(mended),
+            Err(error) => {
+                found.placements.retain(|p| p.frozen.is_some() || last.keeps_rule(p));
+                cut_short = cut_short.or(Some(error));
+            }
+        }
         if found.placements.is_empty() && found.curves.is_empty() {
+            if let Some(error) = cut_short {
+                return Err(error);
+            }
             let what = if self.has_curves() { "stroke" } else { "element" };
             return Err(Error::no_result(
                 format!("no {what} fits into the domain"),
                 "make the domain larger, lower the scale, or allow elements to cross its border",
             ));
         }
-        let stopped = if flow.is_break() { StopReason::Stopped } else { StopReason::Finished };
+        let stopped = ending::reason(cut_short, &mut warnings)?;
         Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
     }
 
-    /// What may be wrong with an exemplar of curves.
+    /// Elements of the result, samples of strokes counted by the work they make.
+    fn share_of_work(&self, targets: &[Numbered<f64>], used: &[usize]) -> f64 {
+        let of_level = |(targets, &k): (&Numbered<f64>, &usize)| -> f64 {
+            let (library, base) = (&self.levels[k].library, self.levels[k].level.base);
+            let is_stroke = |c: usize| library.members(c as u32).first().is_some_and(|&e| e >= base);
+            targets.iter().enumerate().map(|(c, n)| if is_stroke(c) { SAMPLE_SHARE * n } else { *n }).sum()
+        };
+        targets.iter().zip(used).map(of_level).fold(0.0, f64::max)
+    }
+
+    /// What may be wrong with an exemplar.
     fn exemplar_warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
+        let giants = self.levels.first().map_or(0, |s| s.library.giants);
+        if giants > 0 {
+            warnings.push(Warning::new(
+                format!("elements far larger than the frame of the exemplar are not copied: {giants}"),
+                "draw them smaller, or make the frame larger",
+            ));
+        }
         let Some(sampled) = self.levels.first().filter(|_| self.has_curves()) else { return warnings };
         let side = self.exemplar.view().side();
         if sampled.level.radius >= 0.5 * side {

@@ -1,20 +1,20 @@
 //! One run: initialise, then level by level search and assign, then place and draw.
 
-use std::ops::ControlFlow;
-
-use arabesque_core::{Drawn, EnergyPoint, Matrix, Numbered, Progress, Request, Snapshot, Vector, Watch};
+use arabesque_core::{Drawn, EnergyPoint, Error, Matrix, Numbered, Progress, Request, Result, Snapshot, Vector, Watch};
 
 use crate::{
     border::Extent,
     curves::{
-        draw::{
-            chains::{self, Chain},
-            resample, shape,
-        },
+        draw::resample,
         repair::mend,
-        votes::{edge_votes, edges, tangents},
+        strokes,
+        votes::{
+            edge_votes::{self, Votes},
+            edges, tangents,
+        },
     },
     dimension::Dimension,
+    ending::{heard, last_touches},
     exemplar::level_exemplar::LevelExemplar,
     finish::placements,
     frozen,
@@ -75,56 +75,104 @@ struct Finished<const D: usize> {
     curves: Vec<Drawn<D>>,
 }
 
+/// What there was when a run was cut short, and why.
+struct CutShort<'s, const D: usize> {
+    state: State<'s, D>,
+    votes: Votes,
+    error: Error,
+}
+
+/// What a run made, and what cut it short, if anything did.
+pub(crate) struct Made<const D: usize> {
+    pub(crate) snapshot: Snapshot<D>,
+    pub(crate) cut_short: Option<Error>,
+}
+
 impl<const D: usize> Run<'_, D>
 where
     Vector<D>: Dimension<D>,
 {
-    /// Everything up to the clearance check, in the state in which the watch left it.
+    /// Everything up to the clearance check: where the run is cut short, the best so far.
+    ///
+    /// # Errors
+    /// When it is cut short before there is anything.
     pub(crate) fn synthesise(
         &self,
         trace: &mut Vec<EnergyPoint>,
         watch: &mut dyn Watch<Snapshot<D>>,
-    ) -> (Snapshot<D>, ControlFlow<()>) {
-        let mut flow = ControlFlow::Continue(());
-        let mut done = Finished { draft: Draft::default(), bends: None, curves: Vec::new() };
+    ) -> Result<Made<D>> {
         let from_noise = self.params.initialisation == Initialisation::WhiteNoise;
-        if let Some(context) = if from_noise { self.contexts.first() } else { self.contexts.last() } {
-            let frozen = frozen::draft(self.request, context.sampled);
-            let layout = self.layout(context);
-            (done.draft, flow) = layout.initialise(frozen, &mut |items, share| {
-                watch.step(&self.laid_out(items.len(), share), &|| self.layout_preview(context, items))
-            });
-            if !from_noise {
-                done.draft = self.coarsened(&done.draft);
+        let first = if from_noise { self.contexts.first() } else { self.contexts.last() };
+        let Some(context) = first else { return Ok(Made { snapshot: Snapshot::default(), cut_short: None }) };
+        let frozen = frozen::draft(self.request, context.sampled)?;
+        let layout = self.layout(context);
+        let (laid_out, ended) = layout.initialise(frozen, &mut |items, share| {
+            let progress = self.laid_out(items.len(), share);
+            heard(watch.step(&progress, &|| self.layout_preview(context, items)), &progress)
+        });
+        let coarsened = match ended {
+            Ok(()) if from_noise => Ok(laid_out.clone()),
+            Ok(()) => self.coarsened(&laid_out),
+            Err(error) => Err(error),
+        };
+        let mut done = match coarsened {
+            Ok(draft) => Finished { draft, bends: None, curves: Vec::new() },
+            Err(error) => {
+                let state = self.state(context, &laid_out);
+                return self.best_so_far(CutShort { state, votes: Votes::default(), error });
             }
-        }
+        };
         for k in 0..self.contexts.len() {
-            if flow.is_break() && k > 0 {
-                break;
+            match self.level(k, &done.draft, trace, watch) {
+                Ok(finished) => done = finished,
+                Err(cut) => return self.best_so_far(*cut),
             }
-            (done, flow) = self.level(k, &done.draft, flow, trace, watch);
         }
-        (self.result(&done), flow)
+        Ok(Made { snapshot: self.result(&done, self.contexts.last()), cut_short: None })
     }
 
     /// A layout of the finest level, as the coarsest one sees it: patches agree best where they are sampled most
     /// densely.
-    fn coarsened(&self, draft: &Draft<D>) -> Draft<D> {
+    fn coarsened(&self, draft: &Draft<D>) -> Result<Draft<D>> {
         let (Some(finest), Some(coarsest)) = (self.contexts.last(), self.contexts.first()) else {
-            return draft.clone();
+            return Ok(draft.clone());
         };
         let mut state = self.state(finest, draft);
-        edges::link_sources(&mut state);
+        edges::link_sources(&mut state)?;
         match &coarsest.sampled.level.net {
             Some(net)
                 if self.contexts.len() > 1 && !std::ptr::eq(&**net, state.level.net.as_deref().unwrap_or(net)) =>
             {
-                let chains = self.chains(&mut state);
-                let frozen = frozen::draft(self.request, coarsest.sampled);
+                let chains = strokes::chains(self.params, &mut state)?;
+                let frozen = frozen::draft(self.request, coarsest.sampled)?;
                 resample::resample(&state, &chains, net, coarsest.sampled.level.base, frozen)
             }
-            _ => draft.clone(),
+            _ => Ok(draft.clone()),
         }
+    }
+
+    /// The result of a run that was cut short: its strokes mended and fitted where that is done at once, else as they
+    /// are.
+    fn best_so_far(&self, cut: CutShort<'_, D>) -> Result<Made<D>> {
+        let CutShort { mut state, votes, error } = cut;
+        if !matches!(error, Error::Stopped { .. } | Error::Limit { .. }) {
+            return Err(error);
+        }
+        let frozen = state.items().iter().filter(|live| live.item.frozen.is_some()).count();
+        if state.count() == frozen {
+            return Err(error);
+        }
+        state.drop_dead_links();
+        let curves = match strokes::strokes(self.params, state.on(last_touches(&self.request.budget))) {
+            Err(Error::Limit { .. }) => strokes::plain(self.params, &state.on(self.request.budget.fresh()), &votes)?,
+            curves => curves?,
+        };
+        let base = state.level.base;
+        let items = living(&state).into_iter().filter(|(item, _)| item.source < base).collect();
+        let bends = placements::bends(&state);
+        let context = self.contexts.iter().find(|context| std::ptr::eq(&context.sampled.level, state.level));
+        let done = Finished { draft: Draft { items, links: Vec::new() }, bends, curves };
+        Ok(Made { snapshot: self.result(&done, context), cut_short: Some(error) })
     }
 
     fn layout<'s>(&'s self, context: &LevelContext<'s, D>) -> Layout<'s, D> {
@@ -137,8 +185,8 @@ where
         }
     }
 
-    fn result(&self, done: &Finished<D>) -> Snapshot<D> {
-        let Some(context) = self.contexts.last() else { return Snapshot::default() };
+    fn result(&self, done: &Finished<D>, context: Option<&LevelContext<'_, D>>) -> Snapshot<D> {
+        let Some(context) = context else { return Snapshot::default() };
         let mut placements =
             placements::placements(&done.draft.items, self.request, context.extent, context.sampled.level.base);
         for (placement, control) in placements.iter_mut().zip(done.bends.iter().flatten()) {
@@ -205,7 +253,7 @@ where
         let items = items.iter().map(|&item| (item, Matrix::identity())).collect();
         let placements = placements::placements(&items, self.request, context.extent, context.sampled.level.base);
         let state = self.state(context, &Draft { items, links: Vec::new() });
-        Snapshot { placements, curves: self.strokes(state), ..Snapshot::default() }
+        Snapshot { placements, curves: self.preview_strokes(&state), ..Snapshot::default() }
     }
 
     fn state<'s>(&'s self, context: &LevelContext<'s, D>, draft: &Draft<D>) -> State<'s, D> {
@@ -213,33 +261,48 @@ where
     }
 
     /// Search and assign at one level, then mend and hand over to the next.
-    fn level(
-        &self,
+    fn level<'s>(
+        &'s self,
         k: usize,
         draft: &Draft<D>,
-        mut flow: ControlFlow<()>,
         trace: &mut Vec<EnergyPoint>,
         watch: &mut dyn Watch<Snapshot<D>>,
-    ) -> (Finished<D>, ControlFlow<()>) {
+    ) -> std::result::Result<Finished<D>, Box<CutShort<'s, D>>> {
+        let mut state = self.state(&self.contexts[k], draft);
+        let mut votes = Votes::default();
+        let worked = self.work(k, &mut state, &mut votes, trace, watch);
+        match worked.and_then(|()| self.finish(k, &mut state)) {
+            Ok(finished) => Ok(finished),
+            Err(error) => Err(Box::new(CutShort { state, votes, error })),
+        }
+    }
+
+    /// What is done at one level. An error leaves the state as it was before the step that was cut short.
+    fn work<'s>(
+        &'s self,
+        k: usize,
+        state: &mut State<'s, D>,
+        votes: &mut Votes,
+        trace: &mut Vec<EnergyPoint>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<()> {
         let context = &self.contexts[k];
-        let mut state = self.state(context, draft);
-        edges::link_sources(&mut state);
-        if k > 0 && flow.is_continue() {
+        edges::link_sources(state)?;
+        if k > 0 {
             // Handing over takes as long as iterations do, and strokes have come out finer.
-            flow = watch.step(&self.progress(k, 0, &state), &|| self.snapshot(context, &state));
+            let progress = self.progress(k, 0, state);
+            heard(watch.step(&progress, &|| self.snapshot(context, state)), &progress)?;
         }
-        if flow.is_continue() {
-            flow = self.refine(k, 0, &mut state, trace, watch);
+        let mut steps = Steps { k, before: 0, votes, trace };
+        self.refine(&mut steps, state, watch)?;
+        if k == 0 && self.may_regrow() {
+            self.regrow(&mut steps, state, watch)?;
         }
-        if k == 0 && flow.is_continue() && self.may_regrow() {
-            flow = self.regrow(&mut state, trace, watch);
+        if self.params.existence == Existence::Voted {
+            self.layout(context).fill_holes(state)?;
+            edges::link_sources(state)?;
         }
-        let params = self.params;
-        if params.existence == Existence::Voted && flow.is_continue() {
-            self.layout(context).fill_holes(&mut state);
-            edges::link_sources(&mut state);
-        }
-        (self.finish(k, state, flow), flow)
+        Ok(())
     }
 
     /// Patches that agree with one another are as much order as there is to find; any other start may have ended in
@@ -252,92 +315,104 @@ where
     /// Grows a coarsest level anew that ended in disorder, and refines it once more.
     fn regrow<'s>(
         &'s self,
+        steps: &mut Steps<'_>,
         state: &mut State<'s, D>,
-        trace: &mut Vec<EnergyPoint>,
         watch: &mut dyn Watch<Snapshot<D>>,
-    ) -> ControlFlow<()> {
+    ) -> Result<()> {
         let (Some(nucleus), Some(context)) = (grains::nucleus(state), self.contexts.first()) else {
-            return ControlFlow::Continue(());
+            return Ok(());
         };
         let known = self.progress(0, self.iterations, state);
-        let frozen = frozen::draft(self.request, context.sampled);
-        let (draft, flow) = self.layout(context).regrow(frozen, &nucleus.items, &mut |items, _| {
-            watch.step(&Progress { count: items.len(), ..known.clone() }, &|| self.layout_preview(context, items))
+        let frozen = frozen::draft(self.request, context.sampled)?;
+        let (draft, ended) = self.layout(context).regrow(frozen, &nucleus.items, &mut |items, _| {
+            let progress = Progress { count: items.len(), ..known.clone() };
+            heard(watch.step(&progress, &|| self.layout_preview(context, items)), &progress)
         });
-        *state = self.state(context, &draft);
-        edges::link_sources(state);
-        flow?;
-        self.refine(0, self.iterations, state, trace, watch)
+        // A page that is grown in part is worse than one in disorder.
+        ended?;
+        let mut grown = self.state(context, &draft);
+        edges::link_sources(&mut grown)?;
+        *state = grown;
+        *steps.votes = Votes::default();
+        steps.before = self.iterations;
+        self.refine(steps, state, watch)
     }
 
-    /// Iterations at level `k`; `before` is how many there were already.
+    /// Iterations at one level.
     fn refine(
         &self,
-        k: usize,
-        before: usize,
+        steps: &mut Steps<'_>,
         state: &mut State<'_, D>,
-        trace: &mut Vec<EnergyPoint>,
         watch: &mut dyn Watch<Snapshot<D>>,
-    ) -> ControlFlow<()> {
-        for iteration in before..before + self.iterations {
-            let searched = search::search(state, &self.search_params(k, iteration));
-            trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
-            let changed = self.assign(state, &self.contexts[k], self.floor(k, iteration));
-            watch.step(&self.progress(k, iteration + 1, state), &|| self.snapshot(&self.contexts[k], state))?;
+    ) -> Result<()> {
+        let k = steps.k;
+        for iteration in steps.before..steps.before + self.iterations {
+            let searched = search::search(state, &self.search_params(k, iteration))?;
+            steps.trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
+            let changed = self.assign(state, &self.contexts[k], self.floor(k, iteration), steps.votes)?;
+            let progress = self.progress(k, iteration + 1, state);
+            heard(watch.step(&progress, &|| self.snapshot(&self.contexts[k], state)), &progress)?;
             if !changed || searched == 0 {
                 break;
             }
         }
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     /// One assignment step: attributes, positions, existence, edges, tangents. Returns whether anything changed.
-    fn assign(&self, state: &mut State<'_, D>, context: &LevelContext<'_, D>, floor: f64) -> bool {
+    fn assign(
+        &self,
+        state: &mut State<'_, D>,
+        context: &LevelContext<'_, D>,
+        floor: f64,
+        votes: &mut Votes,
+    ) -> Result<bool> {
         let exchanged = match self.params.attributes {
-            Attributes::Selected => attributes::assign(state),
+            Attributes::Selected => attributes::assign(state)?,
             Attributes::Kept => 0,
         };
-        let mut position = positions::assign(state);
+        let mut position = positions::assign(state)?;
         let changes = match self.params.existence {
-            Existence::Voted => existence::assign(state, context.targets, floor),
+            Existence::Voted => existence::assign(state, context.targets, floor)?,
             Existence::Fixed => Changes::default(),
         };
         position.extend(state.samples().iter().skip(position.len()).map(|s| s.position));
         state.follow_samples(&position);
-        let (_, joined) = edges::assign(state);
-        tangents::assign(state);
+        let joined;
+        (*votes, joined) = edges::assign(state)?;
+        tangents::assign(state)?;
         let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
         let moved = state.announce_moves(noticeable * state.library.spacing * context.extent.smallest_spacing_scale);
         state.reindex();
-        moved || exchanged + joined > 0 || changes != Changes::default()
+        Ok(moved || exchanged + joined > 0 || changes != Changes::default())
     }
 
     /// What a level leaves: elements and, for the next level, denser samples along its strokes; after the last level,
     /// the strokes.
-    fn finish(&self, k: usize, mut state: State<'_, D>, flow: ControlFlow<()>) -> Finished<D> {
+    fn finish(&self, k: usize, state: &mut State<'_, D>) -> Result<Finished<D>> {
         let base = state.level.base;
-        let bends = placements::bends(&state);
-        let next = self.contexts.get(k + 1).filter(|_| flow.is_continue());
+        let bends = placements::bends(state);
+        let next = self.contexts.get(k + 1);
         let finer = next.and_then(|next| next.sampled.level.net.as_deref().map(|net| (next, net)));
         let Some((next, net)) = finer else {
-            let items = living(&state).into_iter().filter(|(item, _)| next.is_some() || item.source < base).collect();
-            let curves = if next.is_some() { Vec::new() } else { self.strokes(state) };
-            return Finished { draft: Draft { items, links: Vec::new() }, bends, curves };
+            let items = living(state).into_iter().filter(|(item, _)| next.is_some() || item.source < base).collect();
+            let curves = if next.is_some() { Vec::new() } else { strokes::strokes(self.params, state.clone())? };
+            return Ok(Finished { draft: Draft { items, links: Vec::new() }, bends, curves });
         };
         if std::ptr::eq(net, state.level.net.as_deref().unwrap_or(net)) {
-            return Finished { draft: self.as_it_is(state), bends, curves: Vec::new() };
+            return Ok(Finished { draft: self.as_it_is(state)?, bends, curves: Vec::new() });
         }
-        let chains = self.chains(&mut state);
-        let frozen = frozen::draft(self.request, next.sampled);
-        let draft = resample::resample(&state, &chains, net, next.sampled.level.base, frozen);
-        Finished { draft, bends, curves: Vec::new() }
+        let chains = strokes::chains(self.params, state)?;
+        let frozen = frozen::draft(self.request, next.sampled)?;
+        let draft = resample::resample(state, &chains, net, next.sampled.level.base, frozen)?;
+        Ok(Finished { draft, bends, curves: Vec::new() })
     }
 
     /// Everything that lives, for a level with the same samples.
-    fn as_it_is(&self, mut state: State<'_, D>) -> Draft<D> {
+    fn as_it_is(&self, state: &mut State<'_, D>) -> Result<Draft<D>> {
         if self.params.mending == Switch::On {
-            let votes = edge_votes::collect_votes(&state);
-            mend::mend(&mut state, &votes);
+            let votes = edge_votes::collect_votes(state)?;
+            mend::mend(state, &votes)?;
         }
         let mut number = Numbered::filled(u32::MAX, state.items().len());
         let living_items = (0..state.items().len()).filter(|&i| state.items()[i].alive);
@@ -345,31 +420,13 @@ where
         let item = |s: u32| number[state.sample(s).item];
         let pairs = state.samples().numbers().flat_map(|s| state.links_of(s).iter().map(move |&o| (s, o)));
         let links = pairs.filter(|(s, o)| s < o).map(|(s, o)| (item(s), item(o))).collect();
-        Draft { items: living(&state), links }
+        Ok(Draft { items: living(state), links })
     }
 
-    /// The strokes of a state: mended, chained, and the samples moved to where the exemplar's shapes fit best.
-    fn chains(&self, state: &mut State<'_, D>) -> Vec<Chain> {
-        let params = self.params;
-        let votes = edge_votes::collect_votes(state);
-        if params.mending == Switch::On {
-            mend::mend(state, &votes);
-            state.reindex();
-        }
-        let chains = chains::chains(state, &votes, params.orientations == Switch::On);
-        if params.shapes == Switch::On {
-            let position = shape::polish(state, &chains);
-            state.set_positions(position);
-        }
-        chains
-    }
-
-    fn strokes(&self, mut state: State<'_, D>) -> Vec<Drawn<D>> {
-        if state.level.net.is_none() {
-            return Vec::new();
-        }
-        let chains = self.chains(&mut state);
-        shape::strokes(&state, &chains)
+    /// The strokes for a preview, on an account of its own: how often somebody looks must not change the result. None
+    /// where somebody asks to stop.
+    fn preview_strokes(&self, state: &State<'_, D>) -> Vec<Drawn<D>> {
+        strokes::strokes(self.params, state.on(self.request.budget.fresh())).unwrap_or_default()
     }
 
     fn snapshot(&self, context: &LevelContext<'_, D>, state: &State<'_, D>) -> Snapshot<D> {
@@ -378,8 +435,18 @@ where
         for (placement, control) in placements.iter_mut().zip(placements::bends(state).into_iter().flatten()) {
             placement.control = control;
         }
-        Snapshot { placements, curves: self.strokes(state.clone()), ..Snapshot::default() }
+        Snapshot { placements, curves: self.preview_strokes(state), ..Snapshot::default() }
     }
+}
+
+/// How far a level is, and what is kept of its steps.
+struct Steps<'a> {
+    k: usize,
+    /// Iterations that were done before.
+    before: usize,
+    /// The votes of the last step.
+    votes: &'a mut Votes,
+    trace: &'a mut Vec<EnergyPoint>,
 }
 
 fn living<const D: usize>(state: &State<'_, D>) -> Vec<(Item<D>, Matrix<D>)> {

@@ -1,8 +1,6 @@
 //! The stages of the engine one by one, each from the state in which a run meets it first: what the benchmarks time. No
 //! part of the interface, and subject to change without notice.
 
-use std::ops::ControlFlow;
-
 use arabesque_core::{Bounds, Budget, Domain, Exemplar, Numbered, Outcome, Placement, Request, Unobserved, Vector};
 
 use crate::{
@@ -30,6 +28,9 @@ use crate::{
     params::{Deform, Matching, Params, Switch},
     prepared::Prepared,
 };
+
+/// Benchmarks are no larger than the default limits allow.
+const ENOUGH: &str = "the budget suffices";
 
 /// A stage that is timed on its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,13 +105,13 @@ impl Setup {
     pub fn with<R>(&self, time: impl FnOnce(&Bench<'_>) -> R) -> R {
         let (request, sampled) = (&self.request, finest(&self.prepared));
         let (library, level) = (&*sampled.library, &sampled.level);
-        let extent = Extent::new(request, &sampled.exemplar, &library.radius, level.base);
-        let targets = class_targets(library, request, &extent, level.base);
+        let extent = Extent::new(request, &sampled.exemplar, library, level.base).expect(ENOUGH);
+        let targets = class_targets(library, request, &extent, level.base).expect(ENOUGH);
         let layout = Layout { library, params: &self.prepared.params, request, extent: &extent, base: level.base };
         let mut fresh = State::new(sampled, request, &extent, Deform::Rigid, &lay_out(&layout));
-        edges::link_sources(&mut fresh);
+        edges::link_sources(&mut fresh).expect(ENOUGH);
         let mut searched = fresh.clone();
-        search::search(&mut searched, &first_search(&self.prepared.params));
+        search::search(&mut searched, &first_search(&self.prepared.params)).expect(ENOUGH);
         time(&Bench { layout, targets: &targets, fresh, searched })
     }
 }
@@ -148,12 +149,12 @@ impl Output<'_> {
     pub fn run(&mut self, stage: Stage) {
         let state = &mut self.state;
         match stage {
-            Stage::Search => _ = search::search(state, &first_search(&Params::default())),
-            Stage::Solve => _ = std::hint::black_box(positions::assign(state)),
-            Stage::Existence => _ = existence::assign(state, self.targets, 0.95),
-            Stage::Edges => _ = edges::assign(state),
+            Stage::Search => _ = search::search(state, &first_search(&Params::default())).expect(ENOUGH),
+            Stage::Solve => _ = std::hint::black_box(positions::assign(state).expect(ENOUGH)),
+            Stage::Existence => _ = existence::assign(state, self.targets, 0.95).expect(ENOUGH),
+            Stage::Edges => _ = edges::assign(state).expect(ENOUGH),
             // The first layout knows its edges.
-            Stage::Orientations => tangents::assign(state),
+            Stage::Orientations => tangents::assign(state).expect(ENOUGH),
             Stage::Reconstruct => reconstruct(state),
         }
     }
@@ -162,9 +163,11 @@ impl Output<'_> {
 impl Pairings<'_> {
     /// Computes all of them, on one thread. Returns the sum of their costs.
     pub fn run(&mut self) -> f32 {
+        let budget = Budget::default();
+        let mut meter = budget.meter();
         let pair = |k: usize| {
             let (around, other) = &self.pairs[k % self.pairs.len()];
-            self.matcher.cost(around, *other, f32::INFINITY, &|_| true)
+            self.matcher.cost(around, *other, f32::INFINITY, &|_| true, &mut meter).expect(ENOUGH)
         };
         (0..self.count).map(pair).sum()
     }
@@ -198,12 +201,12 @@ pub struct Clearing(Option<ExemplarClearance>);
 impl Clearing {
     /// Measures an exemplar.
     pub fn new(exemplar: &Exemplar<2>) -> Self {
-        Self(clearance::measure(exemplar))
+        Self(clearance::measure(exemplar, &Budget::default()).expect(ENOUGH))
     }
 
     /// Takes overlaps apart. Returns how many pairs there were.
     pub fn repair(&self, request: &Request<2>, placements: &mut Vec<Placement<2>>) -> usize {
-        clearance::repair(self.0.as_ref(), request, placements).pairs
+        clearance::repair(self.0.as_ref(), request, placements, &Budget::default()).expect(ENOUGH).pairs
     }
 }
 
@@ -218,7 +221,7 @@ fn density(sampled: &LevelExemplar<2>) -> f64 {
 }
 
 fn lay_out(layout: &Layout<'_, 2>) -> Draft<2> {
-    layout.initialise(Draft::default(), &mut |_, _| ControlFlow::Continue(())).0
+    layout.initialise(Draft::default(), &mut |_, _| Ok(())).0
 }
 
 fn reconstruct(state: &mut State<'_, 2>) {
@@ -227,13 +230,13 @@ fn reconstruct(state: &mut State<'_, 2>) {
     if state.level.net.is_none() {
         return;
     }
-    let votes = collect_votes(state);
-    mend(state, &votes);
+    let votes = collect_votes(state).expect(ENOUGH);
+    mend(state, &votes).expect(ENOUGH);
     state.reindex();
-    let chains = chains(state, &votes, Params::default().orientations == Switch::On);
-    let position = shape::polish(state, &chains);
+    let chains = chains(state, &votes, Params::default().orientations == Switch::On).expect(ENOUGH);
+    let position = shape::polish(state, &chains).expect(ENOUGH);
     state.set_positions(position);
-    std::hint::black_box(shape::strokes(state, &chains));
+    std::hint::black_box(shape::strokes(state, &chains).expect(ENOUGH));
 }
 
 /// The neighbourhood of an exemplar sample, as if it were one of the output.

@@ -14,7 +14,7 @@ pub(crate) use place::options;
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Result, StopReason, Watch};
+use arabesque_core::{Error, Result, Watch};
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
@@ -82,22 +82,13 @@ impl Ready for Plane {
         let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);
         let mut show = Show { watch, origin: &origin, make };
         let mut outcome = self.engine.run(&request.engine, &mut show)?;
-        if outcome.placements.is_empty() && outcome.curves.is_empty() {
-            return Err(match outcome.stopped {
-                StopReason::Stopped => Error::no_result("stopped before anything was placed", "give it more time"),
-                StopReason::Finished => Error::no_result(
-                    "nothing fits the domain under the given constraints",
-                    "make the domain larger or the avoided shapes smaller, or let elements cross the border with --border cross or clip",
-                ),
-            });
-        }
         outcome.warnings.splice(0..0, context.warnings);
         Ok(Artwork::new(origin, PlaneMade::new(&self.exemplar, request, outcome)))
     }
 }
 
 /// The same error with the name of the file where it speaks of the exemplar.
-fn in_exemplar(error: Error, name: &str) -> Error {
+pub(crate) fn in_exemplar(error: Error, name: &str) -> Error {
     match error {
         Error::Input { problem, advice, .. } => Error::input(name, problem, advice),
         Error::Limit { what, found, limit, advice } => {

@@ -4,16 +4,14 @@ mod made;
 
 use std::sync::Arc;
 
-use arabesque_core::{
-    Border, Bounds, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, StopReason, Watch,
-};
+use arabesque_core::{Border, Bounds, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, Watch};
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
     artwork::Artwork,
     exemplar::{LoadedExemplar, understood},
     method::{Preparation, Ready, RunContext, Show},
-    plane::constant_factor,
+    plane::{constant_factor, in_exemplar},
     recipe::{Job, Space},
     spacing::spacing,
 };
@@ -46,7 +44,8 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     };
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
     let exemplar = Arc::new(exemplar);
-    let engine = Engine::new(Arc::clone(&exemplar), &params, budget)?;
+    let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
+        .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
     Ok(Volume { exemplar, engine })
 }
 
@@ -82,12 +81,6 @@ impl Ready for Volume {
         let origin = context.origin();
         let make = |snapshot| VolumeMade::of_snapshot(&self.exemplar, frame, snapshot);
         let mut outcome = self.engine.run(&request, &mut Show { watch, origin: &origin, make })?;
-        if outcome.placements.is_empty() && outcome.curves.is_empty() {
-            return Err(match outcome.stopped {
-                StopReason::Stopped => Error::no_result("stopped before anything was placed", "give it more time"),
-                StopReason::Finished => Error::no_result("nothing fits the box", "make it larger"),
-            });
-        }
         outcome.warnings.splice(0..0, context.warnings);
         Ok(Artwork::new(origin, VolumeMade { exemplar: Arc::clone(&self.exemplar), frame, outcome }))
     }

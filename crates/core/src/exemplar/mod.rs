@@ -9,7 +9,7 @@ use crate::{
     curve::Path,
     error::{Error, Result},
     region::Outline,
-    space::{Bounds, Similarity, Vector},
+    space::{Bounds, Similarity, Spread, Vector},
 };
 use window::window_around;
 
@@ -144,6 +144,17 @@ impl<const D: usize> Exemplar<D> {
     /// # Errors
     /// As [`Exemplar::new`].
     pub fn from_points(place: &str, points: &[Vector<D>], class_of: &[usize], names: &[String]) -> Result<Self> {
+        let spread = Spread::of(points.iter().copied());
+        let is_flat = Bounds::around(points.iter().copied()).size().0.contains(&0.0);
+        if points.len() == 1 {
+            let advice = "give several, so that the pattern shows distances and directions";
+            return Err(Error::input(place, "one point only, expected at least two", advice));
+        }
+        if !spread.fills::<D>() && (points.len() > D || is_flat) && !points.is_empty() {
+            let problem = format!("all {} points lie {}", points.len(), spread.words());
+            let advice = if D == 2 { "the plane" } else { "space" };
+            return Err(Error::input(place, problem, format!("give points that spread over {advice}")));
+        }
         let elements = points.iter().zip(class_of).map(|(&p, &class)| Element {
             class,
             centre: p,
@@ -172,6 +183,20 @@ impl<const D: usize> Exemplar<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_that_do_not_spread_are_told_how_they_lie() {
+        let told = |points: &[Vector<2>]| {
+            let class_of = vec![0; points.len()];
+            Exemplar::from_points("t", points, &class_of, &["a".into()]).unwrap_err().to_string()
+        };
+        assert!(told(&[Vector::xy(2.0, 3.0)]).starts_with("t: one point only"));
+        assert!(told(&[Vector::xy(2.0, 3.0); 5]).starts_with("t: all 5 points lie at one place"));
+        assert!(told(&[Vector::xy(2.0, 3.0), Vector::xy(4.0, 3.0)]).starts_with("t: all 2 points lie on one line"));
+        let slanted: Vec<_> = (0..9).map(|k| Vector::xy(f64::from(k), 0.1 * f64::from(k))).collect();
+        assert!(told(&slanted).starts_with("t: all 9 points lie on one line"));
+        assert!(told(&[]).contains("no element found"));
+    }
 
     #[test]
     fn an_exemplar_of_cut_elements_alone_is_refused() {

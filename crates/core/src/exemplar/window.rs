@@ -9,6 +9,9 @@ use crate::{
 /// Share of the estimated margin that is used: a window that is too large claims emptiness that nobody has seen, and thins the output.
 const KEPT_MARGIN: f64 = 0.15;
 
+/// Points of which the mean one has so many in its cell lie in heaps: their cells tell nothing, and would take for ever to measure.
+const HEAPED: f64 = 1000.0;
+
 /// The window that points were probably cut from: their bounding box, moved outwards so far that its density is that of the interior.
 ///
 /// The interior density is one over the mean Voronoi cell of the points whose cell does not reach the bounding box. A lattice gets half
@@ -35,6 +38,9 @@ pub(super) fn window_around<const D: usize>(points: &[Vector<D>]) -> Bounds<D> {
 /// Mean measure of the Voronoi cells that do not reach the box, found by sampling; `None` when fewer than nine are whole.
 fn interior_cell<const D: usize>(points: &[Vector<D>], tight: &Bounds<D>, spacing: f64) -> Option<f64> {
     let index = GridIndex::new(points, spacing, &Domain::Box(*tight));
+    if index.crowding() > HEAPED {
+        return None;
+    }
     let per_point = if points.len() > 20_000 { 16.0 } else { 128.0 };
     let side = ((points.len() as f64 * per_point).powf(1.0 / D as f64).ceil() as usize).clamp(8, 4096);
     let (mut hits, mut cut) = (vec![0_u32; points.len()], vec![false; points.len()]);

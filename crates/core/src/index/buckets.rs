@@ -10,16 +10,16 @@ pub struct Buckets<const D: usize> {
     lists: Vec<Vec<u32>>,
 }
 
-/// Most cells along a coordinate.
-const MOST_CELLS: usize = 4096;
+/// Most cells along a coordinate, and along all together: bounds memory where the domain is large and the cells are small.
+const MOST_CELLS: (usize, usize) = (4096, 1 << 22);
 
 impl<const D: usize> Buckets<D> {
     /// An empty grid over the domain grown by `margin`, with cells of about `cell`.
     pub fn new(domain: &Domain<D>, margin: f64, cell: f64) -> Self {
         let is_periodic = domain.period().is_some();
         let bounds = if is_periodic { domain.bounds() } else { domain.bounds().grown(margin) };
-        let counts = bounds.size().0.map(|side| ((side / cell) as usize).clamp(1, MOST_CELLS));
-        let lattice = Lattice::new(bounds, counts, is_periodic);
+        let counts = bounds.size().0.map(|side| ((side / cell) as usize).clamp(1, MOST_CELLS.0));
+        let lattice = Lattice::at_most(bounds, counts, is_periodic, MOST_CELLS.1);
         Self { lists: vec![Vec::new(); lattice.count()], lattice }
     }
 
@@ -30,8 +30,14 @@ impl<const D: usize> Buckets<D> {
     }
 
     /// Calls `visit(i)` for every point in the cells that the box around a ball touches, in a fixed order: at least the points in the ball.
-    pub fn near(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32)) {
-        self.lattice.around(p, radius, |cell, _| self.lists[cell].iter().for_each(|&i| visit(i)));
+    /// Returns what the query cost: the number of these points and of the cells.
+    pub fn near(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32)) -> u64 {
+        let mut looked = 0;
+        self.lattice.around(p, radius, |cell, _| {
+            looked += 1 + self.lists[cell].len() as u64;
+            self.lists[cell].iter().for_each(|&i| visit(i));
+        });
+        looked
     }
 }
 

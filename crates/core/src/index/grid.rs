@@ -62,9 +62,12 @@ impl<const D: usize> GridIndex<D> {
     }
 
     /// Calls `visit(i, offset)` for each point within `radius` of `p`, with the offset from `p` to it by the shortest way.
-    /// Points come cell by cell, in a fixed order. On a torus a point comes once, even when the radius reaches around.
-    pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
+    /// Points come cell by cell, in a fixed order. On a torus a point comes once, even when the radius reaches around. Returns how many
+    /// points were looked at, within the radius or not: what the query cost.
+    pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) -> u64 {
+        let mut looked = 0;
         self.lattice.around(p, radius, |cell, _| {
+            looked += u64::from(self.starts[cell + 1] - self.starts[cell]);
             for slot in self.starts[cell] as usize..self.starts[cell + 1] as usize {
                 let offset = periodic::offset(p, self.points[slot], self.period);
                 if offset.norm2() <= radius * radius {
@@ -72,6 +75,28 @@ impl<const D: usize> GridIndex<D> {
                 }
             }
         });
+        looked
+    }
+
+    /// Number of points that [`GridIndex::within`] would look at: at least those within `radius` of `p`.
+    pub fn load(&self, p: Vector<D>, radius: f64) -> u64 {
+        let mut looked = 0;
+        self.lattice.around(p, radius, |cell, _| looked += u64::from(self.starts[cell + 1] - self.starts[cell]));
+        looked
+    }
+
+    /// Number of points in the cell of a point, in the mean over all points: a handful where they spread evenly, as many as there are where
+    /// they lie in one heap.
+    pub fn crowding(&self) -> f64 {
+        let squares: f64 = self.starts.windows(2).map(|w| f64::from(w[1] - w[0]).powi(2)).sum();
+        squares / self.points.len().max(1) as f64
+    }
+
+    /// The cell with the most points: how many, and one of them. `None` without points.
+    pub fn fullest(&self) -> Option<(usize, Vector<D>)> {
+        let count = |w: &[u32]| (w[1] - w[0]) as usize;
+        let fullest = self.starts.windows(2).max_by_key(|w| count(w))?;
+        Some((count(fullest), *self.points.get(fullest[0] as usize)?))
     }
 
     /// The nearest point to `p` other than `except`, with its distance, no farther than `radius`.
@@ -104,6 +129,16 @@ mod tests {
             let want: Vec<_> = (0..400).filter(|&i| domain.offset(p, points[i]).norm() <= radius).collect();
             assert_eq!(got, want);
         }
+    }
+
+    #[test]
+    fn heaps_are_known_and_take_few_cells() {
+        let mut points = vec![Vector::xy(5.0, 5.0); 90];
+        points.extend((0..10).map(|k| Vector::xy(1e9 * f64::from(k), 1e-9 * f64::from(k))));
+        let index = GridIndex::new(&points, 1e-12, &Domain::Box(Bounds::around(points.iter().copied())));
+        assert!(index.fullest().is_some_and(|(n, p)| n >= 90 && p[0] < 1e9));
+        assert!(index.crowding() > 80.0 && index.lattice.count() <= 4 * points.len() + 16);
+        assert!(index.load(points[0], 1.0) >= 90 && index.within(points[0], 1.0, |_, _| {}) >= 90);
     }
 
     #[test]

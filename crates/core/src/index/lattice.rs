@@ -20,6 +20,16 @@ impl<const D: usize> Lattice<D> {
         Self { origin: bounds.min, cell, counts, is_periodic }
     }
 
+    /// A lattice of about `counts[k]` cells along coordinate `k`, of fewer where that would be more than `most` together.
+    pub fn at_most(bounds: Bounds<D>, mut counts: [usize; D], is_periodic: bool, most: usize) -> Self {
+        while counts.iter().fold(1, |all: usize, &n| all.saturating_mul(n)) > most.max(1) {
+            if let Some(longest) = counts.iter_mut().max() {
+                *longest = longest.div_ceil(2);
+            }
+        }
+        Self::new(bounds, counts, is_periodic)
+    }
+
     /// Number of cells.
     pub fn count(&self) -> usize {
         self.counts.iter().product()
@@ -136,5 +146,14 @@ mod tests {
         let lattice = lattice(false);
         assert_eq!((lattice.nearest(Vector::xy(99.0, 99.0)), lattice.nearest(Vector::xy(-99.0, 2.5))), (11, 0));
         assert_eq!(lattice.count(), 12);
+    }
+
+    #[test]
+    fn too_many_cells_become_larger_ones() {
+        let bounds = Bounds::new(Vector([0.0; 3]), Vector([8.0, 4.0, 1.0]));
+        assert_eq!(Lattice::at_most(bounds, [8, 4, 1], false, 32).count(), 32);
+        let coarse = Lattice::at_most(bounds, [1 << 40, 1 << 40, 1 << 40], false, 1000);
+        assert!((125..=1000).contains(&coarse.count()), "{}", coarse.count());
+        assert_eq!(Lattice::at_most(bounds, [8, 4, 1], false, 0).count(), 1);
     }
 }

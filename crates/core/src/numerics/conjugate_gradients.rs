@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::space::Vector;
+use crate::{budget::Budget, error::Result, space::Vector};
 
 /// A symmetric positive definite matrix, and right sides of `D` numbers for every unknown.
 pub trait Equations<const D: usize>: Sync {
@@ -14,21 +14,30 @@ pub trait Equations<const D: usize>: Sync {
     fn right(&self, i: usize) -> Vector<D>;
     /// Number of unknowns.
     fn count(&self) -> usize;
+    /// About how many nanoseconds the product of the matrix with a vector takes, for the budget.
+    fn price(&self) -> u64;
 }
 
 /// Unknowns handled as one piece of parallel work; sums are taken piece by piece, so that they do not depend on the number of threads.
 const PIECE: usize = 4096;
+
+/// Nanoseconds that a step takes for each unknown, besides the product with the matrix.
+const VECTORS: u64 = 20;
 
 /// Fewest rows worth a piece of parallel work of their own.
 const ROWS: usize = 512;
 
 /// Solves equations with the diagonal as preconditioner, from zero, until the residual is `tolerance` of the start or after `most` steps.
 /// Never raises the quadratic form whose minimum is looked for above its value at zero.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
 pub fn conjugate_gradients<const D: usize>(
     equations: &impl Equations<D>,
     tolerance: f64,
     most: usize,
-) -> Vec<Vector<D>> {
+    budget: &Budget,
+) -> Result<Vec<Vector<D>>> {
     let n = equations.count();
     let mut x = vec![Vector::ZERO; n];
     let mut r: Vec<_> = (0..n).into_par_iter().with_min_len(ROWS).map(|i| equations.right(i)).collect();
@@ -40,6 +49,7 @@ pub fn conjugate_gradients<const D: usize>(
         if rz <= stop || rz <= f64::MIN_POSITIVE {
             break;
         }
+        budget.spend(equations.price() + n as u64 * VECTORS)?;
         let q: Vec<_> = (0..n).into_par_iter().with_min_len(ROWS).map(|i| equations.row(i, &p)).collect();
         let alpha = rz / dot(&p, &q).max(f64::MIN_POSITIVE);
         add_scaled(&mut x, &p, alpha);
@@ -50,7 +60,7 @@ pub fn conjugate_gradients<const D: usize>(
         rz = next;
         p.par_iter_mut().with_min_len(ROWS).zip(&z).for_each(|(p, &z)| *p = z + *p * beta);
     }
-    x
+    Ok(x)
 }
 
 fn preconditioned<const D: usize>(equations: &impl Equations<D>, r: &[Vector<D>]) -> Vec<Vector<D>> {
@@ -99,6 +109,10 @@ mod tests {
         fn count(&self) -> usize {
             self.right.nrows()
         }
+
+        fn price(&self) -> u64 {
+            1000
+        }
     }
 
     fn random(n: usize) -> Full {
@@ -114,7 +128,7 @@ mod tests {
         for n in [1, 7, 40] {
             let equations = random(n);
             let want = equations.matrix.clone().cholesky().unwrap().solve(&equations.right);
-            let got = conjugate_gradients(&equations, 1e-12, 1000);
+            let got = conjugate_gradients(&equations, 1e-12, 1000, &Budget::default()).unwrap();
             assert!((0..n).all(|i| (0..2).all(|k| (got[i][k] - want[(i, k)]).abs() < 1e-8)), "{n}");
         }
     }
@@ -127,15 +141,22 @@ mod tests {
         };
         let mut last = form(&[Vector::ZERO; 20]);
         for steps in 1..12 {
-            let now = form(&conjugate_gradients(&equations, 0.0, steps));
+            let now = form(&conjugate_gradients(&equations, 0.0, steps, &Budget::default()).unwrap());
             assert!(now < last, "{steps}: {last} {now}");
             last = now;
         }
     }
 
     #[test]
+    fn a_solver_that_is_asked_to_stop_gives_nothing() {
+        let budget = Budget::stopping_at(crate::budget::Limits::default(), 2);
+        assert!(conjugate_gradients(&random(20), 0.0, 1000, &budget).is_err());
+        assert_eq!(budget.checks(), 2);
+    }
+
+    #[test]
     fn nothing_to_solve_is_solved() {
         let none = Full { matrix: nalgebra::DMatrix::zeros(0, 0), right: nalgebra::DMatrix::zeros(0, 2) };
-        assert!(conjugate_gradients(&none, 1e-9, 10).is_empty());
+        assert!(conjugate_gradients(&none, 1e-9, 10, &Budget::default()).unwrap().is_empty());
     }
 }

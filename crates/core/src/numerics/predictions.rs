@@ -1,6 +1,8 @@
 //! Least squares for positions that predict one another: the graph of predictions as linear equations.
 
 use crate::{
+    budget::Budget,
+    error::Result,
     numerics::{Equations, conjugate_gradients},
     space::Vector,
 };
@@ -71,8 +73,11 @@ impl<const D: usize> NormalEquations<D> {
 
     /// Solves the equations from zero, until the residual is `tolerance` of the start or after `most` steps. Never raises the sum of squares
     /// above its value at zero.
-    pub fn solve(&self, tolerance: f64, most: usize) -> Vec<Vector<D>> {
-        conjugate_gradients(self, tolerance, most)
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub fn solve(&self, tolerance: f64, most: usize, budget: &Budget) -> Result<Vec<Vector<D>>> {
+        conjugate_gradients(self, tolerance, most, budget)
     }
 }
 
@@ -95,6 +100,10 @@ impl<const D: usize> Equations<D> for NormalEquations<D> {
 
     fn count(&self) -> usize {
         self.right.len()
+    }
+
+    fn price(&self) -> u64 {
+        self.entries.len() as u64 * 2
     }
 }
 
@@ -149,7 +158,9 @@ mod tests {
                 }
             }
             let want = matrix.cholesky().unwrap().solve(&right);
-            let got = NormalEquations::new(&predictions, &pulls, vec![false; n]).solve(1e-12, 10_000);
+            let got = NormalEquations::new(&predictions, &pulls, vec![false; n])
+                .solve(1e-12, 10_000, &Budget::default())
+                .unwrap();
             for i in 0..n {
                 assert!((0..2).all(|k| (got[i][k] - want[(i, k)]).abs() < 1e-7), "{n} {i}");
             }
@@ -163,7 +174,7 @@ mod tests {
             let equations = NormalEquations::new(&predictions, &pulls, vec![false; 60]);
             let mut last = energy(&predictions, &pulls, &[Vector::ZERO; 60]);
             for steps in 1..20 {
-                let now = energy(&predictions, &pulls, &equations.solve(0.0, steps));
+                let now = energy(&predictions, &pulls, &equations.solve(0.0, steps, &Budget::default()).unwrap());
                 assert!(now <= last * (1.0 + 1e-12), "{seed} {steps}: {last} {now}");
                 last = now;
             }
@@ -175,7 +186,7 @@ mod tests {
         let (predictions, pulls) = problem(12, 5);
         let mut fixed = vec![false; 12];
         fixed[4] = true;
-        let x = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-9, 100);
+        let x = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-9, 100, &Budget::default()).unwrap();
         assert_eq!(x[4], Vector::ZERO);
         assert!(x.iter().any(|v| v.norm() > 0.01));
     }

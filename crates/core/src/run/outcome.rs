@@ -52,8 +52,10 @@ pub struct EnergyPoint {
 pub enum StopReason {
     /// All planned iterations were done, or nothing changed any more.
     Finished,
-    /// Whoever watched the run asked to stop.
+    /// Whoever watched the run, or holds its budget, asked to stop.
     Stopped,
+    /// A limit was reached; a warning says which one.
+    Limit,
 }
 
 /// Trouble that does not prevent a result.

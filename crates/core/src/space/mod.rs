@@ -5,6 +5,7 @@ mod cells;
 mod matrix;
 pub(crate) mod periodic;
 mod similarity;
+mod spread;
 mod vector;
 mod warp;
 
@@ -12,5 +13,6 @@ pub use bounds::Bounds;
 pub use cells::{cell_index, cell_place};
 pub use matrix::Matrix;
 pub use similarity::Similarity;
+pub use spread::Spread;
 pub use vector::Vector;
 pub use warp::{Warp, warp};

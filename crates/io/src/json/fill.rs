@@ -113,6 +113,7 @@ pub fn write_json<const D: usize>(
         stopped: match outcome.stopped {
             StopReason::Finished => "finished",
             StopReason::Stopped => "early",
+            StopReason::Limit => "limit",
         },
         recipe: frame.recipe,
     };

@@ -27,6 +27,7 @@
 pub(crate) mod border;
 pub(crate) mod draw;
 pub(crate) mod repair;
+pub(crate) mod strokes;
 #[cfg(test)]
 mod tests;
 pub(crate) mod votes;

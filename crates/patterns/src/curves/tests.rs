@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Numbered, Path, Request, Vector};
+use arabesque_core::{
+    Bounds, Budget, Curve, Domain, Drawn, Exemplar, Matrix, Measured, Numbered, Path, Request, Vector,
+};
 use proptest::prelude::*;
 
 use crate::{
@@ -62,10 +64,11 @@ struct Rebuilt {
 fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     let exemplar = exemplar(paths);
     let params = Params { levels: 1, ..Params::default() };
-    let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.view()).unwrap());
-    let sampled = level_exemplars(&std::sync::Arc::new(exemplar.clone()), Some(&skeleton), &params).remove(0);
+    let skeleton = Arc::new(Skeleton::new(&exemplar.curves, &exemplar.view(), &Budget::default()).unwrap());
+    let sampled = level_exemplars(&std::sync::Arc::new(exemplar.clone()), Some(&skeleton), &params, &Budget::default());
+    let sampled = sampled.unwrap().remove(0);
     let request = Request::new(Domain::Box(window().grown(SIDE)));
-    let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
+    let extent = Extent::new(&request, &sampled.exemplar, &sampled.library, sampled.level.base).unwrap();
     let net = sampled.level.net.clone().unwrap();
     let items = (0..net.nodes.len()).map(|n| {
         let item = Item { source: sampled.level.base + n as u32, position: net.nodes[n].position, frozen: None };
@@ -73,7 +76,7 @@ fn with_state<R>(paths: &[Path<2>], work: impl FnOnce(State<'_, 2>) -> R) -> R {
     });
     let draft = Draft { items: items.collect(), links: Vec::new() };
     let mut state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
-    edges::link_sources(&mut state);
+    edges::link_sources(&mut state).unwrap();
     work(state)
 }
 
@@ -102,9 +105,9 @@ fn rebuilt(paths: &[Path<2>]) -> Rebuilt {
     with_state(paths, |state| {
         let net = state.level.net.clone().unwrap();
         assert_eq!(links(&state), arms(&net).into());
-        let votes = collect_votes(&state);
-        let chains = chains(&state, &votes, true);
-        let strokes = draw(&state, &chains);
+        let votes = collect_votes(&state).unwrap();
+        let chains = chains(&state, &votes, true).unwrap();
+        let strokes = draw(&state, &chains).unwrap();
         Rebuilt { net, strokes }
     })
 }
@@ -281,7 +284,7 @@ proptest! {
 fn edges_side_by_side_become_one_line() {
     // Besides the edges of a line, one from each sample to the second next.
     with_state(&[polyline(&[(5.0, 50.0), (95.0, 50.0)], false)], |mut state| {
-        let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
+        let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state).unwrap());
         let known = links(&state);
         for s in known.numbers() {
             for &next in &known[s] {
@@ -291,7 +294,7 @@ fn edges_side_by_side_become_one_line() {
             }
         }
         assert_ne!(links(&state), known);
-        assert!(EdgeRules::of(&net).restore(&mut state, &votes) > 0);
+        assert!(EdgeRules::of(&net, &Budget::default()).unwrap().restore(&mut state, &votes).unwrap() > 0);
         assert_eq!(links(&state), known);
     });
 }
@@ -300,7 +303,7 @@ fn edges_side_by_side_become_one_line() {
 fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
     let lines = [polyline(&[(5.0, 45.0), (95.0, 45.0)], false), polyline(&[(5.0, 50.0), (95.0, 50.0)], false)];
     with_state(&lines, |mut state| {
-        let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
+        let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state).unwrap());
         let known = links(&state);
         // From a sample of one line to a sample of the other that is not the opposite one, and the other way round.
         let row = |y: f64| {
@@ -311,10 +314,13 @@ fn of_edges_that_cross_the_longer_one_goes_where_nobody_voted() {
         };
         let (low, high) = (row(45.0), row(50.0));
         for (a, b) in [(low[3], high[4]), (low[5], high[3])] {
-            assert_eq!(EdgeRules::of(&net).allow(&state, a, b), (a, b) == (low[3], high[4]));
+            assert_eq!(
+                EdgeRules::of(&net, &Budget::default()).unwrap().allow(&state, a, b),
+                (a, b) == (low[3], high[4])
+            );
             state.link(a, b);
         }
-        assert!(EdgeRules::of(&net).restore(&mut state, &votes) > 0);
+        assert!(EdgeRules::of(&net, &Budget::default()).unwrap().restore(&mut state, &votes).unwrap() > 0);
         let left = links(&state);
         assert!(left[low[3]].contains(&high[4]) && !left[low[5]].contains(&high[3]));
         assert_eq!(left.iter().map(Vec::len).sum::<usize>(), known.iter().map(Vec::len).sum::<usize>() + 2);
@@ -327,9 +333,9 @@ fn what_the_exemplar_does_is_left_as_it_is() {
     let cross = [polyline(&[(5.0, 50.0), (95.0, 50.0)], false), polyline(&[(50.0, 5.0), (50.0, 95.0)], false)];
     for paths in [narrow, cross] {
         with_state(&paths, |mut state| {
-            let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state));
+            let (net, votes) = (state.level.net.clone().unwrap(), collect_votes(&state).unwrap());
             let known = links(&state);
-            assert_eq!(EdgeRules::of(&net).restore(&mut state, &votes), 0);
+            assert_eq!(EdgeRules::of(&net, &Budget::default()).unwrap().restore(&mut state, &votes).unwrap(), 0);
             assert_eq!(links(&state), known);
         });
     }

@@ -18,8 +18,9 @@ const MIN_SHARE: f64 = 0.08;
 pub(crate) fn kinds<const D: usize>(exemplar: &Exemplar<D>) -> (Vec<u32>, usize) {
     let mut kind = vec![0; exemplar.elements.len()];
     let mut count = 0;
-    for class in 0..exemplar.classes.len() {
-        let members: Vec<usize> = (0..kind.len()).filter(|&e| exemplar.elements[e].class == class).collect();
+    let mut members_of = vec![Vec::new(); exemplar.classes.len()];
+    exemplar.elements.iter().enumerate().for_each(|(e, element)| members_of[element.class].push(e));
+    for members in members_of {
         let colours: Vec<[f64; 3]> = members.iter().map(|&e| exemplar.elements[e].colour).collect();
         let (label, groups) = group(&colours);
         members.iter().zip(label).for_each(|(&e, l)| kind[e] = (count + l) as u32);

@@ -1,8 +1,8 @@
 //! The exemplar at one level of the hierarchy: its samples and their neighbourhoods, flattened for the search.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use arabesque_core::{Domain, GridIndex, Numbered, Vector};
+use arabesque_core::{Budget, Domain, GridIndex, Held, Numbered, Result, Vector};
 
 use crate::exemplar::{
     graph::net::{Net, Star},
@@ -24,6 +24,15 @@ pub(crate) struct Near<const D: usize> {
 /// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample
 /// with an edge too few or too many an outlier; half of that lets it be matched and told to gain or lose the edge.
 const SINGLE: f64 = 0.5;
+
+/// Bytes of a sample besides its neighbours.
+const SAMPLE: usize = 256;
+
+/// Neighbours whose memory is held together.
+const BLOCK: usize = 1 << 18;
+
+/// Samples whose similar ones may be looked for at the same time.
+const SEARCHED: usize = 64;
 
 /// A run of neighbours with the same key.
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +78,9 @@ pub(crate) struct Level<const D: usize> {
     runs: Vec<Run>,
     /// Most similar samples of each sample, best first [Ma 2011 §4.2]; found when they are first asked for.
     alike: Numbered<OnceLock<Vec<u32>>>,
+    /// Held while the similar samples of a sample are looked for, so that nobody else does the same work.
+    searched: Arc<[Mutex<()>]>,
+    held: Arc<Vec<Held>>,
     /// The sample graph of the curves, where there are any.
     pub(crate) net: Option<Arc<Net<D>>>,
     /// First pseudo element: those before it are true elements, each of the others is a node of the net.
@@ -81,13 +93,31 @@ pub(crate) struct Level<const D: usize> {
 
 impl<const D: usize> Level<D> {
     /// Samples the exemplar at `detail` (see [`ElementSamples::at_detail`]).
-    pub(crate) fn new(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, ball: Ball) -> Self {
-        let mut level = Self::sampled(library, samples, detail, ball.radius);
-        level.flatten(&Domain::Box(library.view.window), ball.slack);
-        level
+    ///
+    /// # Errors
+    /// When the budget is used up: with very many samples in each neighbourhood.
+    pub(crate) fn new(
+        library: &Library<D>,
+        samples: &ElementSamples<D>,
+        detail: f64,
+        ball: Ball,
+        budget: &Budget,
+    ) -> Result<Self> {
+        let mut level = Self::sampled(library, samples, detail, ball.radius, budget)?;
+        level.flatten(&Domain::Box(library.view.window), ball.slack, budget)?;
+        Ok(level)
     }
 
-    fn sampled(library: &Library<D>, samples: &ElementSamples<D>, detail: f64, radius: f64) -> Self {
+    fn sampled(
+        library: &Library<D>,
+        samples: &ElementSamples<D>,
+        detail: f64,
+        radius: f64,
+        budget: &Budget,
+    ) -> Result<Self> {
+        let count = samples.count();
+        let held = budget.hold("samples of the exemplar", count.saturating_mul(SAMPLE))?;
+        budget.spend(count as u64 * SAMPLE as u64)?;
         let parts: Numbered<_> = (0..library.len()).map(|e| samples.at_detail(e, detail)).collect();
         let most = parts.iter().map(Vec::len).max().unwrap_or(1);
         let keys = library.classes() * most;
@@ -105,6 +135,8 @@ impl<const D: usize> Level<D> {
             run_starts: Numbered::filled(0, 1),
             runs: Vec::new(),
             alike: Numbered::new(),
+            searched: (0..SEARCHED).map(|_| Mutex::new(())).collect(),
+            held: Arc::new(vec![held]),
             net: None,
             base: library.len() as u32,
             stars: Numbered::new(),
@@ -124,24 +156,35 @@ impl<const D: usize> Level<D> {
         }
         level.stars = Numbered::filled(Star::EMPTY, level.position.len());
         level.alike = Numbered::filled(OnceLock::new(), level.position.len());
-        level
+        Ok(level)
     }
 
-    fn flatten(&mut self, plane: &Domain<D>, slack: f64) {
+    fn flatten(&mut self, plane: &Domain<D>, slack: f64, budget: &Budget) -> Result<()> {
+        let mut meter = budget.meter();
+        let mut held = Vec::new();
         let reach = self.radius + slack;
         let index = GridIndex::new(&self.position, reach, plane);
         for i in 0..self.position.len() {
             let mut found = Vec::new();
-            index.within(self.position[i], reach, |j, offset| {
+            let looked = index.within(self.position[i], reach, |j, offset| {
                 if j != i {
                     let weight = if offset.norm() <= self.radius { fall_off(offset, self.radius) as f32 } else { 0.0 };
                     let offset = offset.0.map(|v| v as f32);
                     found.push((self.key[j], Near { offset, sample: j as u32, weight }));
                 }
             });
+            meter.spend(3 * looked + 40 * found.len() as u64)?;
+            if self.near.len() + found.len() > held.len() * BLOCK {
+                // A list that grows takes up to twice what is in it.
+                let block = budget.hold("neighbourhoods of the exemplar", 2 * BLOCK * size_of::<Near<D>>())?;
+                held.push(block);
+            }
             found.sort_by_key(|(key, near)| (*key, near.sample));
             self.push_runs(&found);
         }
+        held.extend(Arc::into_inner(std::mem::take(&mut self.held)).unwrap_or_default());
+        self.held = Arc::new(held);
+        Ok(())
     }
 
     fn push_runs(&mut self, found: &[(u32, Near<D>)]) {
@@ -176,8 +219,19 @@ impl<const D: usize> Level<D> {
 
     /// The samples most similar to sample `i`, best first, found by `find` the first time. `find` must always find the
     /// same, and must not wait for other threads.
-    pub(crate) fn alike(&self, i: u32, find: impl FnOnce() -> Vec<u32>) -> &[u32] {
-        self.alike[i].get_or_init(find)
+    ///
+    /// # Errors
+    /// What `find` gives; then the next one to ask looks again.
+    pub(crate) fn alike(&self, i: u32, find: impl FnOnce() -> Result<Vec<u32>>) -> Result<&[u32]> {
+        if let Some(known) = self.alike[i].get() {
+            return Ok(known);
+        }
+        let _alone = self.searched[i as usize % SEARCHED].lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = self.alike[i].get() {
+            return Ok(known);
+        }
+        let found = find()?;
+        Ok(self.alike[i].get_or_init(|| found))
     }
 
     /// Neighbours of sample `i`, sorted by key.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Exemplar, Vector, parallel_line_spacing};
+use arabesque_core::{Budget, Exemplar, Result, Vector, parallel_line_spacing};
 
 use crate::{
     exemplar::{
@@ -33,18 +33,23 @@ pub(crate) struct LevelExemplar<const D: usize> {
 }
 
 /// The settings of all levels, coarsest first.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
 pub(crate) fn level_exemplars<const D: usize>(
     exemplar: &Arc<Exemplar<D>>,
     skeleton: Option<&Arc<Skeleton<D>>>,
     params: &Params,
-) -> Vec<LevelExemplar<D>> {
-    let samples = ElementSamples::new(exemplar, params.samples);
+    budget: &Budget,
+) -> Result<Vec<LevelExemplar<D>>> {
+    let samples = ElementSamples::new(exemplar, params.samples, budget)?;
     let Some(skeleton) = skeleton else {
-        let library = Arc::new(Library::new(exemplar, None));
+        let library = Arc::new(Library::new(exemplar, None, budget)?);
         let sampled = |number| {
             let counts = (params.coarse_neighbours, params.fine_neighbours);
-            let level = Level::new(&library, &samples, detail(params, number), ball(&library, params, number, counts));
-            LevelExemplar { exemplar: Arc::clone(exemplar), library: library.clone(), level }
+            let ball = ball(&library, params, number, counts);
+            let level = Level::new(&library, &samples, detail(params, number), ball, budget)?;
+            Ok(LevelExemplar { exemplar: Arc::clone(exemplar), library: library.clone(), level })
         };
         return (0..params.levels).map(sampled).collect();
     };
@@ -54,15 +59,16 @@ pub(crate) fn level_exemplars<const D: usize>(
         let spacing = step * params.coarsening.powf(1.0 - detail(params, number));
         // Levels with the same sampling distance share everything but the radius.
         if made.last().is_none_or(|m| m.0 != spacing) {
-            let pseudo = PseudoElements::new(exemplar, skeleton, spacing);
-            let library = Arc::new(Library::new(&pseudo.exemplar, Some((exemplar.classes.len(), spacing))));
+            let pseudo = PseudoElements::new(exemplar, skeleton, spacing, budget)?;
+            let library = Arc::new(Library::new(&pseudo.exemplar, Some((exemplar.classes.len(), spacing)), budget)?);
             made.push((spacing, pseudo.clone(), Arc::new(pseudo.exemplar), library));
         }
         let (_, pseudo, shared, library) = &made[made.len() - 1];
         let samples = samples.with_points(shared.elements.len() - pseudo.base);
-        let level = Level::new(library, &samples, detail(params, number), ball(library, params, number, NEIGHBOURS));
+        let ball = ball(library, params, number, NEIGHBOURS);
+        let level = Level::new(library, &samples, detail(params, number), ball, budget)?;
         let level = level.with_net(Arc::clone(&pseudo.net), pseudo.base as u32, params.edges == Switch::On);
-        LevelExemplar { exemplar: Arc::clone(shared), library: Arc::clone(library), level }
+        Ok(LevelExemplar { exemplar: Arc::clone(shared), library: Arc::clone(library), level })
     };
     (0..params.levels).map(&mut sampled).collect()
 }

@@ -1,11 +1,22 @@
 //! The exemplar, analysed: what every later stage looks up.
 
-use arabesque_core::{Domain, Exemplar, GridIndex, Numbered, Role, Stream, Vector, View};
+use arabesque_core::{
+    Bounds, Budget, Domain, Exemplar, GridIndex, Meter, Numbered, Result, Role, Stream, Vector, View,
+};
 
-use crate::exemplar::{features::Feature, kinds::kinds};
+use crate::exemplar::{closest::ClosestDistances, features::Feature, kinds::kinds};
 
 /// Random places that are tried where most of the window is a hole.
 const TRIES: usize = 64;
+
+/// Elements whose ink reaches farther than so many diagonals of the frame are no part of a pattern that the frame could show.
+const FAR: f64 = 2.0;
+
+/// Nanoseconds for an element that is looked at, whether it is near or not.
+const LOOK: u64 = 4;
+
+/// Nanoseconds for a corner of an outline that is described.
+const CORNER: u64 = 60;
 
 /// Elements of one class, for look-ups by place.
 #[derive(Clone, Debug)]
@@ -29,6 +40,10 @@ pub(crate) struct Library<const D: usize> {
     pub(crate) radius: Numbered<f64>,
     /// Whether each element may be copied.
     pub(crate) copyable: Numbered<bool>,
+    /// How far ink reaches from the centre of an element, those left out that are out of all proportion.
+    pub(crate) reach: f64,
+    /// How many elements are out of all proportion: they are not copied.
+    pub(crate) giants: usize,
     /// Where the exemplar is known.
     pub(crate) view: View<D>,
     /// Mean element spacing: (window measure / elements)^(1/D).
@@ -39,9 +54,9 @@ pub(crate) struct Library<const D: usize> {
     pub(crate) nearest: Numbered<f64>,
     /// Radius of the largest ball without a centre that the exemplar surely shows.
     pub(crate) emptiness: f64,
-    /// Smallest distance between the centres of two classes, row by row; as far as the elements are looked for when
-    /// they never come close.
-    closest: Vec<f64>,
+    /// Smallest distance between the centres of two classes; as far as the elements are looked for when they never come
+    /// close.
+    closest: ClosestDistances,
     by_class: Numbered<ClassIndex<D>>,
     all: GridIndex<D>,
 }
@@ -49,32 +64,42 @@ pub(crate) struct Library<const D: usize> {
 impl<const D: usize> Library<D> {
     /// `strokes`: the first pseudo class, that of curve samples, and the distance of these along their stroke, which is
     /// their outlier distance [Tu 2020 §4.2.3].
-    pub(crate) fn new(exemplar: &Exemplar<D>, strokes: Option<(usize, f64)>) -> Self {
+    pub(crate) fn new(exemplar: &Exemplar<D>, strokes: Option<(usize, f64)>, budget: &Budget) -> Result<Self> {
+        let corners: usize =
+            exemplar.elements.iter().map(|e| e.outline.rings.iter().map(Vec::len).sum::<usize>()).sum();
+        budget.spend(corners as u64 * CORNER + exemplar.elements.len() as u64 * 500)?;
         let centre: Numbered<_> = exemplar.elements.iter().map(|e| e.centre).collect();
         let (class, classes) = kinds(exemplar);
         let class = Numbered::from(class);
         let spacing = exemplar.spacing();
         let plane = Domain::Box(exemplar.window);
         let all = GridIndex::new(&centre, spacing, &plane);
-        let nearest: Numbered<_> = nearest_distances(&centre, &all, spacing);
-        let closest = closest_distances(&centre, &class, classes, &all, spacing);
+        let nearest: Numbered<_> = nearest_distances(&centre, &all, spacing, budget)?;
+        let closest = ClosestDistances::new(&centre, &class, classes, (&all, 2.0 * spacing), budget)?;
         let mut outlier = outlier_distances(&nearest, &class, classes, spacing);
         if let Some((first, distance)) = strokes {
             let of_strokes = exemplar.elements.iter().zip(&class).filter(|(e, _)| e.class >= first);
             of_strokes.for_each(|(_, &c)| outlier[c] = distance);
         }
-        let by_class = (0..classes)
-            .map(|c| {
-                let members: Vec<u32> = (0..class.len() as u32).filter(|&i| class[i] == c as u32).collect();
+        let mut members_of = Numbered::filled(Vec::new(), classes);
+        class.iter().zip(0..).for_each(|(&c, i)| members_of[c].push(i));
+        let by_class = members_of
+            .into_iter()
+            .enumerate()
+            .map(|(c, members): (usize, Vec<u32>)| {
                 let points: Vec<_> = members.iter().map(|&i| centre[i]).collect();
                 ClassIndex { grid: GridIndex::new(&points, outlier[c], &plane), members }
             })
             .collect();
         let elements = &exemplar.elements;
-        Self {
+        let radius: Numbered<_> = elements.iter().map(|e| e.outline.radius(e.centre)).collect();
+        let far = farthest(&exemplar.window);
+        Ok(Self {
             feature: elements.iter().map(|e| Feature::of(e, spacing)).collect(),
-            radius: elements.iter().map(|e| e.outline.radius(e.centre)).collect(),
-            copyable: elements.iter().map(|e| e.role == Role::Source).collect(),
+            copyable: elements.iter().zip(&radius).map(|(e, r)| e.role == Role::Source && *r <= far).collect(),
+            reach: radius.iter().copied().filter(|r| *r <= far).fold(0.0, f64::max),
+            giants: elements.iter().zip(&radius).filter(|(e, r)| e.role == Role::Source && **r > far).count(),
+            radius,
             view: exemplar.view(),
             centre,
             class,
@@ -82,10 +107,10 @@ impl<const D: usize> Library<D> {
             outlier,
             nearest,
             closest,
-            emptiness: emptiness(&exemplar.view(), &all, spacing),
+            emptiness: emptiness(&exemplar.view(), &all, spacing, budget)?,
             by_class,
             all,
-        }
+        })
     }
 
     /// A random place that the exemplar shows.
@@ -117,19 +142,25 @@ impl<const D: usize> Library<D> {
         self.by_class.len()
     }
 
-    /// Calls `visit(element, offset)` for the elements within `radius` of `p`.
-    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32, Vector<D>)) {
-        self.all.within(p, radius, |i, offset| visit(i as u32, offset));
+    /// Calls `visit(element, offset)` for the elements within `radius` of `p`. Returns about how many nanoseconds it took.
+    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32, Vector<D>)) -> u64 {
+        self.all.within(p, radius, |i, offset| visit(i as u32, offset)) * LOOK
     }
 
     /// The elements of `class` nearer to `p` than its outlier distance, position and attributes together: best first of
     /// at most two, with the squared distance.
-    pub(crate) fn alike(&self, class: u32, p: Vector<D>, feature: &Feature) -> [Option<(u32, f32)>; 2] {
+    pub(crate) fn alike(
+        &self,
+        class: u32,
+        p: Vector<D>,
+        feature: &Feature,
+        meter: &mut Meter<'_>,
+    ) -> Result<[Option<(u32, f32)>; 2]> {
         let index = &self.by_class[class];
         let k = self.outlier[class];
         let k2 = (k * k) as f32;
         let mut best = [None::<(u32, f32)>; 2];
-        index.grid.within(p, k, |slot, offset| {
+        let looked = index.grid.within(p, k, |slot, offset| {
             let i = index.members[slot];
             let cost = offset.norm2() as f32 + self.feature[i].distance2(feature);
             if cost >= k2 {
@@ -142,17 +173,18 @@ impl<const D: usize> Library<D> {
                 best[1] = Some((i, cost));
             }
         });
-        best
+        meter.spend(LOOK * (4 + looked))?;
+        Ok(best)
     }
 
     /// Smallest distance of the centres of two elements of these classes in the exemplar.
     pub(crate) fn closest(&self, a: u32, b: u32) -> f64 {
-        self.closest[a as usize * self.classes() + b as usize]
+        self.closest.of(a, b)
     }
 
     /// Largest distance that [`Library::closest`] gives for a class.
     pub(crate) fn widest(&self, a: u32) -> f64 {
-        (0..self.classes() as u32).map(|b| self.closest(a, b)).fold(0.0, f64::max)
+        self.closest.widest(a)
     }
 
     /// Radius of the ball that holds `count` elements on average.
@@ -164,7 +196,8 @@ impl<const D: usize> Library<D> {
 
 /// Largest distance to the nearest centre, over the places of the window that lie farther from its sides than from that
 /// centre.
-fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -> f64 {
+fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64, budget: &Budget) -> Result<f64> {
+    let mut meter = budget.meter();
     let (window, size) = (view.window, view.window.size());
     let step = if D == 2 { 0.2 * spacing } else { 0.34 * spacing };
     let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).clamp(1, 2048));
@@ -172,6 +205,7 @@ fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -
     for c in 0..cells.iter().product() {
         let p = window.cell_centre(c, &cells);
         let side = view.signed_distance(p);
+        meter.spend(30 + LOOK * all.load(p, spacing))?;
         let Some((_, distance)) = (0..6).find_map(|n| all.nearest(p, spacing * f64::from(1 << n), None)) else {
             continue;
         };
@@ -179,33 +213,29 @@ fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64) -
             largest = largest.max(distance);
         }
     }
-    if largest > 0.0 { largest } else { spacing }
+    Ok(if largest > 0.0 { largest } else { spacing })
 }
 
-/// Smallest centre distances of all pairs of classes, none larger than two mean spacings.
-fn closest_distances<const D: usize>(
+/// How far ink may reach from its centre before it is out of all proportion to what the window can show.
+pub(crate) fn farthest<const D: usize>(window: &Bounds<D>) -> f64 {
+    FAR * window.size().norm()
+}
+
+fn nearest_distances<const D: usize>(
     centre: &[Vector<D>],
-    class: &[u32],
-    classes: usize,
     all: &GridIndex<D>,
     spacing: f64,
-) -> Vec<f64> {
-    let mut closest = vec![2.0 * spacing; classes * classes];
-    for (i, &p) in centre.iter().enumerate() {
-        all.within(p, 2.0 * spacing, |j, offset| {
-            if i != j {
-                let entry = &mut closest[class[i] as usize * classes + class[j] as usize];
-                *entry = entry.min(offset.norm());
-            }
-        });
-    }
-    closest
-}
-
-fn nearest_distances<const D: usize>(centre: &[Vector<D>], all: &GridIndex<D>, spacing: f64) -> Numbered<f64> {
+    budget: &Budget,
+) -> Result<Numbered<f64>> {
+    let mut meter = budget.meter();
     // Doubling the radius finds the neighbour of a lonely element without scanning everything for the others.
     let search = |i: usize| (0..8).find_map(|n| all.nearest(centre[i], spacing * f64::from(1 << n), Some(i)));
-    (0..centre.len()).map(|i| search(i).map_or(spacing, |(_, d)| d)).collect()
+    let mut nearest = Numbered::new();
+    for (i, &p) in centre.iter().enumerate() {
+        meter.spend(LOOK * (10 + all.load(p, spacing)))?;
+        nearest.push(search(i).map_or(spacing, |(_, d)| d));
+    }
+    Ok(nearest)
 }
 
 fn outlier_distances(nearest: &[f64], class: &[u32], classes: usize, spacing: f64) -> Numbered<f64> {

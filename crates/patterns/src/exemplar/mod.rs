@@ -3,6 +3,8 @@
 //!
 //! Nothing here depends on a domain: it is worked out once and serves any number of runs.
 
+pub(crate) mod checks;
+pub(crate) mod closest;
 pub(crate) mod features;
 pub(crate) mod graph;
 pub(crate) mod kinds;

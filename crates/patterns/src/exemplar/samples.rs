@@ -4,10 +4,16 @@
 //! carry its orientation and bend. Samples are laid out on the first element of a class and carried to the others by
 //! their pose, so that sample `j` means the same spot on every element of the class.
 
-use arabesque_core::{Element, Exemplar, Outline, Similarity, Vector};
+use arabesque_core::{Budget, Element, Exemplar, Outline, Result, Similarity, Vector};
 
 /// Longest element relative to its width that still counts as round.
 const ROUND: f64 = 1.6;
+
+/// Nanoseconds that it takes to find the axis of an outline, for each of its corners.
+const CORNER: u64 = 300;
+
+/// The same for an outline, however few corners it has.
+const SHAPE: u64 = 80_000;
 
 /// Most samples that the shape alone asks for.
 const MAX_SAMPLES: usize = 5;
@@ -21,13 +27,18 @@ pub(crate) struct ElementSamples<const D: usize> {
 
 impl<const D: usize> ElementSamples<D> {
     /// Chooses samples from the shape of each class, or `count` for every class that has an outline.
-    pub(crate) fn new(exemplar: &Exemplar<D>, count: Option<usize>) -> Self {
+    pub(crate) fn new(exemplar: &Exemplar<D>, count: Option<usize>, budget: &Budget) -> Result<Self> {
         let mut templates: Vec<Option<Vec<Vector<D>>>> = vec![None; exemplar.classes.len()];
-        let offsets = exemplar.elements.iter().map(|e| {
+        let mut offsets = Vec::with_capacity(exemplar.elements.len());
+        for e in &exemplar.elements {
+            if templates[e.class].is_none() {
+                let corners: usize = e.outline.rings.iter().map(Vec::len).sum();
+                budget.spend(if corners == 0 { 0 } else { SHAPE + CORNER * corners as u64 })?;
+            }
             let template = templates[e.class].get_or_insert_with(|| template(e, count));
-            template.iter().map(|&p| e.pose.apply(p) - e.centre).collect()
-        });
-        Self { offsets: offsets.collect() }
+            offsets.push(template.iter().map(|&p| e.pose.apply(p) - e.centre).collect());
+        }
+        Ok(Self { offsets })
     }
 
     /// The same with `count` more elements of a single sample: curve samples.
@@ -35,6 +46,11 @@ impl<const D: usize> ElementSamples<D> {
         let mut offsets = self.offsets.clone();
         offsets.extend(std::iter::repeat_n(vec![Vector::ZERO], count));
         Self { offsets }
+    }
+
+    /// Number of samples of all elements at the finest level.
+    pub(crate) fn count(&self) -> usize {
+        self.offsets.iter().map(Vec::len).sum()
     }
 
     /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints
@@ -166,13 +182,13 @@ mod tests {
 
     #[test]
     fn a_square_is_its_centre() {
-        let s = ElementSamples::new(&exemplar(rectangle(2.0, 2.0)), None);
+        let s = ElementSamples::new(&exemplar(rectangle(2.0, 2.0)), None, &Budget::default()).unwrap();
         assert_eq!(s.at_detail(0, 1.0), vec![Vector::ZERO]);
     }
 
     #[test]
     fn a_bar_has_samples_along_its_length() {
-        let s = ElementSamples::new(&exemplar(rectangle(8.0, 2.0)), None);
+        let s = ElementSamples::new(&exemplar(rectangle(8.0, 2.0)), None, &Budget::default()).unwrap();
         let fine = s.at_detail(0, 1.0);
         assert!(fine.len() >= 3, "{fine:?}");
         assert!(fine.iter().all(|v| v[1].abs() < 0.2));
@@ -183,7 +199,7 @@ mod tests {
 
     #[test]
     fn the_count_can_be_asked_for() {
-        let s = ElementSamples::new(&exemplar(rectangle(2.0, 2.0)), Some(3));
+        let s = ElementSamples::new(&exemplar(rectangle(2.0, 2.0)), Some(3), &Budget::default()).unwrap();
         assert_eq!(s.at_detail(0, 1.0).len(), 3);
     }
 }

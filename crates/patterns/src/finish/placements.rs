@@ -1,6 +1,6 @@
 //! From optimised items to placements: bending, the rule of the border, clearance.
 
-use arabesque_core::{Matrix, Placement, Request, Vector, Warning};
+use arabesque_core::{Budget, Matrix, Placement, Request, Result, Vector, Warning};
 
 use crate::{
     border::Extent,
@@ -60,20 +60,24 @@ fn bend<const D: usize>(state: &State<'_, D>, live: &LiveItem<D>) -> Bend<D> {
 }
 
 /// Mends overlaps and drops what the rule of the border excludes. Warnings tell what could not be kept.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then overlaps stay as they are.
 pub(crate) fn mend<const D: usize>(
     placements: &mut Vec<Placement<D>>,
     limits: Option<&ExemplarClearance>,
     extent: &Extent<'_, D>,
     params: &Params,
-) -> Vec<Warning>
+    budget: &Budget,
+) -> Result<Vec<Warning>>
 where
     Vector<D>: Dimension<D>,
 {
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
     if params.clearance == Clearance::Ignored {
-        return Vec::new();
+        return Ok(Vec::new());
     }
-    let summary = clearance::repair(limits, extent.request(), placements);
+    let summary = clearance::repair(limits, extent.request(), placements, budget)?;
     placements.retain(|p| p.frozen.is_some() || extent.may_show(p));
-    summary.warning(placements.len()).into_iter().collect()
+    Ok(summary.warning(placements.len()).into_iter().collect())
 }

@@ -77,7 +77,7 @@ fn whole_items<const D: usize>(state: &State<'_, D>, grain: &[u32]) -> Items<D> 
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
-    use arabesque_core::{Domain, Exemplar, Matrix, Request, Stage, Stream, Vector};
+    use arabesque_core::{Budget, Domain, Exemplar, Matrix, Request, Stage, Stream, Vector};
 
     use super::*;
     use crate::{
@@ -105,9 +105,10 @@ mod tests {
     fn nucleus_with_disorder_beyond(x: f64) -> Option<Vec<Item<2>>> {
         let exemplar = exemplar();
         let params = Params { levels: 1, ..Params::default() };
-        let sampled = level_exemplars(&std::sync::Arc::new(exemplar.clone()), None, &params).remove(0);
+        let sampled = level_exemplars(&std::sync::Arc::new(exemplar.clone()), None, &params, &Budget::default());
+        let sampled = sampled.unwrap().remove(0);
         let request = Request::new(Domain::Box(exemplar.window));
-        let extent = Extent::new(&request, &sampled.exemplar, &sampled.library.radius, sampled.level.base);
+        let extent = Extent::new(&request, &sampled.exemplar, &sampled.library, sampled.level.base).unwrap();
         let mut random = Stream::new(6, Stage::TEST, 0);
         let items = exemplar.elements.iter().zip(0..).map(|(element, source)| {
             let place = Vector::xy(random.range(x, SIDE), random.range(0.0, SIDE));
@@ -125,7 +126,7 @@ mod tests {
             rounds: 1,
             step: 0,
         };
-        search(&mut state, &exhaustive);
+        search(&mut state, &exhaustive).unwrap();
         nucleus(&state).map(|draft| draft.items.into_iter().map(|(item, _)| item).collect())
     }
 

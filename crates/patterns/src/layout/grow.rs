@@ -9,9 +9,7 @@
 //! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do
 //! it.
 
-use std::ops::ControlFlow;
-
-use arabesque_core::{Buckets, Numbered, Request, Stream, Vector};
+use arabesque_core::{Buckets, Budget, Numbered, Request, Result, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -25,8 +23,11 @@ use crate::{
     streams,
 };
 
-/// What the layout tells while it works: the state, and the share that is done.
-pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -> ControlFlow<()>;
+/// What the layout tells while it works: the state, and the share that is done. An error ends it.
+pub(crate) type Watch<'a, const D: usize> = &'a mut dyn FnMut(&[Item<D>], f64) -> Result<()>;
+
+/// Nanoseconds to find the distance of two places.
+const DISTANCE: u64 = 6;
 
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
 const NOISE: f64 = 0.02;
@@ -44,6 +45,7 @@ struct Patch<const D: usize> {
 /// Lays out the open part of `canvas`.
 pub(crate) struct Grower<'a, const D: usize> {
     request: &'a Request<D>,
+    budget: Budget,
     source: PatchSource<'a, D>,
 }
 
@@ -54,20 +56,28 @@ impl<'a, const D: usize> Grower<'a, D> {
         extent: &'a Extent<'a, D>,
         params: GrowParams,
     ) -> Self {
-        Self { request, source: PatchSource { library, extent, params, usage: Numbered::filled(0, library.len()) } }
+        Self {
+            request,
+            budget: request.budget.stage("laying out"),
+            source: PatchSource { library, extent, params, usage: Numbered::filled(0, library.len()), used: 0 },
+        }
     }
 
     /// Fills every open cell of `coverage` with elements on `canvas`.
-    /// Tells `watch` after each round, and stops when it says so.
+    /// Tells `watch` after each round.
+    ///
+    /// # Errors
+    /// What the watch gives, and when the budget is used up or somebody asks to stop; then the canvas holds what was laid
+    /// out before the round that was cut short.
     pub(crate) fn fill(
         &mut self,
         canvas: &mut Canvas<D>,
         coverage: &mut Coverage<D>,
         watch: Watch<'_, D>,
-    ) -> ControlFlow<()> {
+    ) -> Result<()> {
         let start = self.start(canvas);
         let kept: Vec<_> = canvas.items.iter().filter(|item| item.frozen.is_some()).map(|item| item.position).collect();
-        let rounds = self.rounds(coverage, start, &kept);
+        let rounds = self.rounds(coverage, start, &kept)?;
         let all = rounds.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         let mut done = 0;
         for (round, sites) in rounds.into_iter().enumerate() {
@@ -83,12 +93,14 @@ impl<'a, const D: usize> Grower<'a, D> {
                         &mut Stream::new(self.request.seed, streams::INITIALISE, item),
                     )
                 })
-                .collect();
-            patches.into_iter().flatten().for_each(|patch| self.paste(&patch, canvas, coverage));
+                .collect::<Result<_>>()?;
+            // What the last of them paid is heard here.
+            self.budget.spend(0)?;
+            patches.into_iter().flatten().try_for_each(|patch| self.paste(&patch, canvas, coverage))?;
             done += sites.len();
             watch(&canvas.items, done as f64 / all)?;
         }
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     /// Where the layout begins: at what is there already, else in the middle.
@@ -97,7 +109,8 @@ impl<'a, const D: usize> Grower<'a, D> {
     }
 
     /// Sites in rounds: those of one round are too far apart to see one another.
-    fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>, kept: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
+    fn rounds(&self, coverage: &Coverage<D>, start: Vector<D>, kept: &[Vector<D>]) -> Result<Vec<Vec<Vector<D>>>> {
+        let mut meter = self.budget.meter();
         let patch = self.source.params.patch * self.smallest_scale();
         let mut sites = Numbered::from(site_order(coverage, start, patch));
         if !kept.is_empty() {
@@ -106,7 +119,13 @@ impl<'a, const D: usize> Grower<'a, D> {
                 let squares = kept.iter().map(|p| self.request.domain.offset(*site, *p).norm2());
                 (squares.fold(f64::INFINITY, f64::min).sqrt() / patch) as u32
             };
-            sites.sort_by_cached_key(far);
+            let mut rings = Vec::with_capacity(sites.len());
+            for site in &sites {
+                meter.spend(DISTANCE * kept.len() as u64)?;
+                rings.push((far(site), *site));
+            }
+            rings.sort_by_key(|r| r.0);
+            sites = rings.into_iter().map(|r| r.1).collect();
         }
         let reach = (self.source.params.patch + self.source.params.context) * self.largest_scale();
         let mut earlier = Buckets::new(&self.request.domain, self.source.extent.margin, reach);
@@ -114,11 +133,12 @@ impl<'a, const D: usize> Grower<'a, D> {
         let mut rounds: Vec<Vec<Vector<D>>> = Vec::new();
         for (i, &site) in sites.iter().enumerate() {
             let mut round = 0;
-            earlier.near(site, reach, |j| {
+            let looked = earlier.near(site, reach, |j| {
                 if self.request.domain.offset(site, sites[j]).norm() <= reach {
                     round = round.max(round_of[j] + 1);
                 }
             });
+            meter.spend(DISTANCE * looked)?;
             earlier.insert(i as u32, site);
             round_of.push(round);
             if rounds.len() == round {
@@ -126,7 +146,7 @@ impl<'a, const D: usize> Grower<'a, D> {
             }
             rounds[round].push(site);
         }
-        rounds
+        Ok(rounds)
     }
 
     fn smallest_scale(&self) -> f64 {
@@ -143,37 +163,43 @@ impl<'a, const D: usize> Grower<'a, D> {
         canvas: &Canvas<D>,
         coverage: &Coverage<D>,
         random: &mut Stream,
-    ) -> Option<Patch<D>> {
+    ) -> Result<Option<Patch<D>>> {
         let frame = self.request.fields.frame(site);
-        let (open, _) = coverage.open_within(site, self.source.params.patch * frame.spacing_scale);
-        if open == 0 {
-            return None;
+        let mut meter = self.budget.meter();
+        if !coverage.is_open_within(site, self.source.params.patch * frame.spacing_scale, &mut meter)? {
+            return Ok(None);
         }
-        let here = PatchSite::new(&self.source, site, frame, canvas, coverage);
+        let (here, looked) = PatchSite::new(&self.source, site, frame, canvas, coverage);
+        meter.spend(DISTANCE * looked)?;
         let candidates: Vec<_> = here
             .candidates(self.source.params.anchors, random)
             .into_iter()
             .map(|c| (c, NOISE * random.unit()))
             .collect();
         // Also in parallel within a site: at seams and in holes there are few sites at a time.
-        let costs: Vec<f64> = candidates.par_iter().with_min_len(16).map(|(c, noise)| here.cost(*c) + noise).collect();
-        let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
+        let cost = |(c, noise): &(Vector<D>, f64)| Ok(here.cost(*c, &mut self.budget.meter())? + noise);
+        let costs: Vec<f64> = candidates.par_iter().with_min_len(16).map(cost).collect::<Result<_>>()?;
+        let Some(best) = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])) else { return Ok(None) };
         let centre = candidates[best].0;
-        let centre = here.registered(centre);
-        Some(Patch { site, centre, elements: here.additions(centre) })
+        let centre = here.registered(centre, &mut meter)?;
+        Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
     }
 
-    fn paste(&mut self, patch: &Patch<D>, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) {
+    fn paste(&mut self, patch: &Patch<D>, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) -> Result<()> {
+        let budget = self.budget.clone();
+        let mut meter = budget.meter();
         let frame = self.request.fields.frame(patch.site);
         for &(element, position) in &patch.elements {
             canvas.push(Item { source: element, position, frozen: None });
             self.source.usage[element] += 1;
+            self.source.used += 1;
         }
         let radius = self.source.params.patch * frame.spacing_scale;
         let view = self.source.library.view;
-        coverage.cover(patch.site, radius, |offset| view.contains(patch.centre + frame.to_exemplar(offset)));
+        let is_known = |offset| view.contains(patch.centre + frame.to_exemplar(offset));
+        coverage.cover(patch.site, radius, is_known, &mut meter)?;
         // The cell of the site itself is always done, so that a patch from the rim of the exemplar makes progress too.
-        coverage.cover(patch.site, 0.3 * radius, |_| true);
+        coverage.cover(patch.site, 0.3 * radius, |_| true, &mut meter)
     }
 }
 

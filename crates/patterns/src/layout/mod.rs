@@ -6,9 +6,7 @@ pub(crate) mod grow;
 pub(crate) mod noise;
 pub(crate) mod patch_site;
 
-use std::ops::ControlFlow;
-
-use arabesque_core::{Matrix, Request};
+use arabesque_core::{Matrix, Meter, Request, Result};
 
 use crate::{
     border::Extent,
@@ -54,7 +52,8 @@ pub(crate) struct Layout<'a, const D: usize> {
 
 impl<const D: usize> Layout<'_, D> {
     /// The first state: what is frozen, and everything else by the chosen initialisation.
-    pub(crate) fn initialise(&self, frozen: Draft<D>, watch: Watch<'_, D>) -> (Draft<D>, ControlFlow<()>) {
+    /// Where it is cut short, what there is so far.
+    pub(crate) fn initialise(&self, frozen: Draft<D>, watch: Watch<'_, D>) -> (Draft<D>, Result<()>) {
         match self.params.initialisation {
             Initialisation::PatchCopy => return self.grow(frozen, &Items::new(), ANCHORS, watch),
             Initialisation::RandomCopy => return self.grow(frozen, &Items::new(), 0, watch),
@@ -62,67 +61,80 @@ impl<const D: usize> Layout<'_, D> {
         }
         let mut canvas = self.canvas();
         frozen.items.iter().for_each(|(item, _)| canvas.push(*item));
-        noise::scatter(self.library, self.request, self.extent, &mut canvas);
-        (Draft { items: self.with_turns(canvas, &frozen.items), links: frozen.links }, ControlFlow::Continue(()))
+        let ended = noise::scatter(self.library, self.request, self.extent, &mut canvas);
+        (Draft { items: self.with_turns(canvas, &frozen.items), links: frozen.links }, ended)
     }
 
     /// Patches that join what is frozen and the items of a `grain`.
-    pub(crate) fn regrow(
-        &self,
-        frozen: Draft<D>,
-        grain: &Items<D>,
-        watch: Watch<'_, D>,
-    ) -> (Draft<D>, ControlFlow<()>) {
+    pub(crate) fn regrow(&self, frozen: Draft<D>, grain: &Items<D>, watch: Watch<'_, D>) -> (Draft<D>, Result<()>) {
         self.grow(frozen, grain, ANCHORS, watch)
     }
 
     /// Patches around what is frozen and around the items of a `grain`, each registered on `anchors` items.
-    fn grow(
+    fn grow(&self, frozen: Draft<D>, grain: &Items<D>, anchors: usize, watch: Watch<'_, D>) -> (Draft<D>, Result<()>) {
+        let mut canvas = self.canvas();
+        frozen.items.iter().chain(grain).for_each(|(item, _)| canvas.push(*item));
+        let ended = self.grow_around(&mut canvas, &frozen, grain, anchors, watch);
+        let known: Items<D> = frozen.items.iter().chain(grain).copied().collect();
+        (Draft { items: self.with_turns(canvas, &known), links: frozen.links }, ended)
+    }
+
+    fn grow_around(
         &self,
-        frozen: Draft<D>,
+        canvas: &mut Canvas<D>,
+        frozen: &Draft<D>,
         grain: &Items<D>,
         anchors: usize,
         watch: Watch<'_, D>,
-    ) -> (Draft<D>, ControlFlow<()>) {
-        let mut canvas = self.canvas();
-        frozen.items.iter().chain(grain).for_each(|(item, _)| canvas.push(*item));
-        let mut coverage = self.coverage();
+    ) -> Result<()> {
+        let mut coverage = self.coverage()?;
+        let budget = self.request.budget.stage("laying out");
+        let mut meter = budget.meter();
         // What the user drew is complete as it is: patches join it, they do not fill it up.
         let drawn = frozen.items.iter().filter(|(item, _)| item.source >= self.base);
         // What lies outside does not say that anything inside is complete.
         let inside = |p: &arabesque_core::Vector<D>| self.extent.depth(*p) > self.library.spacing;
         let drawn: Vec<_> = drawn.map(|(item, _)| item.position).filter(inside).collect();
         if !drawn.is_empty() {
-            coverage.cover_closed(&drawn, self.hole() * self.extent.largest_spacing_scale);
+            coverage.cover_closed(&drawn, self.hole() * self.extent.largest_spacing_scale, &mut meter)?;
         }
-        self.cover(&mut coverage, grain.iter().map(|(item, _)| item.position));
-        let flow = self.grower(anchors).fill(&mut canvas, &mut coverage, watch);
-        let known: Items<D> = frozen.items.iter().chain(grain).copied().collect();
-        (Draft { items: self.with_turns(canvas, &known), links: frozen.links }, flow)
+        self.cover(&mut coverage, grain.iter().map(|(item, _)| item.position), &mut meter)?;
+        self.grower(anchors).fill(canvas, &mut coverage, watch)
     }
 
     /// Lays out anew what is emptier than anything in the exemplar.
-    pub(crate) fn fill_holes(&self, state: &mut State<'_, D>) {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop; then the state stays as it is.
+    pub(crate) fn fill_holes(&self, state: &mut State<'_, D>) -> Result<()> {
+        let budget = self.request.budget.stage("filling holes");
+        let mut meter = budget.meter();
         let mut canvas = self.canvas();
-        let mut coverage = self.coverage();
+        let mut coverage = self.coverage()?;
         state.items().iter().filter(|live| live.alive).for_each(|live| canvas.push(live.item));
         let known = canvas.items.len();
-        self.cover(&mut coverage, canvas.items.iter().map(|i| i.position));
+        self.cover(&mut coverage, canvas.items.iter().map(|i| i.position), &mut meter)?;
         if self.has_strokes() {
             // At the rim of the margin there is room only because nothing is known beyond it.
             let rim = (self.hole() * self.extent.smallest_spacing_scale - self.extent.margin).min(0.0);
-            coverage.close(|p| self.request.domain.signed_distance(p) < rim);
+            coverage.close(|p| self.request.domain.signed_distance(p) < rim, &mut meter)?;
         }
-        // Holes are few and small: they are filled without asking whether to go on.
-        let _ = self.grower(ANCHORS).fill(&mut canvas, &mut coverage, &mut |_, _| ControlFlow::Continue(()));
+        // Holes are few and small: nothing is told of them.
+        self.grower(ANCHORS).fill(&mut canvas, &mut coverage, &mut |_, _| Ok(()))?;
         canvas.items.iter().skip(known).for_each(|&item| _ = state.push(item, Matrix::identity()));
         state.reindex();
+        Ok(())
     }
 
     /// Takes for complete what lies around `places`.
-    fn cover(&self, coverage: &mut Coverage<D>, places: impl Iterator<Item = arabesque_core::Vector<D>>) {
+    fn cover(
+        &self,
+        coverage: &mut Coverage<D>,
+        places: impl Iterator<Item = arabesque_core::Vector<D>>,
+        meter: &mut Meter<'_>,
+    ) -> Result<()> {
         let (reach, fields) = (self.hole(), &self.request.fields);
-        coverage.cover_around(places, |p| reach * fields.frame(p).spacing_scale);
+        coverage.cover_around(places, |p| reach * fields.frame(p).spacing_scale, meter)
     }
 
     /// Radius, exemplar units, up to which a hole is meant to be there.
@@ -157,9 +169,9 @@ impl<const D: usize> Layout<'_, D> {
         Canvas::new(&self.request.domain, self.extent.margin, cell)
     }
 
-    fn coverage(&self) -> Coverage<D> {
+    fn coverage(&self) -> Result<Coverage<D>> {
         let cell = CELL * self.library.spacing * self.extent.smallest_spacing_scale;
-        Coverage::new(&self.request.domain, self.extent.margin, cell)
+        Coverage::new(&self.request.domain, self.extent.margin, cell, &self.request.budget.stage("laying out"))
     }
 
     fn grower(&self, anchors: usize) -> Grower<'_, D> {

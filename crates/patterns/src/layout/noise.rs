@@ -1,6 +1,6 @@
 //! White noise: single elements at random places, as many of each class as the exemplar has for the area.
 
-use arabesque_core::{Request, Stream, Vector};
+use arabesque_core::{Request, Result, Stream, Vector};
 
 use crate::{
     border::Extent,
@@ -9,13 +9,21 @@ use crate::{
     streams,
 };
 
+/// Nanoseconds for a place that is tried.
+const TRY: u64 = 300;
+
 /// Scatters elements over the domain.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the canvas holds those scattered before.
 pub(crate) fn scatter<const D: usize>(
     library: &Library<D>,
     request: &Request<D>,
     extent: &Extent<'_, D>,
     canvas: &mut Canvas<D>,
-) {
+) -> Result<()> {
+    let budget = request.budget.stage("scattering elements");
+    let mut meter = budget.meter();
     let bounds = if request.domain.period().is_some() {
         request.domain.bounds()
     } else {
@@ -28,6 +36,7 @@ pub(crate) fn scatter<const D: usize>(
     let tightest = extent.smallest_spacing_scale;
     let tries = bounds.measure() / (library.spacing * tightest).powi(D as i32);
     for _ in 0..tries as usize {
+        meter.spend(TRY)?;
         let p = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
         let source = copyable[random.below(copyable.len())];
         let keep = (tightest / request.fields.frame(p).spacing_scale).powi(D as i32);
@@ -35,4 +44,5 @@ pub(crate) fn scatter<const D: usize>(
             canvas.push(Item { source, position: p, frozen: None });
         }
     }
+    Ok(())
 }

@@ -6,7 +6,7 @@
 //! are in step: disorder starts at the seams, and iterations that see no farther than a neighbourhood do not bring two
 //! parts into step again.
 
-use arabesque_core::{Frame, Numbered, Stream, Vector};
+use arabesque_core::{Frame, Meter, Numbered, Result, Stream, Vector};
 
 use crate::{
     border::Extent,
@@ -29,6 +29,12 @@ const RIM: f64 = 0.3;
 
 /// Curve samples of one class that are tried at an anchor; of more, as many of the most similar ones.
 const MEMBERS: usize = 80;
+
+/// Elements of one class that are tried at an anchor, at most; of more, an even selection.
+const ELEMENTS: usize = 4096;
+
+/// Nanoseconds to compare with an element of a short list.
+const COMPARISON: u64 = 1;
 
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
@@ -57,6 +63,8 @@ pub(crate) struct PatchSource<'a, const D: usize> {
     pub(crate) params: GrowParams,
     /// Times each exemplar element was used.
     pub(crate) usage: Numbered<u32>,
+    /// The sum of these.
+    pub(crate) used: u64,
 }
 
 /// What is around one site.
@@ -81,21 +89,22 @@ struct Around<const D: usize> {
 }
 
 impl<'a, const D: usize> PatchSite<'a, D> {
+    /// What is around a site, and how much was looked at for that.
     pub(crate) fn new(
         source: &'a PatchSource<'a, D>,
         site: Vector<D>,
         frame: Frame<D>,
         canvas: &Canvas<D>,
         coverage: &'a Coverage<D>,
-    ) -> Self {
+    ) -> (Self, u64) {
         let context = source.params.context;
         let mut around = Vec::new();
-        canvas.within(site, context * frame.spacing_scale, |i, offset| {
+        let looked = canvas.within(site, context * frame.spacing_scale, |i, offset| {
             let offset = frame.to_exemplar(offset);
             around.push(Around { element: canvas.items[i].source, offset, weight: fall_off(offset, context) });
         });
         around.sort_by(|a, b| a.offset.norm2().total_cmp(&b.offset.norm2()));
-        Self { source, site, frame, coverage, around }
+        (Self { source, site, frame, coverage, around }, looked)
     }
 
     /// Exemplar points that could land on the site.
@@ -107,7 +116,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
             let members = library.members(library.class[element]);
             let usable = |i: &u32| library.view.contains(library.centre[*i] - offset);
             if element < base || members.len() <= MEMBERS {
-                centres.extend(members.iter().filter(|i| usable(i)).map(|&i| library.centre[i] - offset));
+                let tried = members.iter().step_by(members.len().div_ceil(ELEMENTS).max(1));
+                centres.extend(tried.filter(|i| usable(i)).map(|&i| library.centre[i] - offset));
             } else {
                 let usable = members.iter().copied().filter(usable).collect();
                 let alike = self.most_alike(usable, element, random);
@@ -146,7 +156,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
     }
 
     /// Disagreement of the patch around exemplar point `centre` with what is there.
-    pub(crate) fn cost(&self, centre: Vector<D>) -> f64 {
+    pub(crate) fn cost(&self, centre: Vector<D>, meter: &mut Meter<'_>) -> Result<f64> {
         let (library, params) = (self.source.library, self.source.params);
         let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
         let (mut cost, mut weights, mut repeated) = (0.0, 1e-9, 0.0);
@@ -158,7 +168,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 continue;
             }
             let class = library.class[element];
-            let alike = library.alike(class, p, &library.feature[element]);
+            let alike = library.alike(class, p, &library.feature[element], meter)?;
+            meter.spend(COMPARISON * taken.len() as u64)?;
             match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
                 Some((i, c)) => {
                     taken.push(i);
@@ -168,18 +179,21 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 None => cost += weight,
             }
         }
-        let Missing { cost: missing, weights: missing_weights, usage } = self.missing(centre, &taken);
+        let Missing { cost: missing, weights: missing_weights, usage } = self.missing(centre, &taken, meter)?;
         let total = weights + missing_weights;
         let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
-        (cost + missing) / total + params.repeat * repeated / weights + params.balance * usage + RIM * (1.0 - known)
+        let copied = params.repeat * repeated / weights;
+        Ok((cost + missing) / total + copied + params.balance * usage + RIM * (1.0 - known))
     }
 
     /// What the patch has that is not there, except the elements `taken`.
-    fn missing(&self, centre: Vector<D>, taken: &[u32]) -> Missing {
+    fn missing(&self, centre: Vector<D>, taken: &[u32], meter: &mut Meter<'_>) -> Result<Missing> {
         let (library, params) = (self.source.library, self.source.params);
         let (mut missing, mut weights) = (0.0, 0.0);
         let (mut used, mut fresh) = (0.0, 0.0);
-        library.within(centre, params.context, |i, offset| {
+        let mut met = 0;
+        let price = library.within(centre, params.context, |i, offset| {
+            met += 1;
             if taken.contains(&i) {
                 return;
             }
@@ -196,59 +210,65 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 Cell::Outside => {}
             }
         });
-        let mean = self.source.usage.iter().map(|&u| f64::from(u)).sum::<f64>() / library.len() as f64;
+        meter.spend(price + met * (10 + COMPARISON * taken.len() as u64))?;
+        let mean = self.source.used as f64 / library.len() as f64;
         let usage = if fresh > 0.0 { (used / fresh) / (mean + 1.0) } else { 0.0 };
-        Missing { cost: missing, weights, usage }
+        Ok(Missing { cost: missing, weights, usage })
     }
 
     /// `centre` moved so that matched elements coincide as well as they can.
-    pub(crate) fn registered(&self, centre: Vector<D>) -> Vector<D> {
+    pub(crate) fn registered(&self, centre: Vector<D>, meter: &mut Meter<'_>) -> Result<Vector<D>> {
         let library = self.source.library;
         let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
         for &Around { element, offset, weight } in &self.around {
             let class = library.class[element];
-            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[element])[0] {
+            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[element], meter)?[0] {
                 shift += (library.centre[i] - centre - offset) * weight;
                 weights += weight;
             }
         }
-        centre + shift * (1.0 / weights)
+        Ok(centre + shift * (1.0 / weights))
     }
 
     /// Patch elements for the open part, with their places.
-    pub(crate) fn additions(&self, centre: Vector<D>) -> Vec<(u32, Vector<D>)> {
+    pub(crate) fn additions(&self, centre: Vector<D>, meter: &mut Meter<'_>) -> Result<Vec<(u32, Vector<D>)>> {
         let (library, params) = (self.source.library, self.source.params);
         let mut taken = Vec::new();
         for &Around { element, offset, .. } in &self.around {
             let class = library.class[element];
-            let alike = library.alike(class, centre + offset, &library.feature[element]);
+            let alike = library.alike(class, centre + offset, &library.feature[element], meter)?;
+            meter.spend(COMPARISON * taken.len() as u64)?;
             taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
         }
+        let mut near = Vec::new();
+        let price = library.within(centre, params.patch, |i, offset| near.push((i, offset)));
+        meter.spend(price + near.len() as u64 * (10 + COMPARISON * taken.len() as u64))?;
         let mut found = Vec::new();
-        library.within(centre, params.patch, |i, offset| {
+        for (i, offset) in near {
             let p = self.site + self.frame.to_output(offset);
             let wanted = library.copyable[i] && !taken.contains(&i);
-            if wanted && self.has_room(i, p, offset) && self.source.extent.admits(i, p) {
+            if wanted && self.has_room(i, p, offset, meter)? && self.source.extent.admits(i, p) {
                 found.push((i, p));
             }
-        });
+        }
         found.sort_by_key(|&(i, _)| i);
-        found
+        Ok(found)
     }
 
     /// Whether exemplar element `i` belongs to the open part at `p`: into an open cell unless it would sit on
     /// something, and into a covered cell at the seam, where registration may have moved it across, only if there is a
     /// gap of its own size.
-    fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>) -> bool {
+    fn has_room(&self, i: u32, p: Vector<D>, offset: Vector<D>, meter: &mut Meter<'_>) -> Result<bool> {
+        meter.spend(5 * self.around.len() as u64)?;
         let library = self.source.library;
         let class = library.class[i];
         let clear = |other: &Around<D>| {
             (other.offset - offset).norm() >= ROOM * library.closest(class, library.class[other.element])
         };
         if !self.around.iter().all(clear) {
-            return false;
+            return Ok(false);
         }
-        match self.coverage.at(p) {
+        Ok(match self.coverage.at(p) {
             Cell::Open => true,
             Cell::Covered => {
                 let own = library.nearest[i];
@@ -259,10 +279,10 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                     .fold(f64::INFINITY, f64::min)
                     .sqrt();
                 let reach = 0.5 * own * self.frame.spacing_scale;
-                gap >= ROOM_COVERED * own && self.coverage.open_within(p, reach).0 > 0
+                gap >= ROOM_COVERED * own && self.coverage.is_open_within(p, reach, meter)?
             }
             Cell::Outside => false,
-        }
+        })
     }
 }
 

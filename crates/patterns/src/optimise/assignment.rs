@@ -11,7 +11,9 @@
 //!
 //! All buffers are kept between calls.
 
-use arabesque_core::Numbered;
+#[cfg(any(test, feature = "bench-stages"))]
+use arabesque_core::Budget;
+use arabesque_core::{Meter, Numbered, Result};
 
 /// A number or none, in four bytes: `Option<u32>` takes eight, and these lists are filled and read for every pairing of
 /// two neighbourhoods, the innermost loop of the search.
@@ -37,6 +39,9 @@ impl From<u32> for MaybeNumber {
 /// Entries of a row that are compared in one go when a full cost matrix is read.
 #[cfg(any(test, feature = "bench-stages"))]
 const LANES: usize = 16;
+
+/// Nanoseconds for a pair or a column that a step looks at.
+const STEP: u64 = 2;
 
 /// Solver with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -110,7 +115,7 @@ impl Assignment {
         for i in 0..rows {
             self.enter_row(&cost[i * columns..(i + 1) * columns], f32::INFINITY);
         }
-        self.settle()
+        self.settle(&mut Budget::default().meter()).unwrap_or(f32::NAN)
     }
 
     /// Pairs rows with columns, or leaves row `i` alone at `outlier[i]`, at the least total cost, which is returned.
@@ -122,7 +127,7 @@ impl Assignment {
         for (i, &alone) in outlier.iter().enumerate().take(rows) {
             self.enter_row(&cost[i * columns..(i + 1) * columns], alone);
         }
-        self.settle()
+        self.settle(&mut Budget::default().meter()).unwrap_or(f32::NAN)
     }
 
     /// Enters a full matrix and [settles it greedily](Self::settle_greedily). `cost` is row-major.
@@ -132,7 +137,7 @@ impl Assignment {
         for i in 0..rows {
             self.enter_row(&cost[i * columns..(i + 1) * columns], f32::INFINITY);
         }
-        self.settle_greedily()
+        self.settle_greedily(&mut Budget::default().meter()).unwrap_or(f32::NAN)
     }
 
     /// Partner of each row: a column, or `None` where the row stays alone, an outlier.
@@ -185,7 +190,10 @@ impl Assignment {
 
     /// Solves the problem that was entered. Returns the least total cost: infinite when a row that must have a partner
     /// gets none.
-    pub(crate) fn settle(&mut self) -> f32 {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn settle(&mut self, meter: &mut Meter<'_>) -> Result<f32> {
         self.reset();
         for row in 0..self.outlier.len() as u32 {
             match self.cheapest[row].get() {
@@ -195,28 +203,32 @@ impl Assignment {
             }
         }
         if self.waiting.is_empty() {
-            return self.bound;
+            return Ok(self.bound);
         }
-        self.bid_all();
+        self.bid_all(meter)?;
         if !self.waiting.is_empty() {
             self.search.reset(self.columns);
             while let Some(row) = self.waiting.pop() {
-                self.augment(row);
+                self.augment(row, meter)?;
             }
         }
-        self.total()
+        Ok(self.total())
     }
 
     /// Settles the problem that was entered by pairing the nearest pair first, then the nearest of the rest, and so on
     /// [Ma 2011 §3.2]. Returns the sum over the pairs; rows left over are outliers and not counted.
-    pub(crate) fn settle_greedily(&mut self) -> f32 {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn settle_greedily(&mut self, meter: &mut Meter<'_>) -> Result<f32> {
         self.reset();
         let mut total = 0.0;
         while let Some((row, slot)) = self.nearest_open_pair() {
+            meter.spend(STEP * self.outlier.len() as u64)?;
             self.take(row, slot);
             total += self.pairs[slot].1;
         }
-        total
+        Ok(total)
     }
 
     /// Enters a full row, skipping stretches without a usable pair.
@@ -279,30 +291,32 @@ impl Assignment {
     }
 
     /// Lets waiting rows outbid each other; those that bidding cannot place wait on.
-    fn bid_all(&mut self) {
+    fn bid_all(&mut self, meter: &mut Meter<'_>) -> Result<()> {
         // Bidding wars between nearly equal rows are cut short: a path search settles them in one go.
         let mut bids = 4 * self.waiting.len() + 16;
         let mut kept = 0;
         for k in 0..self.waiting.len() {
-            if let Some(row) = self.bid_from(self.waiting[k], &mut bids) {
+            if let Some(row) = self.bid_from(self.waiting[k], &mut bids, meter)? {
                 self.waiting[kept] = row;
                 kept += 1;
             }
         }
         self.waiting.truncate(kept);
+        Ok(())
     }
 
     /// Bids for `row`, then for the row that it displaced, and so on. Returns the row that is left without a place.
-    fn bid_from(&mut self, mut row: u32, bids: &mut usize) -> Option<u32> {
+    fn bid_from(&mut self, mut row: u32, bids: &mut usize, meter: &mut Meter<'_>) -> Result<Option<u32>> {
         while *bids > 0 {
             *bids -= 1;
+            meter.spend(STEP * (1 + self.slots(row).len() as u64))?;
             match self.bid(row) {
-                Bid::Placed => return None,
+                Bid::Placed => return Ok(None),
                 Bid::Displaced(other) => row = other,
-                Bid::Tied => return Some(row),
+                Bid::Tied => return Ok(Some(row)),
             }
         }
-        Some(row)
+        Ok(Some(row))
     }
 
     fn bid(&mut self, row: u32) -> Bid {
@@ -335,9 +349,15 @@ impl Assignment {
 
     /// Places `start` by a shortest augmenting path: along it rows change to other columns, and at its end a column is
     /// taken that was free or a row becomes an outlier.
-    fn augment(&mut self, start: u32) {
+    fn augment(&mut self, start: u32, meter: &mut Meter<'_>) -> Result<()> {
         let (mut row, mut shift) = (start, 0.0);
         let (end, length) = loop {
+            let open = self.search.reached.len() - self.search.settled.len();
+            if let Err(stopped) = meter.spend(STEP * (1 + self.slots(row).len() + open) as u64) {
+                // The next problem starts with an empty tree.
+                self.search.clear();
+                return Err(stopped);
+            }
             self.relax(row, shift);
             let nearest = self.search.nearest_open();
             if let Some((length, row)) = self.search.leave
@@ -347,7 +367,8 @@ impl Assignment {
             }
             let Some((k, length)) = nearest else {
                 // No column left for a row that must have one: it stays without.
-                return self.search.clear();
+                self.search.clear();
+                return Ok(());
             };
             let column = self.search.reached[k];
             let (Some(holder), Some(slot)) = (self.row_of[column].get(), self.slot_holding(column)) else {
@@ -362,6 +383,7 @@ impl Assignment {
         }
         self.flip(start, end);
         self.search.clear();
+        Ok(())
     }
 
     /// Slot by which the row that holds a column is paired with it.

@@ -6,7 +6,7 @@
 //! that find no partner cost the same, so that holes count as much as surplus elements. Hard matching pairs nearest
 //! first and charges nothing for what is missing [Ma 2011 §3.2].
 
-use arabesque_core::{Numbered, Vector};
+use arabesque_core::{Meter, Numbered, Result, Vector};
 
 use crate::{
     exemplar::{
@@ -20,6 +20,9 @@ use crate::{
 
 /// Cost of a sample that hard matching leaves without a partner, in squared outlier distances.
 const LEFT_OVER: f32 = 4.0;
+
+/// Nanoseconds for a row, and for a pair that is priced.
+const PRICE: (u64, u64) = (8, 4);
 
 /// A neighbour of an output sample.
 #[derive(Clone, Copy, Debug)]
@@ -93,17 +96,19 @@ impl<'a, const D: usize> Matcher<'a, D> {
         i: u32,
         limit: f32,
         wanted: &dyn Fn(Vector<D>) -> bool,
-    ) -> f32 {
+        meter: &mut Meter<'_>,
+    ) -> Result<f32> {
         let centre = self.difference(around.source, &around.star, i);
         let pairs = match self.matching {
-            Matching::Robust => self.robust(around, i, limit - centre),
-            Matching::Hard => self.hard(around, i, limit - centre),
+            Matching::Robust => self.robust(around, i, limit - centre, meter)?,
+            Matching::Hard => self.hard(around, i, limit - centre, meter)?,
         };
         let cost = centre + pairs;
         if cost > limit {
-            return cost;
+            return Ok(cost);
         }
-        cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted)
+        meter.spend(PRICE.1 * self.level.neighbours(i).len() as u64)?;
+        Ok(cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted))
     }
 
     /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an
@@ -116,7 +121,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         self.library.feature[source].distance2(&self.library.feature[element])
     }
 
-    fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
+    fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32, meter: &mut Meter<'_>) -> Result<f32> {
         let (level, library) = (self.level, self.library);
         let near = level.neighbours(i);
         let origin = level.position[i];
@@ -128,7 +133,9 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let alone = if seen { outlier2 } else { 0.5 * outlier2 };
             self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
             let offset = row.offset.0.map(|v| v as f32);
-            for column in level.neighbours_of_key(i, row.key) {
+            let columns = level.neighbours_of_key(i, row.key);
+            meter.spend(PRICE.0 + PRICE.1 * columns.len() as u64)?;
+            for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
                 if d2 < outlier2 || row.frozen {
@@ -137,13 +144,13 @@ impl<'a, const D: usize> Matcher<'a, D> {
                 }
             }
             if self.assignment.end_row() > limit {
-                return f32::INFINITY;
+                return Ok(f32::INFINITY);
             }
         }
-        self.assignment.settle()
+        self.assignment.settle(meter)
     }
 
-    fn hard(&mut self, around: &Surroundings<D>, i: u32, limit: f32) -> f32 {
+    fn hard(&mut self, around: &Surroundings<D>, i: u32, limit: f32, meter: &mut Meter<'_>) -> Result<f32> {
         let level = self.level;
         let near = level.neighbours(i);
         self.assignment.begin(near.len());
@@ -154,7 +161,9 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let mut least = LEFT_OVER * level.outlier2[row.key];
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);
-            for column in level.neighbours_of_key(i, row.key) {
+            let columns = level.neighbours_of_key(i, row.key);
+            meter.spend(PRICE.0 + PRICE.1 * columns.len() as u64)?;
+            for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
                 let d2 = d2 + self.difference(row.source, &row.star, other.sample);
@@ -164,12 +173,12 @@ impl<'a, const D: usize> Matcher<'a, D> {
             self.assignment.end_row();
             bound += least;
             if bound > limit {
-                return f32::INFINITY;
+                return Ok(f32::INFINITY);
             }
         }
-        let total = self.assignment.settle_greedily();
+        let total = self.assignment.settle_greedily(meter)?;
         let alone = around.rows.iter().zip(self.assignment.column_of()).filter(|(_, column)| column.is_none());
-        total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key]).sum::<f32>()
+        Ok(total + alone.map(|(row, _)| LEFT_OVER * level.outlier2[row.key]).sum::<f32>())
     }
 
     fn missing_cost(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> f32 {
@@ -209,10 +218,11 @@ impl<'a, const D: usize> Matcher<'a, D> {
         around: &Surroundings<D>,
         i: u32,
         wanted: &dyn Fn(Vector<D>) -> bool,
-    ) -> Correspondence {
+        meter: &mut Meter<'_>,
+    ) -> Result<Correspondence> {
         match self.matching {
-            Matching::Robust => self.robust(around, i, f32::INFINITY),
-            Matching::Hard => self.hard(around, i, f32::INFINITY),
+            Matching::Robust => self.robust(around, i, f32::INFINITY, meter)?,
+            Matching::Hard => self.hard(around, i, f32::INFINITY, meter)?,
         };
         let near = self.level.neighbours(i);
         let columns = (0..).zip(self.assignment.column_of());
@@ -223,6 +233,6 @@ impl<'a, const D: usize> Matcher<'a, D> {
             .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
             .map(|(other, _)| other.sample)
             .collect();
-        Correspondence { pairs, missing }
+        Ok(Correspondence { pairs, missing })
     }
 }

@@ -1,7 +1,7 @@
 //! Position assignment: where the matched neighbourhoods say that samples should be [Ma 2011 eqs 3, 4; Tu 2020 eqs 14,
 //! 15].
 
-use arabesque_core::{NormalEquations, Numbered, Prediction, Pull, Vector};
+use arabesque_core::{NormalEquations, Numbered, Prediction, Pull, Result, Vector};
 use rayon::prelude::*;
 
 use crate::{exemplar::level::fall_off, output::state::State};
@@ -15,13 +15,21 @@ const DOMAIN: f64 = 1.0;
 /// How strongly a poor match is discounted.
 const DISCOUNT: f64 = 8.0;
 
+/// Nanoseconds for a prediction until the equations are set up, and for the pull of a sample.
+const PRICE: (u64, u64) = (30, 100);
+
 /// Solves for all living samples and returns new positions for every sample; the dead keep theirs.
-pub(crate) fn assign<const D: usize>(state: &State<'_, D>) -> Numbered<Vector<D>> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn assign<const D: usize>(state: &State<'_, D>) -> Result<Numbered<Vector<D>>> {
+    let budget = state.budget.stage("placing elements");
     let mut slot_of = Numbered::filled(None, state.samples().len());
     for (slot, &s) in state.living().iter().enumerate() {
         slot_of[s] = Some(slot as u32);
     }
     let predictions = predictions(state, &slot_of);
+    budget.spend(PRICE.0 * predictions.len() as u64 + PRICE.1 * state.living().len() as u64)?;
     let mut weight = Numbered::filled(0.0, state.living().len());
     for p in &predictions {
         weight[p.from] += p.weight;
@@ -29,12 +37,12 @@ pub(crate) fn assign<const D: usize>(state: &State<'_, D>) -> Numbered<Vector<D>
     }
     let pulls: Vec<_> = state.living().iter().zip(&weight).map(|(&s, &w)| pull(state, s, w)).collect();
     let fixed = state.living().iter().map(|&s| state.is_frozen(s)).collect();
-    let moves = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-3, 200);
+    let moves = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-3, 200, &budget)?;
     let mut position: Numbered<_> = state.samples().iter().map(|s| s.position).collect();
     for (&s, &step) in state.living().iter().zip(&moves) {
         position[s] += step;
     }
-    position
+    Ok(position)
 }
 
 /// Predictions as differences from the present offsets, since the unknowns are displacements.

@@ -5,7 +5,7 @@
 //! random ones around it (PatchMatch [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the
 //! result does not depend on the number of threads). Samples around which nothing changed keep their match.
 
-use arabesque_core::{Stream, Vector};
+use arabesque_core::{Budget, Result, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -21,6 +21,9 @@ use crate::{
 
 /// A neighbourhood with less than this energy is as good as a copy: no better one is looked for.
 const COPY: f32 = 1e-3;
+
+/// Nanoseconds to find a neighbour, and to look one up in a match.
+const PRICE: (u64, u64) = (20, 1);
 
 /// How the search is done.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +42,12 @@ pub(crate) struct SearchParams {
 }
 
 /// Finds a match for every living sample. Returns how many samples were searched anew.
-pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchParams) -> usize {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the matches are those of the last round that was finished.
+pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchParams) -> Result<usize> {
+    let budget = state.budget.stage("searching");
+    state.hold_neighbourhoods()?;
     let mut searched = 0;
     for round in 0..params.rounds as u64 {
         let params = SearchParams { step: params.step + (round << 40), ..*params };
@@ -48,9 +56,10 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
             .par_iter()
             .map_init(
                 || Matcher::new(state.level, state.library, params.matching, params.prices),
-                |matcher, &s| search_one(state, s, &params, matcher),
+                |matcher, &s| search_one(state, s, &params, matcher, &budget),
             )
-            .collect();
+            .collect::<Result<_>>()?;
+        budget.spend(0)?;
         searched += found.iter().flatten().count();
         let searched_now: Vec<_> = state.living().iter().copied().zip(found).collect();
         for (s, found) in searched_now {
@@ -58,7 +67,7 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
         }
     }
     state.clear_dirty();
-    searched
+    Ok(searched)
 }
 
 /// The exemplar samples with the neighbourhoods most similar to that of `i`, best first [Ma 2011 §4.2].
@@ -70,50 +79,63 @@ fn most_similar<const D: usize>(
     matching: Matching,
     number: usize,
     i: u32,
-) -> Vec<u32> {
+    budget: &Budget,
+) -> Result<Vec<u32>> {
     const MAX_COMPARED: usize = 256;
     let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
     let others = &level.of_key[level.key[i]];
     let around = exemplar_surroundings(level, i);
     let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
+    let mut meter = budget.meter();
     for &j in others.iter().step_by(others.len().div_ceil(MAX_COMPARED)).filter(|&&j| j != i) {
         let full = best.len() == number;
         let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
-        let cost = matcher.cost(&around, j, limit, &|_| true);
+        let cost = matcher.cost(&around, j, limit, &|_| true, &mut meter)?;
         if cost < limit {
             let at = best.partition_point(|b| b.0 <= cost);
             best.insert(at, (cost, j));
             best.truncate(number);
         }
     }
-    best.into_iter().map(|(_, j)| j).collect()
+    Ok(best.into_iter().map(|(_, j)| j).collect())
 }
 
 /// How far the exemplar is from repeating itself: the mean energy of the best match of a neighbourhood among those that
 /// do not overlap it much. 0 for a perfect lattice, about 1 and more where nothing is like anything else; `None` where
 /// too little of it is seen to tell.
-pub(crate) fn dissimilarity<const D: usize>(level: &Level<D>, library: &Library<D>, matching: Matching) -> Option<f64> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn dissimilarity<const D: usize>(
+    level: &Level<D>,
+    library: &Library<D>,
+    matching: Matching,
+    budget: &Budget,
+) -> Result<Option<f64>> {
     const ASKED: usize = 96;
     let inner: Vec<u32> = (0..level.position.len() as u32)
         .filter(|&i| library.view.signed_distance(level.position[i]) > 0.7 * level.radius)
         .collect();
     let asked: Vec<u32> = inner.iter().copied().step_by(inner.len().div_ceil(ASKED).max(1)).collect();
-    let energies: Vec<f64> = asked
+    let energies: Vec<Option<f64>> = asked
         .par_iter()
-        .filter_map(|&i| {
+        .map(|&i| {
+            let mut meter = budget.meter();
             let mut matcher = Matcher::new(level, library, matching, Prices { missing: 1.0, outside: 0.0 });
             let around = exemplar_surroundings(level, i);
             let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key]).sum();
             let others = &level.of_key[level.key[i]];
             let apart = |j: &&u32| (level.position[**j] - level.position[i]).norm() > level.radius;
-            let best = others
-                .iter()
-                .filter(apart)
-                .fold(f32::INFINITY, |best, &j| best.min(matcher.cost(&around, j, best, &|_| true)));
-            (scale > 0.0).then(|| f64::from((best / scale).min(2.0)))
+            let mut best = f32::INFINITY;
+            for &j in others.iter().filter(apart) {
+                best = best.min(matcher.cost(&around, j, best, &|_| true, &mut meter)?);
+            }
+            Ok((scale > 0.0).then(|| f64::from((best / scale).min(2.0))))
         })
-        .collect();
-    (energies.len() >= 8).then(|| energies.iter().sum::<f64>() / energies.len() as f64)
+        .collect::<Result<_>>()?;
+    budget.spend(0)?;
+    let energies: Vec<f64> = energies.into_iter().flatten().collect();
+    Ok((energies.len() >= 8).then(|| energies.iter().sum::<f64>() / energies.len() as f64))
 }
 
 /// The neighbourhood of an exemplar sample, as if it were an output sample.
@@ -139,11 +161,14 @@ fn search_one<const D: usize>(
     s: u32,
     params: &SearchParams,
     matcher: &mut Matcher<'_, D>,
-) -> Option<Match> {
-    let (around, dirty) = surroundings(state, s);
+    budget: &Budget,
+) -> Result<Option<Match>> {
+    let mut meter = budget.meter();
+    let (around, dirty, looked) = surroundings(state, s);
+    meter.spend(PRICE.1 * looked + PRICE.0 * around.rows.len() as u64)?;
     let old = state.sample(s).matched.as_ref();
     if !dirty && old.is_some_and(|m| m.members.len() == around.rows.len()) {
-        return None;
+        return Ok(None);
     }
     let position = state.sample(s).position;
     let frame = state.request.fields.frame(position);
@@ -153,40 +178,41 @@ fn search_one<const D: usize>(
     let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key]).sum();
     let mut best = (f32::INFINITY, u32::MAX);
     let mut candidates = likely(state, s, &around, params);
+    meter.spend(PRICE.1 * (around.rows.len() * around.rows.len()) as u64)?;
     let seeds = candidates.len();
     let mut next = 0;
     while next < candidates.len() && best.0 > COPY * scale {
         let i = candidates[next];
-        let cost = matcher.cost(&around, i, best.0, &wanted);
+        let cost = matcher.cost(&around, i, best.0, &wanted, &mut meter)?;
         if cost < best.0 || (cost == best.0 && i < best.1) {
             best = (cost, i);
         }
         next += 1;
         if next == seeds && best.0 > COPY * scale {
-            add_unlikely(&mut candidates, state, s, params);
+            add_unlikely(&mut candidates, state, s, params, budget)?;
         }
     }
     let input = best.1;
-    let found = matcher.correspondence(&around, input, &wanted);
+    let found = matcher.correspondence(&around, input, &wanted, &mut meter)?;
     let own = state.level.outlier2[state.sample(s).key];
-    Some(Match {
+    Ok(Some(Match {
         input,
         cost: best.0,
         scale: scale + own,
         pairs: found.pairs.iter().map(|&(row, i)| (around.rows[row as usize].sample, i)).collect(),
         members: around.rows.iter().map(|r| r.sample).collect(),
         missing: found.missing,
-    })
+    }))
 }
 
-/// The neighbourhood of sample `s`, and whether anything in it changed.
-fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D>, bool) {
+/// The neighbourhood of sample `s`, whether anything in it changed, and how many samples were looked at.
+fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D>, bool, u64) {
     let sample = state.sample(s);
     let frame = state.request.fields.frame(sample.position);
     let radius = state.level.radius;
     let mut dirty = sample.dirty;
     let mut rows = Vec::with_capacity(sample.matched.as_ref().map_or(24, |m| m.members.len() + 4));
-    state.within(sample.position, radius * frame.spacing_scale, |other, offset| {
+    let looked = state.within(sample.position, radius * frame.spacing_scale, |other, offset| {
         if other == s {
             return;
         }
@@ -207,7 +233,7 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
     // Nearest first: the bound of the matcher then grows fastest.
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
     let source = state.item(sample.item).item.source;
-    (Surroundings { source, star: state.star(s), rows }, dirty)
+    (Surroundings { source, star: state.star(s), rows }, dirty, looked)
 }
 
 /// Exemplar samples to try first for sample `s`, the likeliest first.
@@ -230,18 +256,24 @@ fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>
 }
 
 /// Exemplar samples to try when none of the likely ones in `list` is a copy: what is similar to these, and random ones.
-fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u32, params: &SearchParams) {
+fn add_unlikely<const D: usize>(
+    list: &mut Vec<u32>,
+    state: &State<'_, D>,
+    s: u32,
+    params: &SearchParams,
+    budget: &Budget,
+) -> Result<()> {
     let level = state.level;
     let all = &level.of_key[state.sample(s).key];
     if is_exhaustive(all, params) {
-        return;
+        return Ok(());
     }
     let seeds = list.len();
     if params.search == Search::KCoherence {
         for k in 0..seeds.min(6) {
             let i = list[k];
-            let find = || most_similar(level, state.library, params.matching, params.coherence, i);
-            level.alike(i, find).iter().for_each(|&j| push(list, j));
+            let find = || most_similar(level, state.library, params.matching, params.coherence, i, budget);
+            level.alike(i, find)?.iter().for_each(|&j| push(list, j));
         }
     }
     let mut random = Stream::new(state.request.seed ^ (params.step << 20), streams::SEARCH, u64::from(s));
@@ -249,6 +281,7 @@ fn add_unlikely<const D: usize>(list: &mut Vec<u32>, state: &State<'_, D>, s: u3
         let seed = list[n % seeds];
         push(list, random_near(state, seed, all, n, &mut random));
     }
+    Ok(())
 }
 
 fn is_exhaustive(all: &[u32], params: &SearchParams) -> bool {

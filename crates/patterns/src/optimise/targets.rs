@@ -1,6 +1,6 @@
 //! How many elements of each class the output should have.
 
-use arabesque_core::{Border, Numbered, Request};
+use arabesque_core::{Border, Numbered, Request, Result};
 
 use crate::{border::Extent, exemplar::library::Library};
 
@@ -9,12 +9,17 @@ const CELLS: f64 = 96.0;
 
 /// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output,
 /// each place counted by its local scale and density.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
 pub(crate) fn class_targets<const D: usize>(
     library: &Library<D>,
     request: &Request<D>,
     extent: &Extent<'_, D>,
     base: u32,
-) -> Numbered<f64> {
+) -> Result<Numbered<f64>> {
+    let budget = request.budget.stage("measuring what is to be filled");
+    let mut meter = budget.meter();
     let reach = border_reach(library, request.border, base);
     let bounds = match request.domain.period() {
         Some(_) => request.domain.bounds(),
@@ -28,6 +33,7 @@ pub(crate) fn class_targets<const D: usize>(
     let mut usable = vec![0.0; library.classes()];
     for c in 0..count {
         let p = bounds.cell_centre(c, &cells);
+        meter.spend(100 + 2 * reach.len() as u64)?;
         let frame = request.fields.frame(p);
         let distance = request.domain.signed_distance(p);
         if extent.is_blocked(p, 0.0) {
@@ -40,7 +46,7 @@ pub(crate) fn class_targets<const D: usize>(
         }
     }
     let intensity = intensities(library);
-    usable.iter().zip(intensity).map(|(area, per)| area * per).collect()
+    Ok(usable.iter().zip(intensity).map(|(area, per)| area * per).collect())
 }
 
 /// How far inside the border the centres of each class lie; negative outside.

@@ -23,13 +23,13 @@ impl<const D: usize> Canvas<D> {
         self.items.push(Item { position, ..item });
     }
 
-    /// Calls `visit(i, offset)` for the items within `radius` of `p`.
-    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
+    /// Calls `visit(i, offset)` for the items within `radius` of `p`. Returns how many items and cells were looked at.
+    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) -> u64 {
         self.buckets.near(p, radius, |i| {
             let offset = self.domain.offset(p, self.items[i].position);
             if offset.norm2() <= radius * radius {
                 visit(i as usize, offset);
             }
-        });
+        })
     }
 }

@@ -1,6 +1,8 @@
 //! The output while it is optimised: items, their samples, and what each sample was matched with.
 
-use arabesque_core::{Domain, GridIndex, Matrix, Numbered, Request, Similarity, Vector};
+use std::sync::Arc;
+
+use arabesque_core::{Budget, Domain, GridIndex, Held, Matrix, Numbered, Request, Result, Similarity, Vector};
 
 use crate::{
     border::Extent,
@@ -8,6 +10,12 @@ use crate::{
     output::draft::{Draft, Item},
     params::Deform,
 };
+
+/// Bytes for a neighbour of a sample: in its match, and while positions are assigned.
+const NEIGHBOUR: u64 = 90;
+
+/// Neighbours among the samples that a look-up meets: a disc in the square around it.
+const SHARE: f64 = 0.5;
 
 /// What the search found for one output sample.
 #[derive(Clone, Debug)]
@@ -68,6 +76,9 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) library: &'a Library<D>,
     pub(crate) level: &'a Level<D>,
     pub(crate) request: &'a Request<D>,
+    /// What the work on this state draws on: the account of the request, or a fresh one for what is drawn after it has
+    /// ended.
+    pub(crate) budget: Budget,
     pub(crate) extent: &'a Extent<'a, D>,
     /// Whether samples may leave the shape of their element.
     pub(crate) deform: Deform,
@@ -80,6 +91,8 @@ pub(crate) struct State<'a, const D: usize> {
     /// Living samples, parallel to the points of `index`.
     living: Vec<u32>,
     index: GridIndex<D>,
+    /// Memory of the neighbourhoods.
+    held: Option<Arc<Held>>,
 }
 
 impl<'a, const D: usize> State<'a, D> {
@@ -94,6 +107,7 @@ impl<'a, const D: usize> State<'a, D> {
             library: &sampled.library,
             level: &sampled.level,
             request,
+            budget: request.budget.clone(),
             extent,
             deform,
             items: Numbered::new(),
@@ -102,6 +116,7 @@ impl<'a, const D: usize> State<'a, D> {
             tangents: Numbered::new(),
             living: Vec::new(),
             index: GridIndex::new(&[], 1.0, &request.domain),
+            held: None,
         };
         draft.items.iter().for_each(|&(item, turn)| _ = state.push(item, turn));
         for &(a, b) in &draft.links {
@@ -200,10 +215,48 @@ impl<'a, const D: usize> State<'a, D> {
         &self.living
     }
 
-    /// Calls `visit(sample, offset)` for the living samples within `radius` of `p`.
+    /// Calls `visit(sample, offset)` for the living samples within `radius` of `p`. Returns how many were looked at.
     #[inline]
-    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32, Vector<D>)) {
-        self.index.within(p, radius, |slot, offset| visit(self.living[slot], offset));
+    pub(crate) fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(u32, Vector<D>)) -> u64 {
+        self.index.within(p, radius, |slot, offset| visit(self.living[slot], offset))
+    }
+
+    /// The same state, for work that draws on another account.
+    pub(crate) fn on(&self, budget: Budget) -> Self {
+        Self { budget, ..self.clone() }
+    }
+
+    /// Holds the memory that the neighbourhoods of the samples will take, once for each state.
+    ///
+    /// # Errors
+    /// When there is not so much: then nothing was searched yet.
+    pub(crate) fn hold_neighbourhoods(&mut self) -> Result<()> {
+        if self.held.is_some() {
+            return Ok(());
+        }
+        let load = |&s: &u32| {
+            let position = self.samples[s].position;
+            self.index.load(position, self.level.radius * self.request.fields.frame(position).spacing_scale)
+        };
+        let met: u64 = self.living.iter().map(load).sum();
+        self.budget.spend(self.living.len() as u64 * 100)?;
+        let bytes = (met as f64 * SHARE) as u64 * NEIGHBOUR;
+        self.held = Some(Arc::new(self.budget.hold("neighbourhoods of the samples", bytes as usize)?));
+        Ok(())
+    }
+
+    /// Removes the edges of samples that are no part of the output any more, after a step that was cut short.
+    pub(crate) fn drop_dead_links(&mut self) {
+        for s in self.samples.numbers() {
+            if self.is_alive(s) {
+                let mut links = std::mem::take(&mut self.links[s]);
+                links.retain(|&o| self.is_alive(o));
+                self.links[s] = links;
+            } else {
+                self.links[s].clear();
+            }
+        }
+        self.reindex();
     }
 
     /// The samples that a sample is joined to.
@@ -375,6 +428,7 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Joins two samples by an edge.
     pub(crate) fn link(&mut self, a: u32, b: u32) {
+        debug_assert!(a != b && !self.are_linked(a, b), "an edge joins two samples, once");
         self.links[a].push(b);
         self.links[b].push(a);
     }

@@ -5,7 +5,7 @@
 //! end. Elsewhere neighbours along the ring become one stroke, see [`super::join`]. A drawing of the exemplar's kind
 //! then has no end that it would not have by itself, and can be cut out or stitched along its border.
 
-use arabesque_core::{Drawn, Measured, Outline, Path, Vector, spans_inside};
+use arabesque_core::{Budget, Drawn, Measured, Outline, Path, Result, Vector, spans_inside};
 
 use crate::{
     curves::border::{
@@ -26,9 +26,13 @@ const ALONG: f64 = 1.0;
 /// Strokes that end within so many widths of the ring are taken on to it.
 const NEAR: f64 = 1.0;
 
+/// Nanoseconds for a place of a stroke that is looked at, and for a corner of a ring that is compared with an end.
+const PRICE: (u64, u64) = (150, 5);
+
 /// What the strokes of a pattern do at the border.
 #[derive(Clone, Debug)]
 pub(crate) struct BorderTurn {
+    budget: Budget,
     /// What can be filled.
     outline: Outline<2>,
     curves: Vec<Thickness>,
@@ -71,6 +75,7 @@ impl BorderTurn {
         let meetings = (0..net.nodes.len() as u32).filter(|&n| net.degree(n) > 2).count();
         let is_net = meetings as f64 > MEETINGS * net.nodes.len() as f64;
         Some(Self {
+            budget: state.budget.stage("turning strokes at the border"),
             outline: state.extent.outline()?,
             curves: (0..=last).map(thickness).collect(),
             unit: net.spacing * state.extent.smallest_spacing_scale,
@@ -82,11 +87,14 @@ impl BorderTurn {
     #[cfg(test)]
     pub(crate) fn test(outline: Outline<2>, closed: &[bool], ending: Ending) -> Self {
         let curves = closed.iter().enumerate().map(|(style, &is_closed)| Thickness { width: 1.0, style, is_closed });
-        Self { outline, curves: curves.collect(), unit: 5.0, ending }
+        Self { budget: Budget::default(), outline, curves: curves.collect(), unit: 5.0, ending }
     }
 
     /// Strokes cut and joined at the border.
-    pub(crate) fn finish<const D: usize>(&self, strokes: Vec<Drawn<D>>) -> Vec<Drawn<D>>
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn finish<const D: usize>(&self, strokes: Vec<Drawn<D>>) -> Result<Vec<Drawn<D>>>
     where
         Vector<D>: Dimension<D>,
     {
@@ -97,13 +105,22 @@ impl BorderTurn {
         self.curves.get(drawn.source).map_or(0.0, |c| c.width) * drawn.scale
     }
 
-    fn turned(&self, strokes: Vec<Drawn<2>>) -> Vec<Drawn<2>> {
+    fn turned(&self, strokes: Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>> {
         let widest = strokes.iter().map(|d| self.width(d)).fold(0.0, f64::max);
-        let Some(rings) = OffsetRings::new(&self.outline, widest, self.unit) else { return Vec::new() };
-        let clipped: Vec<ClippedStroke> = strokes.iter().flat_map(|d| self.clip(d, &rings)).collect();
+        self.budget.check()?;
+        let Some(rings) = OffsetRings::new(&self.outline, widest, self.unit) else { return Ok(Vec::new()) };
+        let corners = rings.corners() as u64;
+        let mut meter = self.budget.meter();
+        let mut clipped: Vec<ClippedStroke> = Vec::new();
+        for drawn in &strokes {
+            let parts = self.clip(drawn, &rings);
+            let looks = parts.iter().map(|p| p.measured.length() / (0.05 * self.unit)).sum::<f64>();
+            meter.spend(PRICE.0 * (20 + looks as u64) + 2 * PRICE.1 * corners * (1 + parts.len() as u64))?;
+            clipped.extend(parts);
+        }
         match self.ending {
-            Ending::BorderStroke => with_rings(clipped, &rings),
-            Ending::IntoNeighbour => join(clipped, &rings),
+            Ending::BorderStroke => with_rings(clipped, &rings, &self.budget),
+            Ending::IntoNeighbour => join(clipped, &rings, &self.budget),
         }
     }
 
@@ -139,13 +156,16 @@ impl BorderTurn {
 }
 
 /// The strokes as they are, and a closed one along each ring that they reach, in the style of most that do.
-fn with_rings(clipped: Vec<ClippedStroke>, rings: &OffsetRings) -> Vec<Drawn<2>> {
+fn with_rings(clipped: Vec<ClippedStroke>, rings: &OffsetRings, budget: &Budget) -> Result<Vec<Drawn<2>>> {
+    let mut meter = budget.meter();
     let mut along_rings: Vec<Drawn<2>> = Vec::new();
     for (number, ring) in rings.all.iter().enumerate() {
         let is_here = |p: &Option<Place>| p.is_some_and(|p| p.ring == number);
         let ends = |t: &ClippedStroke| t.reaches.iter().filter(|p| is_here(p)).count();
         let total = |style: usize| clipped.iter().filter(|t| t.style == style).map(&ends).sum::<usize>();
         let reaching = clipped.iter().filter(|t| ends(t) > 0);
+        let count = reaching.clone().count();
+        meter.spend(PRICE.1 * clipped.len() as u64 * (1 + count as u64))?;
         let Some(model) = reaching.max_by_key(|t| (total(t.style), std::cmp::Reverse(t.style))) else { continue };
         let mut path = Path { cubics: rings.run(number, 0.0, ring.length()), closed: true };
         if let Some(&[first, ..]) = path.cubics.first()
@@ -155,5 +175,5 @@ fn with_rings(clipped: Vec<ClippedStroke>, rings: &OffsetRings) -> Vec<Drawn<2>>
         }
         along_rings.push(Drawn { path, ..model.drawn.clone() });
     }
-    clipped.into_iter().map(|t| t.drawn).chain(along_rings).collect()
+    Ok(clipped.into_iter().map(|t| t.drawn).chain(along_rings).collect())
 }

@@ -5,7 +5,7 @@
 //! fewest ends and makes the shortest runs. Only neighbours are joined, so that no run crosses a stroke. A loop would
 //! be a stroke that the exemplar has none of, cut off from all others.
 
-use arabesque_core::{Cubic, Drawn, Path};
+use arabesque_core::{Budget, Cubic, Drawn, Meter, Path, Result};
 
 use crate::curves::border::{
     fit::{Passage, arc},
@@ -23,6 +23,9 @@ const BEGINNINGS: usize = 32;
 
 /// Turns take at most this share of a stroke from either of its ends.
 const SHARE: f64 = 0.4;
+
+/// Nanoseconds for a stroke that is given another group.
+const GROUP: u64 = 1;
 
 /// An end of a stroke on a ring.
 #[derive(Clone, Copy, Debug)]
@@ -45,17 +48,28 @@ struct Joint {
 type Round = Vec<(End, f64, bool)>;
 
 /// Joins the ends of strokes along the rings.
-pub(crate) fn join(clipped: Vec<ClippedStroke>, rings: &OffsetRings) -> Vec<Drawn<2>> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn join(clipped: Vec<ClippedStroke>, rings: &OffsetRings, budget: &Budget) -> Result<Vec<Drawn<2>>> {
+    let mut meter = budget.meter();
     let mut groups: Vec<usize> = (0..clipped.len()).collect();
     let mut joints = Vec::new();
     for ring in 0..rings.all.len() {
-        joints.extend(joints_on(ring, &clipped, rings, &mut groups));
+        joints.extend(joints_on(ring, &clipped, rings, &mut groups, &mut meter)?);
     }
-    StrokeJoiner::new(&clipped, &joints, rings).strokes()
+    Ok(StrokeJoiner::new(&clipped, &joints, rings).strokes())
 }
 
 /// The joints on a ring; strokes that become one get into one group.
-fn joints_on(ring: usize, clipped: &[ClippedStroke], rings: &OffsetRings, groups: &mut Vec<usize>) -> Vec<Joint> {
+fn joints_on(
+    ring: usize,
+    clipped: &[ClippedStroke],
+    rings: &OffsetRings,
+    groups: &mut Vec<usize>,
+    meter: &mut Meter<'_>,
+) -> Result<Vec<Joint>> {
+    meter.spend(10 * GROUP * clipped.len() as u64)?;
     let place = |(stroke, end): (usize, usize)| {
         let place = clipped[stroke].reaches[end].filter(|p| p.ring == ring)?;
         Some(End { stroke, end, arc: place.arc })
@@ -69,11 +83,11 @@ fn joints_on(ring: usize, clipped: &[ClippedStroke], rings: &OffsetRings, groups
     let mut round: Round = (0..n).map(|k| (ends[k], gap(k), false)).collect();
     let mut gaps: Vec<f64> = round.iter().map(|r| r.1).collect();
     gaps.sort_by(f64::total_cmp);
-    let Some(&usual) = gaps.get(n / 2).filter(|_| n > 1) else { return Vec::new() };
+    let Some(&usual) = gaps.get(n / 2).filter(|_| n > 1) else { return Ok(Vec::new()) };
     let usual = usual.max(2.0 * rings.radius);
     let mut joints = close(ring, &mut round, clipped);
-    joints.extend(best_round(ring, &round, usual, clipped, groups));
-    joints
+    joints.extend(best_round(ring, &round, usual, clipped, groups, meter)?);
+    Ok(joints)
 }
 
 /// Closes what is left of closed strokes where nothing else lies between its ends.
@@ -101,11 +115,13 @@ fn best_round(
     usual: f64,
     clipped: &[ClippedStroke],
     groups: &mut Vec<usize>,
-) -> Vec<Joint> {
+    meter: &mut Meter<'_>,
+) -> Result<Vec<Joint>> {
     let n = round.len();
     let mut best: Option<(f64, Vec<Joint>, Vec<usize>)> = None;
     let beginnings = (0..n.min(BEGINNINGS)).map(|k| k * n / n.min(BEGINNINGS));
     for first in beginnings.flat_map(|k| [k, k + 1]) {
+        meter.spend(GROUP * ((2 + n / 2) * groups.len()) as u64)?;
         let mut tried = groups.clone();
         let turned: Round = (0..n).map(|i| round[(first + i) % n]).collect();
         let found = join_around(ring, &turned, MAX_GAP * usual, clipped, &mut tried);
@@ -115,10 +131,10 @@ fn best_round(
             best = Some((cost, found, tried));
         }
     }
-    best.map_or(Vec::new(), |(_, found, tried)| {
+    Ok(best.map_or(Vec::new(), |(_, found, tried)| {
         *groups = tried;
         found
-    })
+    }))
 }
 
 /// Joins each end to the next where that may be.
@@ -321,7 +337,7 @@ mod tests {
     #[test]
     fn parallel_lines_are_one_serpentine() {
         let border = BorderTurn::test(square(100.0), &[false], Ending::IntoNeighbour);
-        let strokes = border.finish(rows(10));
+        let strokes = border.finish(rows(10)).unwrap();
         assert_eq!(strokes.len(), 1);
         assert_inside(&strokes, &square(100.0));
         let length = Measured::new(strokes[0].path.clone(), 1e-3).length();
@@ -336,7 +352,7 @@ mod tests {
     #[test]
     fn an_odd_number_of_lines_is_one_serpentine_as_well() {
         let border = BorderTurn::test(square(90.0), &[false], Ending::IntoNeighbour);
-        assert_eq!(border.finish(rows(9)).len(), 1);
+        assert_eq!(border.finish(rows(9)).unwrap().len(), 1);
     }
 
     #[test]
@@ -344,7 +360,7 @@ mod tests {
         let border = BorderTurn::test(square(100.0), &[false, false], Ending::IntoNeighbour);
         let mut lines = rows(10);
         lines[4].source = 1;
-        let strokes = border.finish(lines);
+        let strokes = border.finish(lines).unwrap();
         assert_eq!(strokes.iter().filter(|d| d.source == 1).count(), 1);
         assert_eq!(strokes.len(), 3);
     }
@@ -353,7 +369,7 @@ mod tests {
     fn a_grid_has_a_stroke_along_the_border() {
         let border = BorderTurn::test(square(100.0), &[false], Ending::BorderStroke);
         let columns = (0..10).map(|k| 10.0 * f64::from(k) + 5.0).map(|x| line(&[(x, -20.0), (x, 120.0)], 0));
-        let strokes = border.finish(rows(10).into_iter().chain(columns).collect());
+        let strokes = border.finish(rows(10).into_iter().chain(columns).collect()).unwrap();
         assert_eq!((strokes.len(), free_ends(&strokes)), (21, 40));
         assert_inside(&strokes, &square(100.0));
         let border = Measured::new(strokes[20].path.clone(), 1e-3);
@@ -378,7 +394,7 @@ mod tests {
     fn a_hole_has_a_stroke_along_its_border_too() {
         let hole = square(20.0).rings[0].iter().map(|p| *p + Vector::xy(40.0, 40.0)).rev().collect();
         let room = Outline { rings: vec![square(100.0).rings[0].clone(), hole] };
-        let strokes = BorderTurn::test(room.clone(), &[false], Ending::BorderStroke).finish(rows(10));
+        let strokes = BorderTurn::test(room.clone(), &[false], Ending::BorderStroke).finish(rows(10)).unwrap();
         assert_eq!(strokes.iter().filter(|d| d.path.closed).count(), 2);
         assert_inside(&strokes, &room);
         // Two rows are cut in two.
@@ -390,7 +406,7 @@ mod tests {
         let border = BorderTurn::test(square(100.0), &[true], Ending::IntoNeighbour);
         let cell = line(&[(-10.0, 40.0), (20.0, 40.0), (20.0, 60.0), (-10.0, 60.0), (-10.0, 40.0)], 0);
         let cell = Drawn { path: Path { closed: true, ..cell.path }, ..cell };
-        let strokes = border.finish(vec![cell]);
+        let strokes = border.finish(vec![cell]).unwrap();
         assert!(strokes.len() == 1 && strokes[0].path.closed);
         assert_inside(&strokes, &square(100.0));
         let size = strokes[0].path.bounds().size();
@@ -400,13 +416,14 @@ mod tests {
     #[test]
     fn scraps_at_the_border_are_dropped() {
         let border = BorderTurn::test(square(100.0), &[false], Ending::IntoNeighbour);
-        let strokes = border.finish(vec![line(&[(10.0, 0.9), (90.0, 0.9)], 0), line(&[(-5.0, 1.0), (1.2, 1.0)], 0)]);
+        let strokes =
+            border.finish(vec![line(&[(10.0, 0.9), (90.0, 0.9)], 0), line(&[(-5.0, 1.0), (1.2, 1.0)], 0)]).unwrap();
         assert_eq!(strokes, vec![]);
     }
 
     #[test]
     fn where_there_is_no_room_nothing_is_drawn() {
         let border = BorderTurn::test(square(1.5), &[false], Ending::BorderStroke);
-        assert_eq!(border.finish(vec![line(&[(0.0, 0.7), (1.5, 0.7)], 0)]), vec![]);
+        assert_eq!(border.finish(vec![line(&[(0.0, 0.7), (1.5, 0.7)], 0)]).unwrap(), vec![]);
     }
 }

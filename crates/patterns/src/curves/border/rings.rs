@@ -64,6 +64,11 @@ impl OffsetRings {
         Some(Self { all: all.collect(), shape, radius, tolerance })
     }
 
+    /// Number of points of all rings.
+    pub(crate) fn corners(&self) -> usize {
+        self.all.iter().map(|ring| ring.points().len()).sum()
+    }
+
     /// How far inside the rings a place lies; negative outside.
     pub(crate) fn depth(&self, p: Vector<2>) -> f64 {
         self.shape.signed_distance(p)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use arabesque_core::{
-    Numbered, Vector,
+    Numbered, Result, Vector,
     pairing::{self, Wish},
 };
 
@@ -25,6 +25,9 @@ const BENT: f64 = -0.5;
 /// How much a well supported piece is preferred to a better fitting one, as a share of the squared length of the edge.
 const SUPPORT: f64 = 0.1;
 
+/// Nanoseconds for a sample of a stroke, and for two of its edges that are compared.
+const PRICE: (u64, u64) = (300, 80);
+
 /// A run of samples along one stroke.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
@@ -36,8 +39,17 @@ pub(crate) struct Chain {
 }
 
 /// Chains all edges but those among frozen samples.
-pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tangents: bool) -> Vec<Chain> {
-    let Some(net) = &state.level.net else { return Vec::new() };
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tangents: bool) -> Result<Vec<Chain>> {
+    let Some(net) = &state.level.net else { return Ok(Vec::new()) };
+    let budget = state.budget.stage("drawing strokes");
+    let mut meter = budget.meter();
+    for s in state.samples().numbers() {
+        // Crowded samples are compared edge by edge.
+        meter.spend(PRICE.0 + PRICE.1 * (state.degree(s) * state.degree(s)) as u64)?;
+    }
     let next = (0..state.samples().len() as u32).map(|s| continuations(state, s, by_tangents)).collect::<Numbered<_>>();
     let onwards = |from: u32, at: u32| next[at].get(&from).copied().filter(|&to| !is_fixed(state, at, to));
     let mut seen: BTreeMap<(u32, u32), ()> = BTreeMap::new();
@@ -48,6 +60,7 @@ pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tan
                 continue;
             }
             let (samples, is_closed) = walk(s, o, &onwards);
+            meter.spend(PRICE.0 * samples.len() as u64)?;
             let around = if is_closed { samples.first().copied() } else { None };
             let ends: Vec<u32> = samples.iter().copied().chain(around).collect();
             ends.windows(2).for_each(|w| {
@@ -57,7 +70,7 @@ pub(crate) fn chains<const D: usize>(state: &State<'_, D>, votes: &Votes, by_tan
             chains.push(Chain { samples, pieces, is_closed });
         }
     }
-    chains
+    Ok(chains)
 }
 
 fn is_fixed<const D: usize>(state: &State<'_, D>, a: u32, b: u32) -> bool {

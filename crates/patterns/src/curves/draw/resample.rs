@@ -1,6 +1,6 @@
 //! From one level to the next: the strokes of the coarser one, sampled more densely [Tu 2020 §4.3.5].
 
-use arabesque_core::{Matrix, Numbered, Vector};
+use arabesque_core::{Matrix, Meter, Numbered, Result, Vector};
 
 use crate::{
     curves::draw::{chains::Chain, shape},
@@ -11,23 +11,34 @@ use crate::{
     },
 };
 
+/// Nanoseconds for a new sample.
+const SAMPLE: u64 = 3000;
+
+/// Nanoseconds for a kept sample that an old one is compared with.
+const KEPT: u64 = 4;
+
 /// The elements of `state` and samples along `chains` at the spacing of the `finer` net, whose first pseudo element is
 /// `base`.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
 pub(crate) fn resample<const D: usize>(
     state: &State<'_, D>,
     chains: &[Chain],
     finer: &Net<D>,
     base: u32,
     frozen: Draft<D>,
-) -> Draft<D> {
+) -> Result<Draft<D>> {
+    let budget = state.budget.stage("sampling strokes anew");
+    let mut meter = budget.meter();
     let strokes = frozen.items.iter().enumerate().filter(|(_, (item, _))| item.frozen == Some(Frozen::Stroke));
     let drawn = strokes.map(|(n, (item, _))| (n as u32, item.position)).collect();
     let draft = with_elements(state, frozen);
     let mut made = Resampled { state, finer, base, draft, drawn, known: Numbered::filled(None, state.samples().len()) };
     if let Some(net) = &state.level.net {
-        chains.iter().for_each(|chain| made.follow(net, chain));
+        chains.iter().try_for_each(|chain| made.follow(net, chain, &mut meter))?;
     }
-    made.draft
+    Ok(made.draft)
 }
 
 /// What is frozen, and the other items that are no curve samples.
@@ -49,7 +60,8 @@ struct Resampled<'a, const D: usize> {
 }
 
 impl<const D: usize> Resampled<'_, D> {
-    fn follow(&mut self, net: &Net<D>, chain: &Chain) {
+    fn follow(&mut self, net: &Net<D>, chain: &Chain, meter: &mut Meter<'_>) -> Result<()> {
+        meter.spend(chain.samples.len() as u64 * (SAMPLE + KEPT * self.drawn.len() as u64))?;
         let n = chain.samples.len();
         let count = chain.pieces.len();
         let mut keys: Vec<usize> = (0..n).filter(|&k| self.is_key(net, chain, k)).collect();
@@ -64,8 +76,9 @@ impl<const D: usize> Resampled<'_, D> {
             keys.windows(2).map(|w| (w[0], w[1])).collect()
         };
         for (from, to) in stretches {
-            self.stretch(net, chain, from..to);
+            self.stretch(net, chain, from..to, meter)?;
         }
+        Ok(())
     }
 
     /// Whether a sample of the chain is kept as it is: ends, junctions and knots of the exemplar.
@@ -77,7 +90,13 @@ impl<const D: usize> Resampled<'_, D> {
     }
 
     /// Samples the edges `range` of a chain evenly.
-    fn stretch(&mut self, net: &Net<D>, chain: &Chain, range: std::ops::Range<usize>) {
+    fn stretch(
+        &mut self,
+        net: &Net<D>,
+        chain: &Chain,
+        range: std::ops::Range<usize>,
+        meter: &mut Meter<'_>,
+    ) -> Result<()> {
         let at = |k: usize| chain.samples[k % chain.samples.len()];
         let lengths: Vec<f64> = range.clone().map(|k| self.state.offset(at(k), at(k + 1)).norm()).collect();
         let total: f64 = lengths.iter().sum();
@@ -88,6 +107,7 @@ impl<const D: usize> Resampled<'_, D> {
         let mut previous = self.key(net, first);
         let (mut edge, mut before) = (0, 0.0);
         for k in 1..n {
+            meter.spend(SAMPLE)?;
             let wanted = total * k as f64 / n as f64;
             while edge + 1 < lengths.len() && before + lengths[edge] < wanted {
                 before += lengths[edge];
@@ -105,6 +125,7 @@ impl<const D: usize> Resampled<'_, D> {
         }
         let end = self.key(net, last);
         self.draft.links.push((previous, end));
+        Ok(())
     }
 
     /// The new item of an old sample.

@@ -3,7 +3,10 @@
 //! Where the exemplar runs smoothly through a sample, so does the output: the handles on both sides are turned to their
 //! mean direction. Where it has a corner, the corner stays.
 
-use arabesque_core::{Cubic, Drawn, NormalEquations, Numbered, Path, Prediction, Pull, Vector, segment, straight};
+use arabesque_core::{
+    Budget, Cubic, Drawn, NormalEquations, Numbered, Path, Prediction, Pull, Result, Vector, segment, straight,
+};
+use rayon::prelude::*;
 
 use crate::{
     curves::{
@@ -24,12 +27,21 @@ const STAY: f64 = 0.08;
 /// A turn with a larger angle than this is a corner whatever the exemplar says: cosine of 65 degrees.
 const SHARP: f64 = 0.42;
 
+/// Nanoseconds for an edge whose shape is looked up, and for one that is drawn.
+const PRICE: (u64, u64) = (300, 1500);
+
 /// Places of the samples at which the edges come as close to the exemplar's as they can, near where they are.
-pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Numbered<Vector<D>> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Result<Numbered<Vector<D>>> {
+    let budget = state.budget.stage("fitting strokes");
+    let mut meter = budget.meter();
     let mut position: Numbered<_> = state.samples().iter().map(|s| s.position).collect();
-    let Some(net) = &state.level.net else { return position };
+    let Some(net) = &state.level.net else { return Ok(position) };
     let mut predictions = Vec::new();
     for chain in chains {
+        meter.spend(PRICE.0 * chain.pieces.len() as u64)?;
         for (k, piece) in chain.pieces.iter().enumerate() {
             let (a, b) = (chain.samples[k], chain.samples[(k + 1) % chain.samples.len()]);
             let Some(piece) = piece else { continue };
@@ -40,31 +52,47 @@ pub(crate) fn polish<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> 
     }
     let pulls: Vec<_> = position.iter().map(|_| Pull { target: Vector::ZERO, weight: STAY }).collect();
     let fixed = (0..position.len() as u32).map(|s| state.is_frozen(s)).collect();
-    let moves = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-4, 200);
+    let moves = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-4, 200, &budget)?;
     position.iter_mut().zip(moves).for_each(|(p, step)| *p += step);
-    position
+    Ok(position)
 }
 
 /// The strokes of all chains, frozen ones first.
-pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Vec<Drawn<D>>
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn strokes<const D: usize>(state: &State<'_, D>, chains: &[Chain]) -> Result<Vec<Drawn<D>>>
 where
     Vector<D>: Dimension<D>,
 {
     let frozen = state.request.frozen_curves.iter().enumerate().map(|(n, d)| Drawn { frozen: Some(n), ..d.clone() });
-    let Some(net) = &state.level.net else { return frozen.collect() };
-    let free = chains.iter().map(|chain| {
+    let Some(net) = &state.level.net else { return Ok(frozen.collect()) };
+    let budget = state.budget.stage("drawing strokes");
+    let one = |chain: &Chain| -> Result<Drawn<D>> {
+        budget.spend(PRICE.1 * chain.pieces.len() as u64)?;
         let (path, curve) = draw(state, net, chain);
         let scale = state.request.fields.frame(path.start().unwrap_or(Vector::ZERO)).element_scale;
-        Drawn { path, source: curve as usize, scale, frozen: None }
-    });
-    if let Some(turn) = BorderTurn::of(state, net) {
-        return frozen.chain(turn.finish(free.collect())).collect();
-    }
-    let cut = |d: Drawn<D>| {
-        let (width, unit) = (state.width(d.source as u32), net.spacing * d.scale);
-        at_border(d, state.extent, width, unit)
+        Ok(Drawn { path, source: curve as usize, scale, frozen: None })
     };
-    frozen.chain(free.flat_map(cut)).collect()
+    let free: Vec<_> = chains.par_iter().map(one).collect::<Result<_>>()?;
+    if let Some(turn) = BorderTurn::of(state, net) {
+        return Ok(frozen.chain(turn.finish(free)?).collect());
+    }
+    let cut: Vec<Vec<Drawn<D>>> =
+        free.into_par_iter().map(|d| cut_at_border(d, state, net, &budget)).collect::<Result<_>>()?;
+    Ok(frozen.chain(cut.into_iter().flatten()).collect())
+}
+
+/// What the border leaves of a stroke.
+fn cut_at_border<const D: usize>(
+    drawn: Drawn<D>,
+    state: &State<'_, D>,
+    net: &Net<D>,
+    budget: &Budget,
+) -> Result<Vec<Drawn<D>>> {
+    let (width, unit) = (state.width(drawn.source as u32), net.spacing * drawn.scale);
+    budget.spend(PRICE.1 * drawn.path.cubics.len() as u64 + net.skeleton.lines.len() as u64)?;
+    Ok(at_border(drawn, state.extent, width, unit))
 }
 
 /// The path of a chain, and the exemplar curve whose style it carries. On a torus the path is unrolled.

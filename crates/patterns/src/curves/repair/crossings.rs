@@ -4,7 +4,7 @@
 //! is right for itself. Of two that cross, one goes; of two side by side, the longer one becomes a continuation of the
 //! shorter one, which keeps the line it belongs to in one piece.
 
-use arabesque_core::{Bounds, Domain, GridIndex, Vector};
+use arabesque_core::{Bounds, Budget, Domain, GridIndex, Result, Vector};
 
 use crate::{
     curves::votes::edge_votes::Votes,
@@ -17,6 +17,9 @@ const SIDE_BY_SIDE: f64 = 0.6;
 
 /// No angle above this one is narrow, degrees.
 const NARROW: f64 = 35.0;
+
+/// Nanoseconds for two edges that are compared.
+const PAIR: u64 = 12;
 
 /// Most rounds in which edges are taken apart: each may leave another fault beside it.
 const ROUNDS: usize = 8;
@@ -32,21 +35,28 @@ pub(crate) struct EdgeRules {
 
 impl EdgeRules {
     /// Looks at the edges of a net.
-    pub(crate) fn of<const D: usize>(net: &Net<D>) -> Self {
-        Self { max_cosine: (SIDE_BY_SIDE * sharpest_angle(net)).cos(), is_planar: D == 2 && !has_crossings(net) }
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn of<const D: usize>(net: &Net<D>, budget: &Budget) -> Result<Self> {
+        let max_cosine = (SIDE_BY_SIDE * sharpest_angle(net, budget)?).cos();
+        Ok(Self { max_cosine, is_planar: D == 2 && !has_crossings(net, budget)? })
     }
 
     /// Takes edges apart until they keep to the rules. Returns how many changed.
-    pub(crate) fn restore<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop; then some are apart.
+    pub(crate) fn restore<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> Result<usize> {
         let mut changed = 0;
         for _ in 0..ROUNDS {
-            let now = self.uncross(state, votes) + self.straighten(state);
+            let now = self.uncross(state, votes)? + self.straighten(state)?;
             changed += now;
             if now == 0 {
                 break;
             }
         }
-        changed
+        Ok(changed)
     }
 
     /// Whether an edge from `a` to `b` would keep to the rules.
@@ -77,11 +87,15 @@ impl EdgeRules {
     }
 
     /// Of two edges that leave a sample side by side, the longer one starts where the shorter one ends.
-    fn straighten<const D: usize>(&self, state: &mut State<'_, D>) -> usize {
+    fn straighten<const D: usize>(&self, state: &mut State<'_, D>) -> Result<usize> {
+        let budget = state.budget.stage("mending strokes");
+        let mut meter = budget.meter();
         let mut changed = 0;
         for n in 0..state.living().len() {
             let s = state.living()[n];
+            meter.spend(PAIR * (1 + state.degree(s) * state.degree(s)) as u64)?;
             while let Some((near, far)) = self.side_by_side(state, s) {
+                meter.spend(PAIR * (state.degree(s) * state.degree(s)) as u64)?;
                 state.unlink(s, far);
                 if !state.are_linked(near, far) && state.share_style(near, far) {
                     state.link(near, far);
@@ -89,7 +103,7 @@ impl EdgeRules {
                 changed += 1;
             }
         }
-        changed
+        Ok(changed)
     }
 
     /// The ends of two edges of `s` side by side, the farther one of an edge that may change.
@@ -109,10 +123,13 @@ impl EdgeRules {
     }
 
     /// Of two edges that cross, the one goes that fewer neighbourhoods want.
-    fn uncross<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> usize {
+    fn uncross<const D: usize>(&self, state: &mut State<'_, D>, votes: &Votes) -> Result<usize> {
         if !self.is_planar {
-            return 0;
+            return Ok(0);
         }
+        let budget = state.budget.stage("mending strokes");
+        budget.spend(4 * PAIR * state.living().len() as u64)?;
+        let mut meter = budget.meter();
         let edges: Vec<(u32, u32)> = state
             .living()
             .iter()
@@ -127,34 +144,38 @@ impl EdgeRules {
         let index = GridIndex::new(&middles, longest, state.domain());
         let mut gone = vec![false; edges.len()];
         for (i, &(a, b)) in edges.iter().enumerate() {
-            index.within(middles[i], longest, |j, offset| {
+            let looked = index.within(middles[i], longest, |j, offset| {
                 let (c, d) = edges[j];
                 let apart = ![c, d].contains(&a) && ![c, d].contains(&b);
                 if j > i && apart && !gone[i] && !gone[j] && cross(ways[i], ways[j], offset) {
                     gone[weaker(state, votes, &edges, [i, j])] = true;
                 }
             });
+            meter.spend(PAIR * looked)?;
         }
         let crossing = edges.into_iter().zip(gone).filter(|(_, gone)| *gone);
-        crossing.map(|((a, b), _)| state.unlink(a, b)).count()
+        Ok(crossing.map(|((a, b), _)| state.unlink(a, b)).count())
     }
 }
 
 /// The sharpest angle that two edges of a node enclose; what is not narrow counts as barely so.
-fn sharpest_angle<const D: usize>(net: &Net<D>) -> f64 {
+fn sharpest_angle<const D: usize>(net: &Net<D>, budget: &Budget) -> Result<f64> {
+    let mut meter = budget.meter();
     let mut sharpest = NARROW.to_radians() / SIDE_BY_SIDE;
     for node in &net.nodes {
         let ways: Vec<_> = node.arms.iter().map(|arm| net.nodes[arm.to].position - node.position).collect();
         for (i, a) in ways.iter().enumerate() {
+            meter.spend(PAIR * i as u64)?;
             let angles = ways[..i].iter().map(|b| a.cosine(*b).acos());
             sharpest = angles.fold(sharpest, f64::min);
         }
     }
-    sharpest
+    Ok(sharpest)
 }
 
 /// Whether edges cross between their nodes, taken as straight.
-fn has_crossings<const D: usize>(net: &Net<D>) -> bool {
+fn has_crossings<const D: usize>(net: &Net<D>, budget: &Budget) -> Result<bool> {
+    let mut meter = budget.meter();
     let place = |n: u32| net.nodes[n].position;
     let arms = net.nodes.iter().zip(0..).flat_map(|(node, n)| node.arms.iter().map(move |arm| (n, arm.to)));
     let edges: Vec<(u32, u32)> = arms.filter(|(a, b)| a < b).collect();
@@ -164,12 +185,13 @@ fn has_crossings<const D: usize>(net: &Net<D>) -> bool {
     let index = GridIndex::new(&middles, longest, &Domain::Box(Bounds::around(middles.iter().copied())));
     let mut found = false;
     for (i, &(a, b)) in edges.iter().enumerate() {
-        index.within(middles[i], longest, |j, offset| {
+        let looked = index.within(middles[i], longest, |j, offset| {
             let (c, d) = edges[j];
             found |= j > i && ![c, d].contains(&a) && ![c, d].contains(&b) && cross(ways[i], ways[j], offset);
         });
+        meter.spend(PAIR * looked)?;
     }
-    found
+    Ok(found)
 }
 
 /// The weaker of two edges: one that may change, then the less wanted, then the longer one.

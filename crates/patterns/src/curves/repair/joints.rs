@@ -1,12 +1,12 @@
 //! False ends are joined: to what is near, across a gap, or to the stroke ahead.
 
 use arabesque_core::{
-    GridIndex,
+    GridIndex, Result,
     pairing::{Wish, pair_up},
 };
 
 use crate::{
-    curves::repair::mend::{EXPECTED, Repair},
+    curves::repair::mend::{EXPECTED, PAIR, Repair, SAMPLE},
     output::state::State,
 };
 
@@ -30,22 +30,35 @@ const ANGLE: f64 = 0.8;
 
 impl<const D: usize> Repair<'_, D> {
     /// Joins false ends to samples near them. Returns how many.
-    pub(crate) fn join_near(&self, state: &mut State<'_, D>) -> usize {
-        let ends = self.false_ends(state);
-        let wishes: Vec<_> = ends.iter().flat_map(|&s| self.partners(state, s)).collect();
-        pair_up(wishes, state.samples().len(), |a, b| self.link(state, a, b))
+    pub(crate) fn join_near(&self, state: &mut State<'_, D>) -> Result<usize> {
+        let ends = self.false_ends(state)?;
+        let mut meter = self.budget.meter();
+        let mut wishes = Vec::new();
+        for &s in &ends {
+            let (found, looked) = self.partners(state, s);
+            meter.spend(PAIR * looked + self.price_of_links(found.len()))?;
+            wishes.extend(found);
+        }
+        Ok(pair_up(wishes, state.samples().len(), |a, b| self.link(state, a, b)))
+    }
+
+    /// What it will take to try so many joints.
+    fn price_of_links(&self, count: usize) -> u64 {
+        20 * SAMPLE * count as u64
     }
 
     /// Joins false ends that face each other across a gap. Returns how many.
-    pub(crate) fn bridge(&self, state: &mut State<'_, D>) -> usize {
-        let ends = self.false_ends(state);
+    pub(crate) fn bridge(&self, state: &mut State<'_, D>) -> Result<usize> {
+        let ends = self.false_ends(state)?;
+        let mut meter = self.budget.meter();
         let places: Vec<_> = ends.iter().map(|&s| state.sample(s).position).collect();
         let ways: Vec<_> = ends.iter().map(|&s| state.offset(state.links_of(s)[0], s).unit_or_zero()).collect();
         let unit = self.net.spacing * state.extent.largest_spacing_scale;
         let index = GridIndex::new(&places, SPAN * unit, state.domain());
         let mut wishes = Vec::new();
         for (i, &s) in ends.iter().enumerate() {
-            index.within(places[i], SPAN * unit, |j, offset| {
+            let known = wishes.len();
+            let looked = index.within(places[i], SPAN * unit, |j, offset| {
                 let across = offset.unit_or_zero();
                 let (out, back) = (ways[i].dot(across), -ways[j].dot(across));
                 let is_new = !state.is_frozen_edge(s, ends[j]);
@@ -53,8 +66,9 @@ impl<const D: usize> Repair<'_, D> {
                     wishes.push(Wish { cost: offset.norm() / unit + ANGLE * (2.0 - out - back), a: i, b: j });
                 }
             });
+            meter.spend(PAIR * looked + self.price_of_links(wishes.len() - known))?;
         }
-        pair_up(wishes, ends.len(), |i, j| self.link(state, ends[i], ends[j]))
+        Ok(pair_up(wishes, ends.len(), |i, j| self.link(state, ends[i], ends[j])))
     }
 
     /// Joins two samples unless the exemplar never shows the like. Returns whether it did.
@@ -67,27 +81,30 @@ impl<const D: usize> Repair<'_, D> {
     }
 
     /// Takes false ends on to the nearest stroke ahead, where strokes branch anyway. Returns how many.
-    pub(crate) fn extend(&self, state: &mut State<'_, D>) -> usize {
+    pub(crate) fn extend(&self, state: &mut State<'_, D>) -> Result<usize> {
         let mut joined = 0;
-        for s in self.false_ends(state) {
+        let mut meter = self.budget.meter();
+        for s in self.false_ends(state)? {
             // An earlier one may have been joined to this.
             let &[before] = state.links_of(s) else { continue };
-            let ahead = self.ahead(state, before, s);
+            let (ahead, looked) = self.ahead(state, before, s);
+            meter.spend(PAIR * looked + self.price_of_links(ahead.len()))?;
             if let Some(&(_, o)) = ahead.iter().find(|(_, o)| self.rules.allow(state, s, *o)) {
                 state.link(s, o);
                 joined += 1;
             }
         }
-        joined
+        Ok(joined)
     }
 
-    /// Samples ahead of the end `s`, which is joined to `before`; those first that are near and straight on.
-    fn ahead(&self, state: &State<'_, D>, before: u32, s: u32) -> Vec<(f64, u32)> {
+    /// Samples ahead of the end `s`, which is joined to `before`; those first that are near and straight on. Also
+    /// how many were looked at.
+    fn ahead(&self, state: &State<'_, D>, before: u32, s: u32) -> (Vec<(f64, u32)>, u64) {
         let position = state.sample(s).position;
         let unit = self.net.spacing * state.request.fields.frame(position).spacing_scale;
         let way = state.offset(before, s).unit_or_zero();
         let mut ahead = Vec::new();
-        state.within(position, SPAN * unit, |o, offset| {
+        let looked = state.within(position, SPAN * unit, |o, offset| {
             let cosine = way.dot(offset.unit_or_zero());
             let cost = offset.norm() * (2.0 - cosine);
             let is_own = o == s || o == before || state.are_linked(before, o);
@@ -97,20 +114,20 @@ impl<const D: usize> Repair<'_, D> {
             }
         });
         ahead.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        ahead
+        (ahead, looked)
     }
 
-    /// What the end `s` could be joined to, with the cost in sampling distances.
-    fn partners(&self, state: &State<'_, D>, s: u32) -> Vec<Wish<u32>> {
+    /// What the end `s` could be joined to, with the cost in sampling distances, and how many samples were looked at.
+    fn partners(&self, state: &State<'_, D>, s: u32) -> (Vec<Wish<u32>>, u64) {
         let position = state.sample(s).position;
         let unit = self.net.spacing * state.request.fields.frame(position).spacing_scale;
-        let Some(&before) = state.links_of(s).first() else { return Vec::new() };
+        let Some(&before) = state.links_of(s).first() else { return (Vec::new(), 0) };
         let way = state.offset(before, s).unit_or_zero();
         let branches = self.net.branches();
         // What is too long would only grow with another end of a stroke.
         let takes_ends = self.expected(state, s) > EXPECTED || !self.dangles.has_single();
         let mut found = Vec::new();
-        state.within(position, REACH * unit, |o, offset| {
+        let looked = state.within(position, REACH * unit, |o, offset| {
             let is_near = o == s || o == before || state.are_linked(before, o);
             if is_near || state.is_frozen_edge(s, o) || !state.share_style(o, s) {
                 return;
@@ -127,6 +144,6 @@ impl<const D: usize> Repair<'_, D> {
                 found.push(Wish { cost, a: s, b: o });
             }
         });
-        found
+        (found, looked)
     }
 }

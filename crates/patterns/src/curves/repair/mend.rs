@@ -12,6 +12,8 @@
 //! 4. in nets, what still ends goes on to the nearest stroke ahead, as a T junction;
 //! 5. what is left and only a single edge long is taken away.
 
+use arabesque_core::{Budget, Result};
+
 use crate::{
     curves::{
         repair::{crossings::EdgeRules, dangles::Dangles},
@@ -30,8 +32,15 @@ const AT_BORDER: f64 = 0.3;
 /// Rounds in which false ends are joined.
 const ROUNDS: usize = 3;
 
+/// Nanoseconds for a sample that is looked at for each round.
+pub(crate) const SAMPLE: u64 = 100;
+
+/// The same for a sample, edge or end that is compared with another one.
+pub(crate) const PAIR: u64 = 12;
+
 /// What mending goes by.
 pub(crate) struct Repair<'a, const D: usize> {
+    pub(crate) budget: Budget,
     pub(crate) net: &'a Net<D>,
     pub(crate) votes: &'a Votes,
     pub(crate) dangles: Dangles,
@@ -39,24 +48,30 @@ pub(crate) struct Repair<'a, const D: usize> {
 }
 
 /// Joins and trims. Returns how many samples changed.
-pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> usize {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then some of it is done.
+pub(crate) fn mend<const D: usize>(state: &mut State<'_, D>, votes: &Votes) -> Result<usize> {
     let level = state.level;
-    let Some(net) = &level.net else { return 0 };
-    let repair = Repair { net, votes, dangles: Dangles::of(net), rules: EdgeRules::of(net) };
-    let mut changed = repair.rules.restore(state, votes) + repair.put_back_junctions(state);
+    let Some(net) = &level.net else { return Ok(0) };
+    let budget = state.budget.stage("mending strokes");
+    budget.spend(SAMPLE * net.nodes.len() as u64)?;
+    let rules = EdgeRules::of(net, &budget)?;
+    let repair = Repair { net, votes, dangles: Dangles::of(net), rules, budget };
+    let mut changed = repair.rules.restore(state, votes)? + repair.put_back_junctions(state)?;
     for _ in 0..ROUNDS {
-        let joined = repair.join_near(state);
+        let joined = repair.join_near(state)?;
         changed += joined;
         if joined == 0 {
             break;
         }
     }
-    changed += repair.bridge(state) + repair.reach_border(state);
+    changed += repair.bridge(state)? + repair.reach_border(state)?;
     if net.branches() {
-        changed += repair.extend(state);
+        changed += repair.extend(state)?;
     }
-    changed += repair.rules.restore(state, votes);
-    changed + repair.trim(state)
+    changed += repair.rules.restore(state, votes)?;
+    Ok(changed + repair.trim(state)?)
 }
 
 impl<const D: usize> Repair<'_, D> {
@@ -78,12 +93,22 @@ impl<const D: usize> Repair<'_, D> {
     }
 
     /// The false ends of a state.
-    pub(crate) fn false_ends(&self, state: &State<'_, D>) -> Vec<u32> {
-        state.living().iter().copied().filter(|&s| self.is_false_end(state, s)).collect()
+    pub(crate) fn false_ends(&self, state: &State<'_, D>) -> Result<Vec<u32>> {
+        let mut meter = self.budget.meter();
+        let mut ends = Vec::new();
+        for &s in state.living() {
+            // An end is followed along its stroke, from sample to sample.
+            meter.spend(if state.degree(s) == 1 { 20 * SAMPLE } else { SAMPLE / 4 })?;
+            if self.is_false_end(state, s) {
+                ends.push(s);
+            }
+        }
+        Ok(ends)
     }
 
     /// Takes away false ends that are a single edge long, and samples without any edge.
-    fn trim(&self, state: &mut State<'_, D>) -> usize {
+    fn trim(&self, state: &mut State<'_, D>) -> Result<usize> {
+        self.budget.spend(SAMPLE * state.living().len() as u64)?;
         let is_stub = |s: u32| {
             let ended = self.is_false_end(state, s);
             ended && state.links_of(s).first().is_some_and(|&o| state.degree(o) != 2)
@@ -94,6 +119,6 @@ impl<const D: usize> Repair<'_, D> {
         for &s in &gone {
             state.kill(s);
         }
-        gone.len()
+        Ok(gone.len())
     }
 }

@@ -1,10 +1,13 @@
 //! Samples that are missing are put in: junctions that several strokes reach for, and what lies beyond the border.
 
-use arabesque_core::{GridIndex, Matrix, Vector};
+use arabesque_core::{GridIndex, Matrix, Result, Vector};
 
 use crate::{
     curves::{
-        repair::{joints::FACING, mend::Repair},
+        repair::{
+            joints::FACING,
+            mend::{PAIR, Repair, SAMPLE},
+        },
         votes::edges::{OpenArm, open_arms},
     },
     output::{draft::Item, state::State},
@@ -24,7 +27,8 @@ struct Gathering<const D: usize> {
 impl<const D: usize> Repair<'_, D> {
     /// Takes strokes over the border where their sources go on beyond it, so that they are cut there rather than end
     /// before it. Returns how many.
-    pub(crate) fn reach_border(&self, state: &mut State<'_, D>) -> usize {
+    pub(crate) fn reach_border(&self, state: &mut State<'_, D>) -> Result<usize> {
+        self.budget.spend(3 * SAMPLE * state.living().len() as u64)?;
         let is_inside = |s: u32| !state.is_frozen(s) && state.domain().contains(state.sample(s).position);
         let inside = state.living().iter().filter(|&&s| is_inside(s));
         let is_beyond = |arm: &OpenArm<D>| {
@@ -36,7 +40,7 @@ impl<const D: usize> Repair<'_, D> {
             let sample = put_in(state, arm.node, arm.place);
             state.link(sample, arm.sample);
         }
-        new.len()
+        Ok(new.len())
     }
 
     /// Puts back samples that several strokes reach for: where the missing edges of three or more samples end at one
@@ -44,7 +48,9 @@ impl<const D: usize> Repair<'_, D> {
     ///
     /// Existence assignment [Tu 2020 §4.3.4] adds a sample when most neighbourhoods miss it; a junction is only missed
     /// by those few that lie around it, and each of its strokes ends as if nothing were wanting.
-    pub(crate) fn put_back_junctions(&self, state: &mut State<'_, D>) -> usize {
+    pub(crate) fn put_back_junctions(&self, state: &mut State<'_, D>) -> Result<usize> {
+        self.budget.spend(3 * SAMPLE * state.living().len() as u64)?;
+        let mut meter = self.budget.meter();
         let wanted = |arm: &OpenArm<D>| state.domain().contains(arm.place) && !state.extent.is_blocked(arm.place, 0.0);
         let living = state.living().iter();
         let open: Vec<_> = living.flat_map(|&s| open_arms(state, self.net, s)).filter(wanted).collect();
@@ -55,12 +61,13 @@ impl<const D: usize> Repair<'_, D> {
         let mut restored = 0;
         for i in 0..open.len() {
             let mut arms: Vec<usize> = Vec::new();
-            index.within(places[i], SAME_PLACE * unit, |j, _| {
+            let looked = index.within(places[i], SAME_PLACE * unit, |j, _| {
                 let is_new = arms.iter().all(|&g| open[g].sample != open[j].sample);
                 if !used[j] && is_new && self.share_style(open[i].node, open[j].node) {
                     arms.push(j);
                 }
             });
+            meter.spend(PAIR * looked * (1 + arms.len() as u64))?;
             arms.sort_unstable();
             let gathering = gathered(state, &places, i, arms);
             let is_asked_for = gathering.arms.len() >= 3 || is_gap(state, &open, &gathering.arms);
@@ -78,7 +85,7 @@ impl<const D: usize> Repair<'_, D> {
         if restored > 0 {
             state.reindex();
         }
-        restored
+        Ok(restored)
     }
 
     /// Of the nodes that the missing edges end at, the one with as many edges as there are strokes reaching for it.

@@ -1,6 +1,6 @@
 //! What the matched neighbourhoods say about edges.
 
-use arabesque_core::Numbered;
+use arabesque_core::{Budget, Numbered, Result};
 
 use rayon::prelude::*;
 
@@ -11,6 +11,9 @@ use crate::{
 
 /// How strongly a poor match is discounted.
 const DISCOUNT: f64 = 8.0;
+
+/// Nanoseconds for a pair of a neighbourhood that is looked at, and for a vote.
+const PRICE: (u64, u64) = (1, 150);
 
 /// A pair of output samples that some neighbourhood wants joined.
 #[derive(Clone, Debug)]
@@ -40,6 +43,9 @@ impl Votes {
     }
 }
 
+/// A wish to join two samples by a stretch of exemplar line, and how much it counts.
+type Vote = ((u32, u32), Piece, f64);
+
 /// One neighbourhood's opinion.
 struct Opinion {
     /// (output sample, exemplar node), curve samples only.
@@ -48,25 +54,36 @@ struct Opinion {
 }
 
 /// The votes on the present state; none where it has no curves.
-pub(crate) fn collect_votes<const D: usize>(state: &State<'_, D>) -> Votes {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn collect_votes<const D: usize>(state: &State<'_, D>) -> Result<Votes> {
     match &state.level.net {
         Some(net) => collect(state, net),
-        None => Votes::default(),
+        None => Ok(Votes::default()),
     }
 }
 
 /// Collects the votes of all matched neighbourhoods.
-pub(crate) fn collect<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Votes {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn collect<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Result<Votes> {
+    let budget = state.budget.stage("joining samples");
+    budget.check()?;
     let opinions: Vec<Opinion> = state.living().par_iter().filter_map(|&s| opinion(state, s)).collect();
-    let mut joined: Vec<((u32, u32), Piece, f64)> =
-        opinions.par_iter().flat_map_iter(|o| joined_pairs(state, net, o)).collect();
+    let found: Vec<Vec<Vote>> =
+        opinions.par_iter().map(|o| joined_pairs(state, net, o, &budget)).collect::<Result<_>>()?;
+    budget.spend(0)?;
+    let mut joined = found.concat();
+    budget.spend(PRICE.1 * joined.len() as u64)?;
     joined.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.line.cmp(&b.1.line)).then(a.1.from.total_cmp(&b.1.from)));
     let mut candidates: Vec<Candidate> = joined.chunk_by(|a, b| a.0 == b.0).map(candidate).collect();
-    weigh(state, &opinions, &mut candidates);
-    Votes { candidates, degree: degrees(state, net, &opinions) }
+    weigh(state, &opinions, &mut candidates, &budget)?;
+    Ok(Votes { candidates, degree: degrees(state, net, &opinions) })
 }
 
-fn candidate(votes: &[((u32, u32), Piece, f64)]) -> Candidate {
+fn candidate(votes: &[Vote]) -> Candidate {
     let same = |a: &Piece, b: &Piece| a == b;
     let pieces = votes.chunk_by(|a, b| same(&a.1, &b.1)).map(|g| (g[0].1, g.iter().map(|v| v.2).sum()));
     Candidate { ends: votes[0].0, confidence: votes.iter().map(|v| v.2).sum(), pieces: pieces.collect() }
@@ -85,9 +102,12 @@ fn joined_pairs<const D: usize>(
     state: &State<'_, D>,
     net: &Net<D>,
     opinion: &Opinion,
-) -> Vec<((u32, u32), Piece, f64)> {
+    budget: &Budget,
+) -> Result<Vec<Vote>> {
+    let mut meter = budget.meter();
     let mut found = Vec::new();
     for &(o, e) in &opinion.pairs {
+        meter.spend(PRICE.0 * (net.nodes[e].arms.len() * opinion.pairs.len()) as u64)?;
         for arm in &net.nodes[e].arms {
             let Some(&(p, _)) = opinion.pairs.iter().find(|(p, i)| *i == arm.to && *p > o) else { continue };
             if state.reach(o, p) <= MAX_EDGE * net.spacing {
@@ -95,11 +115,17 @@ fn joined_pairs<const D: usize>(
             }
         }
     }
-    found
+    Ok(found)
 }
 
 /// Divides the weight of each candidate by that of all neighbourhoods that hold both its ends.
-fn weigh<const D: usize>(state: &State<'_, D>, opinions: &[Opinion], candidates: &mut [Candidate]) {
+fn weigh<const D: usize>(
+    state: &State<'_, D>,
+    opinions: &[Opinion],
+    candidates: &mut [Candidate],
+    budget: &Budget,
+) -> Result<()> {
+    let mut meter = budget.meter();
     let mut of_sample: Numbered<Vec<u32>> = Numbered::filled(Vec::new(), state.samples().len());
     for (c, candidate) in candidates.iter().enumerate() {
         of_sample[candidate.ends.0].push(c as u32);
@@ -111,6 +137,7 @@ fn weigh<const D: usize>(state: &State<'_, D>, opinions: &[Opinion], candidates:
     for (n, opinion) in opinions.iter().enumerate() {
         opinion.pairs.iter().for_each(|(o, _)| stamp[*o] = Some(n));
         for (o, _) in &opinion.pairs {
+            meter.spend(PRICE.0 * (4 + of_sample[*o].len()) as u64)?;
             for &c in &of_sample[*o] {
                 if stamp[second_end(c)] == Some(n) {
                     all[c] += opinion.weight;
@@ -121,6 +148,7 @@ fn weigh<const D: usize>(state: &State<'_, D>, opinions: &[Opinion], candidates:
     for (candidate, all) in candidates.iter_mut().zip(all) {
         candidate.confidence /= f64::max(all, f64::MIN_POSITIVE);
     }
+    Ok(())
 }
 
 fn degrees<const D: usize>(state: &State<'_, D>, net: &Net<D>, opinions: &[Opinion]) -> Numbered<Option<f64>> {

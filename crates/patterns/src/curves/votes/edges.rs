@@ -1,7 +1,7 @@
 //! Edge assignment: which samples are joined [Tu 2020 §4.3.4, eqs 17 to 22].
 
 use arabesque_core::{
-    GridIndex, Numbered, Vector,
+    GridIndex, Numbered, Result, Vector,
     pairing::{Wish, pair_up},
 };
 
@@ -16,13 +16,19 @@ use crate::{
 /// Two samples are joined when each lies this near to where the exemplar has the other, in sampling distances.
 const NEAR: f64 = 0.7;
 
+/// Nanoseconds for a sample, and for two missing edges that are compared.
+const PRICE: (u64, u64) = (200, 10);
+
 /// Joins samples as the matched neighbourhoods vote. Returns the votes and how many samples changed their edges.
-pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize) {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the edges stay as they are.
+pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> Result<(Votes, usize)> {
     let level = state.level;
     let Some(net) = &level.net else {
-        return (Votes::default(), 0);
+        return Ok((Votes::default(), 0));
     };
-    let mut votes = edge_votes::collect(state, net);
+    let mut votes = edge_votes::collect(state, net)?;
     count_frozen(state, net, &mut votes);
     let mut links = frozen_links(state);
     switch_on(&votes, &mut links, &|a, b| state.is_frozen_edge(a, b));
@@ -31,7 +37,7 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> (Votes, usize)
         new.sort_unstable();
         changed += usize::from(state.replace_links(s, new));
     }
-    (votes, changed)
+    Ok((votes, changed))
 }
 
 /// Of a frozen sample its own strokes tell how many edges it has, more than its neighbours.
@@ -93,8 +99,14 @@ pub(crate) struct OpenArm<const D: usize> {
 
 /// Joins samples as their sources in the exemplar are: wherever one misses an edge and another one lies where that edge
 /// should end, and misses one as well.
-pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
-    let Some(net) = &state.level.net else { return };
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the edges stay as they are.
+pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) -> Result<()> {
+    let Some(net) = &state.level.net else { return Ok(()) };
+    let budget = state.budget.stage("joining samples");
+    budget.spend(PRICE.0 * state.living().len() as u64)?;
+    let mut meter = budget.meter();
     let open: Vec<OpenArm<D>> = state.living().par_iter().flat_map_iter(|&s| open_arms(state, net, s)).collect();
     let places: Vec<_> = open.iter().map(|arm| state.domain().wrap(arm.place)).collect();
     let unit = net.spacing * state.extent.largest_spacing_scale;
@@ -104,13 +116,14 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
         let p = state.sample(arm.sample).position;
         let near = NEAR * net.spacing * state.request.fields.frame(p).spacing_scale;
         // The other arm wants to end here, and this one there.
-        index.within(p, near, |j, offset| {
+        let looked = index.within(p, near, |j, offset| {
             let other = &open[j];
             let back = state.domain().offset(state.sample(other.sample).position, arm.place).norm();
             if other.sample != arm.sample && back <= near && state.share_style(other.sample, arm.sample) {
                 wishes.push(Wish { cost: back + offset.norm(), a: i.min(j), b: i.max(j) });
             }
         });
+        meter.spend(PRICE.1 * looked)?;
     }
     pair_up(wishes, open.len(), |i, j| {
         let (a, b) = (open[i].sample, open[j].sample);
@@ -120,6 +133,7 @@ pub(crate) fn link_sources<const D: usize>(state: &mut State<'_, D>) {
         }
         may
     });
+    Ok(())
 }
 
 /// The edges that the source of `s` has, except those that `s` has too.

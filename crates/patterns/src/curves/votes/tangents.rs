@@ -1,30 +1,39 @@
 //! Orientation assignment: the directions in which strokes leave a sample [Tu 2020 §4.3.4, eq. 6, fig. 9].
 
-use arabesque_core::{Numbered, Vector, pairing};
+use arabesque_core::{Meter, Numbered, Result, Vector, pairing};
 use rayon::prelude::*;
 
 use crate::output::state::State;
 
+/// Nanoseconds for two directions that are compared.
+const PAIR: u64 = 60;
+
 /// Updates number and values of the tangents of every living curve sample.
-pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the tangents stay as they are.
+pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> Result<()> {
     let level = state.level;
-    let Some(net) = &level.net else { return };
+    let Some(net) = &level.net else { return Ok(()) };
+    let budget = state.budget.stage("turning samples");
     let votes = votes(state);
     let updated: Vec<Vec<Vector<D>>> = (0..state.samples().len() as u32)
         .into_par_iter()
         .map(|s| {
             let own = state.tangents_of(s);
             if votes[s].is_empty() || state.is_frozen(s) {
-                return own.to_vec();
+                return Ok(own.to_vec());
             }
             let frame = state.request.fields.frame(state.sample(s).position);
             let turned = |v: Vector<D>| frame.rotation.apply(v);
             let sets: Vec<Vec<Vector<D>>> =
                 votes[s].iter().map(|&e| net.directions(e).into_iter().map(turned).collect()).collect();
-            update(own, &sets)
+            update(own, &sets, &mut budget.meter())
         })
-        .collect();
+        .collect::<Result<_>>()?;
+    budget.spend(0)?;
     state.set_tangents(updated);
+    Ok(())
 }
 
 /// For every sample, the exemplar nodes that it was matched with; its own match first.
@@ -45,7 +54,7 @@ fn votes<const D: usize>(state: &State<'_, D>) -> Numbered<Vec<u32>> {
 }
 
 /// New tangents from the present ones and the sets voted for.
-fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>]) -> Vec<Vector<D>> {
+fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>], meter: &mut Meter<'_>) -> Result<Vec<Vector<D>>> {
     let mean = sets.iter().map(|s| s.len() as f64).sum::<f64>() / sets.len() as f64;
     let number = mean.round() as usize;
     // To begin with, the tangents of the best match that has the right number.
@@ -54,6 +63,7 @@ fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>]) -> Vec<Vec
     let mut matched = vec![Vec::new(); entries.len()];
     let mut unmatched = Vec::new();
     for set in sets {
+        meter.spend(PAIR * (1 + entries.len() * set.len()) as u64)?;
         let partner = partners(&entries, set);
         for (k, &v) in set.iter().enumerate() {
             match partner.iter().position(|p| *p == Some(k)) {
@@ -74,7 +84,7 @@ fn update<const D: usize>(own: &[Vector<D>], sets: &[Vec<Vector<D>>]) -> Vec<Vec
         result.push(median);
         unmatched.retain(|v| v.dot(median) < 0.7);
     }
-    result
+    Ok(result)
 }
 
 /// For each entry the vote it is matched with: the largest sum of cosines, which is the smallest sum of angles for
@@ -101,7 +111,13 @@ fn median<const D: usize>(votes: &[Vector<D>]) -> Vector<D> {
 
 #[cfg(test)]
 mod tests {
+    use arabesque_core::Budget;
+
     use super::*;
+
+    fn update(own: &[Vector<2>], sets: &[Vec<Vector<2>>]) -> Vec<Vector<2>> {
+        super::update(own, sets, &mut Budget::default().meter()).unwrap()
+    }
 
     fn d(degrees: f64) -> Vector<2> {
         Vector::xy(degrees.to_radians().cos(), degrees.to_radians().sin())

@@ -1,11 +1,17 @@
 //! Where lines touch one another.
 
-use arabesque_core::{Bounds, Domain, GridIndex, Numbered, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Error, GridIndex, Held, Numbered, Result, Vector};
 
 use crate::exemplar::graph::line::Line;
 
 /// No more crossings are looked for when there are so many.
 pub(crate) const MAX_CONTACTS: usize = 200_000;
+
+/// Bits of lines of which the mean one has so many around it are lines on top of one another.
+const MAX_CROWDING: f64 = 1000.0;
+
+/// Nanoseconds that comparing two bits of lines takes.
+const PAIR: u64 = 6;
 
 /// Two passages of lines through one place.
 #[derive(Clone, Copy, Debug)]
@@ -41,11 +47,20 @@ struct Chords<const D: usize> {
     all: Vec<Chord<D>>,
     longest: f64,
     index: GridIndex<D>,
+    _held: Held,
 }
 
 impl<const D: usize> Chords<D> {
-    fn new(lines: &Numbered<Line<D>>, longest: f64) -> Self {
-        let mut all = Vec::new();
+    fn new(lines: &Numbered<Line<D>>, longest: f64, budget: &Budget) -> Result<Self> {
+        let pieces = |points: &[Vector<D>]| -> f64 {
+            points.windows(2).map(|w| ((w[1] - w[0]).norm() / longest).ceil().max(1.0)).sum()
+        };
+        let count = lines.iter().map(|l| pieces(l.measured.points())).sum::<f64>() as usize;
+        // Beside each bit its middle, and its place in the index.
+        let held =
+            budget.hold("bits of curves", count.saturating_mul(size_of::<Chord<D>>() + 4 * size_of::<Vector<D>>()))?;
+        budget.spend(count as u64 * 50)?;
+        let mut all = Vec::with_capacity(count);
         for (line, l) in lines.iter().enumerate() {
             let (points, mut number) = (l.measured.points(), 0);
             for k in 1..points.len() {
@@ -69,7 +84,21 @@ impl<const D: usize> Chords<D> {
         }
         let middles: Vec<_> = all.iter().map(Chord::middle).collect();
         let index = GridIndex::new(&middles, longest, &Domain::Box(Bounds::around(middles.iter().copied())));
-        Self { all, longest, index }
+        let chords = Self { all, longest, index, _held: held };
+        chords.check_crowding()?;
+        Ok(chords)
+    }
+
+    /// Refuses lines that lie on top of one another: each bit of them would have to be compared with all others.
+    fn check_crowding(&self) -> Result<()> {
+        let crowding = self.index.crowding();
+        let Some((_, place)) = self.index.fullest().filter(|_| crowding > MAX_CROWDING) else { return Ok(()) };
+        Err(Error::Limit {
+            what: "curves on top of one another".into(),
+            found: format!("about {crowding:.0} around {:.4?}", place.0),
+            limit: MAX_CROWDING.to_string(),
+            advice: "draw each of them once".into(),
+        })
     }
 
     /// Whether two chords are neighbours on one line.
@@ -86,14 +115,20 @@ impl<const D: usize> Chords<D> {
 
 /// Places where lines cross, themselves included. In space, where they come closer than `near`. Stops after
 /// [`MAX_CONTACTS`].
-pub(crate) fn crossings<const D: usize>(lines: &Numbered<Line<D>>, side: f64, near: f64) -> Vec<Contact<D>> {
-    let chords = Chords::new(lines, side / 100.0);
+pub(crate) fn crossings<const D: usize>(
+    lines: &Numbered<Line<D>>,
+    side: f64,
+    near: f64,
+    budget: &Budget,
+) -> Result<Vec<Contact<D>>> {
+    let chords = Chords::new(lines, side / 100.0, budget)?;
+    let mut meter = budget.meter();
     let mut found = Vec::new();
     for (i, a) in chords.all.iter().enumerate() {
         if found.len() >= MAX_CONTACTS {
             break;
         }
-        chords.index.within(a.middle(), chords.longest + near, |j, _| {
+        let looked = chords.index.within(a.middle(), chords.longest + near, |j, _| {
             let b = &chords.all[j];
             if j <= i || chords.adjoin(lines, a, b) {
                 return;
@@ -103,8 +138,9 @@ pub(crate) fn crossings<const D: usize>(lines: &Numbered<Line<D>>, side: f64, ne
                 found.push(Contact { place, sides: [(a.line, a.arc_at(t)), (b.line, b.arc_at(u))] });
             }
         });
+        meter.spend(looked * PAIR)?;
     }
-    found
+    Ok(found)
 }
 
 /// Parameters at which two chords cross.
@@ -124,14 +160,20 @@ fn crossing<const D: usize>(a: &Chord<D>, b: &Chord<D>, near: f64) -> Option<(f6
 }
 
 /// Ends that come within `reach` (of their line) of another line, or of their own far from the end.
-pub(crate) fn end_contacts<const D: usize>(lines: &Numbered<Line<D>>, reach: &[f64], side: f64) -> Vec<Contact<D>> {
-    let chords = Chords::new(lines, side / 100.0);
+pub(crate) fn end_contacts<const D: usize>(
+    lines: &Numbered<Line<D>>,
+    reach: &[f64],
+    side: f64,
+    budget: &Budget,
+) -> Result<Vec<Contact<D>>> {
+    let chords = Chords::new(lines, side / 100.0, budget)?;
+    let mut meter = budget.meter();
     let mut found = Vec::new();
     for (l, line) in lines.iter().enumerate().filter(|(_, line)| !line.measured.is_closed()) {
         let length = line.measured.length();
         for arc in [0.0, length] {
             let p = line.measured.point(arc);
-            nearest_by_line(&chords, p, reach[l], |chord, t, d| {
+            let looked = nearest_by_line(&chords, p, reach[l], |chord, t, d| {
                 let own = chord.line as usize == l;
                 if d > reach[l] || (own && (chord.arc_at(t) - arc).abs() < (4.0 * reach[l]).min(0.5 * length)) {
                     return;
@@ -139,20 +181,24 @@ pub(crate) fn end_contacts<const D: usize>(lines: &Numbered<Line<D>>, reach: &[f
                 let q = chord.a + (chord.b - chord.a) * t;
                 found.push(Contact { place: q, sides: [(l as u32, arc), (chord.line, chord.arc_at(t))] });
             });
+            meter.spend(looked * 5 * PAIR)?;
+        }
+        if found.len() >= MAX_CONTACTS {
+            break;
         }
     }
-    found
+    Ok(found)
 }
 
-/// The nearest place of each line around `p`, and of each distant part of a line.
+/// The nearest place of each line around `p`, and of each distant part of a line. Returns how many bits of lines were looked at.
 fn nearest_by_line<const D: usize>(
     chords: &Chords<D>,
     p: Vector<D>,
     reach: f64,
     mut visit: impl FnMut(&Chord<D>, f64, f64),
-) {
+) -> u64 {
     let mut near: Vec<(u32, usize, f64, f64)> = Vec::new();
-    chords.index.within(p, reach + chords.longest, |j, _| {
+    let looked = chords.index.within(p, reach + chords.longest, |j, _| {
         let chord = &chords.all[j];
         let r = chord.b - chord.a;
         let t = ((p - chord.a).dot(r) / r.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
@@ -165,4 +211,5 @@ fn nearest_by_line<const D: usize>(
             visit(&chords.all[best.1], best.2, best.3);
         }
     }
+    looked
 }

@@ -60,7 +60,7 @@ mod tests {
             colour: [0.0; 3],
         };
         let curves: Vec<_> = (0..10).map(|k| stripe(10.0 * f64::from(k) + 5.0)).collect();
-        coverage(&Skeleton::new(&curves, &window.into()).unwrap(), &window, 0.1)
+        coverage(&Skeleton::new(&curves, &window.into(), &arabesque_core::Budget::default()).unwrap(), &window, 0.1)
     }
 
     #[test]

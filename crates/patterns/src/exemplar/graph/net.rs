@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Measured, Numbered, Vector};
+use arabesque_core::{Budget, Measured, Numbered, Result, Vector};
 
 use crate::exemplar::graph::{
     line::Line,
@@ -20,6 +20,9 @@ const EXACT: usize = 4;
 
 /// Share of nodes with three edges from which on a new fork is nothing unusual.
 const FORKS: f64 = 0.04;
+
+/// Bytes of a node with its arms, and about how many nanoseconds it takes to find.
+const NODE: usize = 500;
 
 /// A stretch of a line: from arc length `from` to `to`, backwards when `to < from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,7 +176,15 @@ pub(crate) struct Net<const D: usize> {
 
 impl<const D: usize> Net<D> {
     /// Samples the lines at about `spacing`, rounded so that it divides each stretch between two knots.
-    pub(crate) fn new(skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
+    ///
+    /// # Errors
+    /// When there would be more samples than fit into the memory that is allowed.
+    pub(crate) fn new(skeleton: &Arc<Skeleton<D>>, spacing: f64, budget: &Budget) -> Result<Self> {
+        let length: f64 = skeleton.lines.iter().map(|line| line.measured.length()).sum();
+        let expected = (length / spacing) as usize + skeleton.knots.len() + 3 * skeleton.lines.len();
+        // Held for the moment alone: too many are refused.
+        let _held = budget.hold("samples on curves", expected.saturating_mul(NODE))?;
+        budget.spend(expected as u64 * NODE as u64)?;
         let knot = |&(position, kind): &(Vector<D>, Knot)| Node::new(position, u32::MAX, Some(kind));
         let mut net = Self {
             nodes: skeleton.knots.iter().map(knot).collect(),
@@ -186,7 +197,7 @@ impl<const D: usize> Net<D> {
             net.connect(line, number as u32, &along);
             net.along.push(along);
         }
-        net
+        Ok(net)
     }
 
     /// Nodes of a line: its stops, and even samples between them.

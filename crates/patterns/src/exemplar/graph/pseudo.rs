@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Class, Element, Exemplar, Outline, Role, Similarity};
+use arabesque_core::{Budget, Class, Element, Exemplar, Outline, Result, Role, Similarity};
 
 use crate::exemplar::graph::{
     net::Net,
@@ -20,13 +20,20 @@ pub(crate) struct PseudoElements<const D: usize> {
 
 impl<const D: usize> PseudoElements<D> {
     /// Samples the skeleton at `spacing` and appends the samples to the elements of `exemplar`.
-    pub(crate) fn new(exemplar: &Exemplar<D>, skeleton: &Arc<Skeleton<D>>, spacing: f64) -> Self {
-        let mut net = Net::new(skeleton, spacing);
+    pub(crate) fn new(
+        exemplar: &Exemplar<D>,
+        skeleton: &Arc<Skeleton<D>>,
+        spacing: f64,
+        budget: &Budget,
+    ) -> Result<Self> {
+        let mut meter = budget.meter();
+        let mut net = Net::new(skeleton, spacing, budget)?;
         let mut pseudo = exemplar.clone();
         let mut kinds: Vec<Vec<usize>> = Vec::new();
         for number in 0..net.nodes.len() as u32 {
             let styles = styles(exemplar, &net, number);
             net.nodes[number].styles.clone_from(&styles);
+            meter.spend(1000 + 5 * kinds.len() as u64)?;
             let kind = kinds.iter().position(|k| *k == styles).unwrap_or_else(|| {
                 kinds.push(styles);
                 kinds.len() - 1
@@ -43,7 +50,7 @@ impl<const D: usize> PseudoElements<D> {
             });
         }
         pseudo.classes.extend(kinds.iter().enumerate().map(|(k, _)| Class { name: format!("curve {k}") }));
-        Self { exemplar: pseudo, base: exemplar.elements.len(), net: Arc::new(net) }
+        Ok(Self { exemplar: pseudo, base: exemplar.elements.len(), net: Arc::new(net) })
     }
 }
 

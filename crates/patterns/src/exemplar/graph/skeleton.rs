@@ -4,7 +4,9 @@
 //! Curves are cut at the window. Two lines meet where they cross, and where an end comes as close to a line as the
 //! stroke is wide. Lines that run side by side do not meet, however close they are.
 
-use arabesque_core::{Curve, DisjointSets, Error, Measured, Numbered, Path, Result, Vector, View, spans_inside};
+use arabesque_core::{
+    Budget, Curve, DisjointSets, Error, Measured, Meter, Numbered, Path, Result, Vector, View, spans_inside,
+};
 
 use crate::exemplar::graph::{
     contact::{Contact, MAX_CONTACTS, crossings, end_contacts},
@@ -22,6 +24,12 @@ const CORNER: f64 = 0.766;
 
 /// Most knots of an exemplar: with more, each neighbourhood would take minutes to be compared with all others.
 const MAX_KNOTS: usize = 10_000;
+
+/// No more corners are looked for when there are so many knots.
+const ENOUGH_KNOTS: usize = 4 * MAX_KNOTS;
+
+/// Nanoseconds for a place at which a curve is looked at.
+const LOOK: u64 = 60;
 
 /// An end is at the frame when it is this near, as a share of the side of the window, however wide the stroke is.
 const AT_FRAME: f64 = 0.02;
@@ -55,20 +63,25 @@ impl<const D: usize> Skeleton<D> {
     ///
     /// # Errors
     /// [`Error::Limit`] when they meet in too many places.
-    pub(crate) fn new(curves: &[Curve<D>], view: &View<D>) -> Result<Self> {
+    pub(crate) fn new(curves: &[Curve<D>], view: &View<D>, budget: &Budget) -> Result<Self> {
         let side = view.side();
-        let lines: Numbered<_> = curves.iter().enumerate().flat_map(|(k, c)| cut(k as u32, c, view, side)).collect();
+        let mut lines = Numbered::new();
+        for (k, curve) in curves.iter().enumerate() {
+            for line in cut(k as u32, curve, view, budget)? {
+                lines.push(line);
+            }
+        }
         let too_many = |found: String| Error::Limit {
             what: "places of the exemplar where strokes meet, end or turn sharply".into(),
             found,
             limit: MAX_KNOTS.to_string(),
             advice: "show a smaller part of the pattern, or draw it with fewer lines".into(),
         };
-        let contacts = contacts(&lines, side);
+        let contacts = contacts(&lines, side, budget)?;
         if contacts.len() >= MAX_CONTACTS {
             return Err(too_many(format!("{MAX_CONTACTS} or more")));
         }
-        let skeleton = Self::joined(lines, &contacts, side);
+        let skeleton = Self::joined(lines, &contacts, side, budget)?;
         match skeleton.knots.len() {
             0..=MAX_KNOTS => Ok(skeleton),
             found => Err(too_many(found.to_string())),
@@ -77,9 +90,9 @@ impl<const D: usize> Skeleton<D> {
 
     /// Finds the knots of lines; `side` is the size of the picture they are part of. Of a tangle, only the first
     /// [`MAX_CONTACTS`] contacts count.
-    pub(crate) fn of_lines(lines: Numbered<Line<D>>, side: f64) -> Self {
-        let contacts = contacts(&lines, side);
-        Self::joined(lines, &contacts, side)
+    pub(crate) fn of_lines(lines: Numbered<Line<D>>, side: f64, budget: &Budget) -> Result<Self> {
+        let contacts = contacts(&lines, side, budget)?;
+        Self::joined(lines, &contacts, side, budget)
     }
 
     /// Whether lines meet so close to a place that what lies there is part of the junction; `side` is the size of the
@@ -89,23 +102,27 @@ impl<const D: usize> Skeleton<D> {
         self.knots.iter().any(|&(p, knot)| knot == Knot::Junction && is_near(p))
     }
 
-    fn joined(lines: Numbered<Line<D>>, contacts: &[Contact<D>], side: f64) -> Self {
+    fn joined(lines: Numbered<Line<D>>, contacts: &[Contact<D>], side: f64, budget: &Budget) -> Result<Self> {
         let reach = reach(&lines, side);
+        let mut meter = budget.meter();
         let mut skeleton = Self { lines, knots: Numbered::new() };
-        skeleton.join(contacts, &reach);
-        skeleton.end_lines(&reach);
-        skeleton.find_corners(&reach);
+        skeleton.join(contacts, &reach, &mut meter)?;
+        skeleton.end_lines(&reach, &mut meter)?;
+        skeleton.find_corners(&reach, &mut meter)?;
         skeleton.lines.iter_mut().for_each(|line| line.stops.sort_by(|a, b| a.0.total_cmp(&b.0)));
-        skeleton
+        Ok(skeleton)
     }
 
     /// Makes a knot of every cluster of contacts.
-    fn join(&mut self, contacts: &[Contact<D>], reach: &Numbered<f64>) {
+    fn join(&mut self, contacts: &[Contact<D>], reach: &Numbered<f64>, meter: &mut Meter<'_>) -> Result<()> {
         let points: Vec<_> = contacts.iter().flat_map(|c| [c.place, c.place]).collect();
         let sides: Vec<(u32, f64)> = contacts.iter().flat_map(|c| c.sides).collect();
         let mut group = DisjointSets::new(sides.len());
         (0..contacts.len()).for_each(|k| group.join(2 * k, 2 * k + 1));
-        self.join_passages(&points, &sides, reach, &mut group);
+        meter.spend(400 * contacts.len() as u64)?;
+        for (a, b) in self.passages(&points, &sides, reach, meter)? {
+            group.join(a, b);
+        }
         for members in group.groups() {
             let centre = members.iter().fold(Vector::ZERO, |sum, &m| sum + points[m]) * (1.0 / members.len() as f64);
             let knot = self.knots.len() as u32;
@@ -114,17 +131,20 @@ impl<const D: usize> Skeleton<D> {
             let kind = if members.iter().all(is_cut) { Knot::Cut } else { Knot::Junction };
             self.knots.push((centre, kind));
             self.stop_at(knot, &members, &sides, reach);
+            meter.spend(200 * members.len() as u64)?;
         }
+        Ok(())
     }
 
-    /// Joins the touches of each line that lie close together, along it and in the plane.
-    fn join_passages(
+    /// The touches of each line that lie close together, along it and in the plane, in pairs.
+    fn passages(
         &self,
         points: &[Vector<D>],
         sides: &[(u32, f64)],
         reach: &Numbered<f64>,
-        group: &mut DisjointSets,
-    ) {
+        meter: &mut Meter<'_>,
+    ) -> Result<Vec<(usize, usize)>> {
+        let mut pairs = Vec::new();
         let mut order: Vec<usize> = (0..sides.len()).collect();
         order.sort_by(|&a, &b| sides[a].0.cmp(&sides[b].0).then(sides[a].1.total_cmp(&sides[b].1)));
         for run in order.chunk_by(|&a, &b| sides[a].0 == sides[b].0) {
@@ -134,12 +154,14 @@ impl<const D: usize> Skeleton<D> {
                 // Ahead along the line; on a closed one, past its start too.
                 let ahead = (k + 1..k + run.len()).map(|i| run[i % run.len()]);
                 for b in ahead.take_while(|&b| self.gap(line, sides[a].1, sides[b].1) <= 2.0 * near) {
+                    meter.spend(10)?;
                     if (points[b] - points[a]).norm() <= near {
-                        group.join(a, b);
+                        pairs.push((a, b));
                     }
                 }
             }
         }
+        Ok(pairs)
     }
 
     /// Distance along a line.
@@ -156,7 +178,8 @@ impl<const D: usize> Skeleton<D> {
         let mut kept: Vec<(u32, f64)> = Vec::new();
         for (line, arc) in passages {
             let near = 2.5 * reach[line];
-            if kept.iter().all(|&(l, a)| l != line || self.gap(line, a, arc) > near) {
+            let on_line = kept.iter().rev().take_while(|(l, _)| *l == line);
+            if on_line.into_iter().all(|&(_, a)| self.gap(line, a, arc) > near) {
                 kept.push((line, arc));
             }
         }
@@ -174,11 +197,12 @@ impl<const D: usize> Skeleton<D> {
     }
 
     /// Knots at the ends that meet nothing.
-    fn end_lines(&mut self, reach: &Numbered<f64>) {
+    fn end_lines(&mut self, reach: &Numbered<f64>, meter: &mut Meter<'_>) -> Result<()> {
         for (line, reach) in self.lines.iter_mut().zip(reach) {
             if line.measured.is_closed() {
                 continue;
             }
+            meter.spend(100 + 2 * line.stops.len() as u64)?;
             let length = line.measured.length();
             for (arc, is_cut) in [(0.0, line.is_cut[0]), (length, line.is_cut[1])] {
                 if line.stops.iter().any(|(a, _)| (a - arc).abs() < reach.min(0.25 * length)) {
@@ -189,11 +213,17 @@ impl<const D: usize> Skeleton<D> {
                 self.knots.push((line.measured.point(arc), kind));
             }
         }
+        Ok(())
     }
 
-    fn find_corners(&mut self, reach: &Numbered<f64>) {
+    fn find_corners(&mut self, reach: &Numbered<f64>, meter: &mut Meter<'_>) -> Result<()> {
         for (line, reach) in self.lines.iter_mut().zip(reach) {
+            meter.spend(10 * LOOK * line.measured.path().cubics.len() as u64)?;
             for arc in corners(&line.measured, *reach) {
+                meter.spend(20 + 2 * line.stops.len() as u64)?;
+                if self.knots.len() > ENOUGH_KNOTS {
+                    break;
+                }
                 let length = line.measured.length();
                 let near = |a: f64| {
                     let d = (a - arc).abs();
@@ -206,6 +236,7 @@ impl<const D: usize> Skeleton<D> {
                 }
             }
         }
+        Ok(())
     }
 }
 
@@ -215,11 +246,11 @@ fn reach<const D: usize>(lines: &Numbered<Line<D>>, side: f64) -> Numbered<f64> 
 }
 
 /// All places where lines touch.
-fn contacts<const D: usize>(lines: &Numbered<Line<D>>, side: f64) -> Vec<Contact<D>> {
+fn contacts<const D: usize>(lines: &Numbered<Line<D>>, side: f64, budget: &Budget) -> Result<Vec<Contact<D>>> {
     let reach = reach(lines, side);
-    let mut contacts = crossings(lines, side, 1e-4 * side);
-    contacts.extend(end_contacts(lines, &reach, side));
-    contacts
+    let mut contacts = crossings(lines, side, 1e-4 * side, budget)?;
+    contacts.extend(end_contacts(lines, &reach, side, budget)?);
+    Ok(contacts)
 }
 
 /// Whether the window has cut a line within `reach` of a place on it.
@@ -252,8 +283,12 @@ fn corners<const D: usize>(measured: &Measured<D>, reach: f64) -> Vec<f64> {
 }
 
 /// The parts of a curve inside the window.
-fn cut<const D: usize>(k: u32, curve: &Curve<D>, view: &View<D>, side: f64) -> Vec<Line<D>> {
+fn cut<const D: usize>(k: u32, curve: &Curve<D>, view: &View<D>, budget: &Budget) -> Result<Vec<Line<D>>> {
+    let side = view.side();
+    budget.spend(20 * LOOK * curve.path.cubics.len() as u64)?;
     let measured = Measured::new(curve.path.clone(), 5e-4 * side);
+    let looks = (200.0 * measured.length() / side).min(1e5) + 10.0 * measured.points().len() as f64;
+    budget.spend(looks as u64 * LOOK)?;
     let near = (0.5 * curve.width).min(AT_FRAME * side).max(SCRAP * side);
     let line = |path: Path<D>, is_cut| Line {
         measured: Measured::new(path, 5e-4 * side),
@@ -273,7 +308,7 @@ fn cut<const D: usize>(k: u32, curve: &Curve<D>, view: &View<D>, side: f64) -> V
         let ends = [path.start(), path.end()].map(|p| !path.closed && p.is_some_and(on_frame));
         line(path, ends)
     });
-    lines.filter(|l| l.measured.length() > SCRAP * side).collect()
+    Ok(lines.filter(|l| l.measured.length() > SCRAP * side).collect())
 }
 
 /// Cuts a path at its corners on the frame: where two lines cross exactly there, the window shows a corner.

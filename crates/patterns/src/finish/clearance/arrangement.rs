@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Domain, GridIndex, Outline, Similarity, Vector};
+use arabesque_core::{Budget, Domain, GridIndex, Meter, Outline, Result, Similarity, Vector};
 use rayon::prelude::*;
 
 use crate::finish::clearance::figure::Figure;
+
+/// Nanoseconds for two bodies that are near each other.
+const NEAR: u64 = 20;
 
 /// A figure at its place.
 #[derive(Clone, Debug)]
@@ -69,6 +72,7 @@ struct Layer {
 #[derive(Clone, Debug)]
 pub(crate) struct Arrangement<'a> {
     domain: &'a Domain<2>,
+    pub(crate) budget: Budget,
     shared: &'a [Figure],
     own: Vec<Figure>,
     pub(crate) bodies: Vec<PlacedFigure>,
@@ -79,16 +83,17 @@ pub(crate) struct Arrangement<'a> {
 }
 
 impl<'a> Arrangement<'a> {
-    /// `shared` figures have the indices from 0, `own` ones follow.
+    /// `shared` figures have the indices from 0, `own` ones follow. What is asked draws on the budget.
     pub(crate) fn new(
         domain: &'a Domain<2>,
+        budget: Budget,
         shared: &'a [Figure],
         own: Vec<Figure>,
         bodies: Vec<PlacedFigure>,
     ) -> Self {
         let origin = bodies.iter().map(|b| b.centre).collect();
         let mut arrangement =
-            Self { domain, shared, own, layer_of: vec![0; bodies.len()], bodies, layers: Vec::new(), origin };
+            Self { domain, budget, shared, own, layer_of: vec![0; bodies.len()], bodies, layers: Vec::new(), origin };
         arrangement.build_layers();
         arrangement
     }
@@ -124,82 +129,118 @@ impl<'a> Arrangement<'a> {
 
     /// Calls `visit(j)` for every body of some layers that started within `reach` and its own layer's largest radius of
     /// the start of body `i`.
-    fn near(&self, i: usize, reach: f64, layers: std::ops::Range<usize>, mut visit: impl FnMut(usize)) {
+    fn near(&self, i: usize, reach: f64, layers: std::ops::Range<usize>, meter: &mut Meter<'_>) -> Result<Vec<usize>> {
+        let mut found = Vec::new();
         for layer in &self.layers[layers] {
-            layer.grid.within(self.origin[i], reach + layer.largest, |slot, _| visit(layer.members[slot]));
+            let visit = |slot: usize, _| found.push(layer.members[slot]);
+            meter.spend(NEAR * layer.grid.within(self.origin[i], reach + layer.largest, visit))?;
         }
+        Ok(found)
     }
 
     /// Bodies that could meet body `i`, itself left out, when none has moved by more than `slack`; ascending.
-    pub(crate) fn neighbours(&self, i: usize, slack: f64) -> Vec<usize> {
-        let mut found = Vec::new();
-        self.near(i, self.bodies[i].radius + 2.0 * slack, 0..self.layers.len(), |j| found.push(j));
+    pub(crate) fn neighbours(&self, i: usize, slack: f64, meter: &mut Meter<'_>) -> Result<Vec<usize>> {
+        let mut found = self.near(i, self.bodies[i].radius + 2.0 * slack, 0..self.layers.len(), meter)?;
         found.retain(|&j| j != i);
         found.sort_unstable();
-        found
+        Ok(found)
     }
 
     /// Every overlap among bodies that have not moved since the arrangement was made, ordered by `a`, then `b`.
-    pub(crate) fn overlaps(&self) -> Vec<Overlap> {
-        let all: Vec<Vec<Overlap>> = (0..self.bodies.len()).into_par_iter().map(|i| self.overlaps_of(i)).collect();
+    pub(crate) fn overlaps(&self) -> Result<Vec<Overlap>> {
+        let of = |i: usize| self.overlaps_of(i, &mut self.budget.meter());
+        let all: Vec<Vec<Overlap>> = (0..self.bodies.len()).into_par_iter().map(of).collect::<Result<_>>()?;
+        self.budget.spend(0)?;
         let mut all = all.concat();
         all.sort_by_key(|o| (o.a, o.b));
-        all
+        Ok(all)
     }
 
     /// Overlaps of body `i` with bodies of its size and an index not lower, and with larger ones.
-    fn overlaps_of(&self, i: usize) -> Vec<Overlap> {
+    fn overlaps_of(&self, i: usize, meter: &mut Meter<'_>) -> Result<Vec<Overlap>> {
         let mut found = Vec::new();
         if self.bodies[i].radius <= 0.0 {
-            return found;
+            return Ok(found);
         }
         let layer = self.layer_of[i];
-        self.near(i, self.bodies[i].radius, layer..self.layers.len(), |j| {
+        for j in self.near(i, self.bodies[i].radius, layer..self.layers.len(), meter)? {
             if self.layer_of[j] > layer || j >= i {
-                let area = self.overlap_area(&self.bodies[i], &self.bodies[j], i == j);
+                let area = self.overlap_area(&self.bodies[i], &self.bodies[j], i == j, meter)?;
                 if area > 0.0 {
                     found.push(Overlap { a: i.min(j), b: i.max(j), area });
                 }
             }
-        });
-        found
+        }
+        Ok(found)
     }
 
     /// Common area of two bodies, all images on a torus together; `itself` leaves out the body's own place.
-    pub(crate) fn overlap_area(&self, a: &PlacedFigure, b: &PlacedFigure, itself: bool) -> f64 {
-        let area = |offset| self.overlap_at(a, b, offset).map_or(0.0, |common| common.area());
-        let sum: f64 = self.images(a, b).filter(|o| !itself || o.norm2() > 0.0).map(area).sum();
+    pub(crate) fn overlap_area(
+        &self,
+        a: &PlacedFigure,
+        b: &PlacedFigure,
+        itself: bool,
+        meter: &mut Meter<'_>,
+    ) -> Result<f64> {
+        let mut sum = 0.0;
+        for offset in self.images(a, b).filter(|o| !itself || o.norm2() > 0.0) {
+            sum += self.overlap_at(a, b, offset, meter)?.map_or(0.0, |common| common.area());
+        }
         // An image to the left and one to the right are the same meeting of a body with itself.
-        if itself { 0.5 * sum } else { sum }
+        Ok(if itself { 0.5 * sum } else { sum })
     }
 
     /// Smallest distance between the inks of two bodies of an arrangement that is not a torus.
-    pub(crate) fn gap(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn gap(&self, i: usize, j: usize, meter: &mut Meter<'_>) -> Result<f64> {
         let (a, b) = (&self.bodies[i], &self.bodies[j]);
         let place = a.place.inverse().after(&b.place);
-        self.figure(a.figure).gap(self.figure(b.figure), &place) * a.place.scale
+        Ok(self.figure(a.figure).gap(self.figure(b.figure), &place, meter)? * a.place.scale)
     }
 
     /// Whether two bodies share area, however little, or touch so closely that they may.
-    pub(crate) fn meet(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
-        self.images(a, b).any(|offset| {
+    pub(crate) fn meet(&self, a: &PlacedFigure, b: &PlacedFigure, meter: &mut Meter<'_>) -> Result<bool> {
+        for offset in self.images(a, b) {
             let (first, second, place) = self.arranged(a, b, offset);
-            first.meets(second, &place).unwrap_or_else(|| self.overlap_at(a, b, offset).is_some())
-        })
+            let meets = match first.meets(second, &place, meter)? {
+                Some(meets) => meets,
+                None => self.overlap_at(a, b, offset, meter)?.is_some(),
+            };
+            if meets {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Common part of two bodies in arrangement coordinates around `a`, with the offset from `a` to `b`: the largest
     /// over all images.
-    pub(crate) fn overlap_region(&self, a: &PlacedFigure, b: &PlacedFigure) -> Option<(Outline<2>, Vector<2>)> {
-        let regions = self.images(a, b).filter_map(|offset| Some((self.overlap_at(a, b, offset)?, offset)));
-        regions.max_by(|x, y| x.0.area().total_cmp(&y.0.area()))
+    pub(crate) fn overlap_region(
+        &self,
+        a: &PlacedFigure,
+        b: &PlacedFigure,
+        meter: &mut Meter<'_>,
+    ) -> Result<Option<(Outline<2>, Vector<2>)>> {
+        let mut largest: Option<(Outline<2>, Vector<2>)> = None;
+        for offset in self.images(a, b) {
+            let Some(common) = self.overlap_at(a, b, offset, meter)? else { continue };
+            if largest.as_ref().is_none_or(|(known, _)| common.area() >= known.area()) {
+                largest = Some((common, offset));
+            }
+        }
+        Ok(largest)
     }
 
-    fn overlap_at(&self, a: &PlacedFigure, b: &PlacedFigure, offset: Vector<2>) -> Option<Outline<2>> {
+    fn overlap_at(
+        &self,
+        a: &PlacedFigure,
+        b: &PlacedFigure,
+        offset: Vector<2>,
+        meter: &mut Meter<'_>,
+    ) -> Result<Option<Outline<2>>> {
         let (first, second, place) = self.arranged(a, b, offset);
-        let common = first.overlap(second, &place)?;
+        let Some(common) = first.overlap(second, &place, &self.budget, meter)? else { return Ok(None) };
         let back = if std::ptr::eq(first, self.figure(a.figure)) { a.place } else { shifted(b, a.centre + offset) };
-        Some(common.transformed(&back))
+        Ok(Some(common.transformed(&back)))
     }
 
     /// The figure with more edges, the other one, and how that lies in the coordinates of the first; `b` has its centre

@@ -32,6 +32,15 @@ impl BorderCheck<'_> {
         }
     }
 
+    /// About how many places have to be looked at for that.
+    pub(crate) fn looks(&self, body: &PlacedFigure, figure: &Figure) -> u64 {
+        let is_at_border = || self.domain.signed_distance(body.centre) < body.radius;
+        match (self.border, self.domain) {
+            (Border::Inside | Border::Turn, Domain::Region(_)) if is_at_border() => 4 * figure.complexity() as u64,
+            _ => 0,
+        }
+    }
+
     /// Whether the ink lies wholly inside.
     fn holds(&self, body: &PlacedFigure, figure: &Figure) -> bool {
         let slack = ROUNDING * body.radius;
@@ -114,7 +123,8 @@ mod tests {
     }
 
     fn admits(domain: &Domain<2>, border: Border, x: f64, y: f64) -> bool {
-        let figure = Figure::new(Outline { rings: vec![ring(-1.0, -1.0, 2.0)] }, Vector::ZERO);
+        let outline = Outline { rings: vec![ring(-1.0, -1.0, 2.0)] };
+        let figure = Figure::new(outline, Vector::ZERO, &arabesque_core::Budget::default()).unwrap();
         let body = PlacedFigure::new(0, &figure, Similarity::shift(Vector::xy(x, y)));
         BorderCheck { domain, border }.admits(&body, &figure)
     }

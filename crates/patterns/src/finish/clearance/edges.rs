@@ -1,6 +1,8 @@
 //! The edges of an outline in horizontal bands, so that a look-up meets few of them.
 
-use arabesque_core::{Outline, Segment, Vector, ring};
+use std::sync::Arc;
+
+use arabesque_core::{Budget, Held, Outline, Result, Segment, Vector, ring};
 
 /// An edge of an outline.
 pub(crate) type Edge = Segment<2>;
@@ -8,8 +10,8 @@ pub(crate) type Edge = Segment<2>;
 /// Edges for each band; as many bands as this times fewer than edges, so that a band holds a handful.
 const EDGES_PER_BAND: usize = 2;
 
-/// Most bands: bounds memory where every edge is as high as the outline.
-const MAX_BANDS: usize = 512;
+/// Most bands, and most entries in all of them: bounds memory where every edge is as high as the outline.
+const MAX_BANDS: (usize, usize) = (512, 1 << 22);
 
 /// Edges sorted into bands of equal height.
 #[derive(Clone, Debug)]
@@ -19,16 +21,27 @@ pub(crate) struct EdgeBands {
     /// Edges of band `b`: `edges[starts[b]..starts[b + 1]]`; an edge lies in every band that it touches.
     starts: Vec<usize>,
     edges: Vec<Edge>,
+    _held: Arc<Held>,
 }
 
 impl EdgeBands {
-    pub(crate) fn new(outline: &Outline<2>) -> Self {
+    /// # Errors
+    /// When there is not so much memory.
+    pub(crate) fn new(outline: &Outline<2>, budget: &Budget) -> Result<Self> {
         let bounds = outline.bounds();
         let count = outline.edges().count();
-        let bands = (count / EDGES_PER_BAND).clamp(1, MAX_BANDS);
         let height = if count == 0 { 0.0 } else { bounds.size()[1] };
+        let mut bands = (count / EDGES_PER_BAND).clamp(1, MAX_BANDS.0);
+        let climbs: f64 = outline.edges().map(|(a, b)| (b[1] - a[1]).abs()).sum();
+        while bands > 1 && height > 0.0 && climbs / height * bands as f64 > MAX_BANDS.1 as f64 {
+            bands /= 2;
+        }
         let bands_per_unit = if height > 0.0 { bands as f64 / height } else { 0.0 };
-        let mut sorted = Self { low: bounds.min[1], bands_per_unit, starts: vec![0; bands + 1], edges: Vec::new() };
+        // Each edge lies in a band more than it climbs over.
+        let entries = (climbs * bands_per_unit) as usize + 2 * count;
+        let held = Arc::new(budget.hold("edges of outlines", 2 * entries * size_of::<Edge>())?);
+        let (low, starts) = (bounds.min[1], vec![0; bands + 1]);
+        let mut sorted = Self { low, bands_per_unit, starts, edges: Vec::new(), _held: held };
         let mut members = vec![Vec::new(); bands];
         for edge in outline.edges() {
             let (low, high) = sorted.range(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1]));
@@ -38,7 +51,7 @@ impl EdgeBands {
             sorted.starts[b + 1] = sorted.starts[b] + band.len();
         }
         sorted.edges = members.concat();
-        sorted
+        Ok(sorted)
     }
 
     fn range(&self, low: f64, high: f64) -> (usize, usize) {
@@ -82,7 +95,7 @@ mod tests {
     #[test]
     fn bands_cover_what_the_outline_covers() {
         let outline = Outline::union(&[star(70, 10.0), star(12, 3.0)], FillRule::EvenOdd);
-        let bands = EdgeBands::new(&outline);
+        let bands = EdgeBands::new(&outline, &Budget::default()).unwrap();
         let mut stream = Stream::new(2, Stage::TEST, 0);
         for _ in 0..2000 {
             let p = Vector::xy(stream.range(-11.0, 11.0), stream.range(-11.0, 11.0));
@@ -93,7 +106,7 @@ mod tests {
     #[test]
     fn every_edge_between_two_heights_is_found() {
         let outline = Outline { rings: vec![star(40, 10.0)] };
-        let bands = EdgeBands::new(&outline);
+        let bands = EdgeBands::new(&outline, &Budget::default()).unwrap();
         for (low, high) in [(-20.0, -12.0), (-3.0, -2.5), (0.0, 7.0), (9.0, 30.0)] {
             let found = bands.between(low, high);
             let wanted = outline.edges().filter(|(a, b)| a[1].min(b[1]) <= high && a[1].max(b[1]) >= low);
@@ -103,7 +116,7 @@ mod tests {
 
     #[test]
     fn an_outline_without_rings_has_no_edges() {
-        let bands = EdgeBands::new(&Outline::default());
+        let bands = EdgeBands::new(&Outline::default(), &Budget::default()).unwrap();
         assert!(bands.between(-1.0, 1.0).is_empty());
         assert!(!bands.covers(Vector::ZERO));
     }

@@ -1,11 +1,21 @@
 //! One outline, prepared for the question whether it meets another.
 
-use arabesque_core::{Bounds, Outline, Similarity, Vector, segment};
+use arabesque_core::{Bounds, Budget, Meter, Outline, Result, Similarity, Vector, segment};
 
 use crate::finish::clearance::edges::{Edge, EdgeBands};
 
 /// Coordinates closer than this share of the figures' extent may touch or cross; only the area of the overlap decides.
 const CONTACT: f64 = 1e-11;
+
+/// Nanoseconds for a corner that is moved or sorted, and for two edges that are compared.
+const PRICE: (u64, u64) = (10, 5);
+
+/// The same for a corner, and for a crossing, of two outlines whose common part is found.
+const OVERLAY: (u64, u64) = (300, 1000);
+
+/// Outlines with more pairs of edges than this are looked at before their common part is found: if they cross all over, it has as many
+/// corners as there are pairs.
+const MANY_PAIRS: usize = 1 << 20;
 
 /// The ink of an element with what is looked up about it.
 #[derive(Clone, Debug)]
@@ -34,10 +44,15 @@ enum Meeting {
 }
 
 impl Figure {
-    pub(crate) fn new(outline: Outline<2>, centre: Vector<2>) -> Self {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(outline: Outline<2>, centre: Vector<2>, budget: &Budget) -> Result<Self> {
+        let corners: usize = outline.rings.iter().map(Vec::len).sum();
+        budget.spend(30 * PRICE.0 * corners as u64)?;
         let radius = outline.radius(centre);
-        let (edges, hull) = (EdgeBands::new(&outline), convex_hull(outline.points()));
-        Self { edges, hull, bounds: outline.bounds(), area: outline.area(), centre, radius, outline }
+        let (edges, hull) = (EdgeBands::new(&outline, budget)?, convex_hull(outline.points()));
+        Ok(Self { edges, hull, bounds: outline.bounds(), area: outline.area(), centre, radius, outline })
     }
 
     /// Whether there is no ink at all: a point.
@@ -78,25 +93,54 @@ impl Figure {
 
     /// Whether the two inks certainly share area, where `place` carries the other figure into this one's coordinates.
     /// `None` when they only come so close that their common area must decide.
-    pub(crate) fn meets(&self, other: &Self, place: &Similarity<2>) -> Option<bool> {
-        match self.meeting(other, place) {
+    pub(crate) fn meets(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<Option<bool>> {
+        Ok(match self.meeting(other, place, meter)? {
             Meeting::Apart => Some(false),
             Meeting::Touching => None,
             Meeting::Overlapping => Some(true),
-        }
+        })
     }
 
     /// The common part of the two inks, in this figure's coordinates; `None` when it has no area.
-    pub(crate) fn overlap(&self, other: &Self, place: &Similarity<2>) -> Option<Outline<2>> {
-        if self.meeting(other, place) == Meeting::Apart {
-            return None;
+    pub(crate) fn overlap(
+        &self,
+        other: &Self,
+        place: &Similarity<2>,
+        budget: &Budget,
+        meter: &mut Meter<'_>,
+    ) -> Result<Option<Outline<2>>> {
+        if self.meeting(other, place, meter)? == Meeting::Apart {
+            return Ok(None);
+        }
+        let (mine, others) = (self.corners(), other.corners());
+        meter.spend(OVERLAY.0 * (mine + others) as u64)?;
+        if mine.saturating_mul(others) > MANY_PAIRS {
+            let crossings = self.crossings(other, place, meter)?;
+            budget.within("crossings of two elements", crossings, ("crossings", budget.limits().crossings))?;
+            budget.spend(OVERLAY.1 * crossings as u64)?;
         }
         let common = self.outline.intersection(&other.outline.transformed(place));
-        (!common.rings.is_empty()).then_some(common)
+        Ok((!common.rings.is_empty()).then_some(common))
+    }
+
+    fn corners(&self) -> usize {
+        self.outline.rings.iter().map(Vec::len).sum()
+    }
+
+    /// At how many places, at most, edges of the two cross.
+    fn crossings(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<usize> {
+        let mut count = 0;
+        for edge in other.placed_edges(place).filter(|edge| touches(&self.bounds, edge)) {
+            let near = self.edges.between(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1]));
+            meter.spend(PRICE.1 * near.len() as u64)?;
+            count += near.iter().filter(|mine| crossing(edge, **mine, 0.0) != Meeting::Apart).count();
+        }
+        Ok(count)
     }
 
     /// Smallest distance between two inks that do not overlap.
-    pub(crate) fn gap(&self, other: &Self, place: &Similarity<2>) -> f64 {
+    pub(crate) fn gap(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<f64> {
+        meter.spend(2 * PRICE.1 * (self.corners() as u64).saturating_mul(other.corners() as u64))?;
         let moved = other.outline.transformed(place);
         let one_way = |points: &Outline<2>, edges: &Outline<2>| {
             points
@@ -104,30 +148,34 @@ impl Figure {
                 .flat_map(|p| edges.edges().map(move |e| (segment::nearest(e, p) - p).norm2()))
                 .fold(f64::INFINITY, f64::min)
         };
-        one_way(&self.outline, &moved).min(one_way(&moved, &self.outline)).sqrt()
+        Ok(one_way(&self.outline, &moved).min(one_way(&moved, &self.outline)).sqrt())
     }
 
-    fn meeting(&self, other: &Self, place: &Similarity<2>) -> Meeting {
+    fn meeting(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<Meeting> {
+        meter.spend(PRICE.0 * (self.hull.len() + other.hull.len()) as u64)?;
         let hull: Vec<_> = other.hull.iter().map(|&p| place.apply(p)).collect();
         let bounds = Bounds::around(hull.iter().copied());
         if !self.bounds.intersects(&bounds) || separated(&self.hull, &hull, place.apply(other.centre) - self.centre) {
-            return Meeting::Apart;
+            return Ok(Meeting::Apart);
         }
         let eps = CONTACT * (self.bounds.size().norm2() + bounds.size().norm2());
         let mut meeting = Meeting::Apart;
+        meter.spend(PRICE.0 * other.corners() as u64)?;
         for edge in other.placed_edges(place).filter(|edge| touches(&self.bounds, edge)) {
-            for mine in self.edges.between(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1])) {
+            let near = self.edges.between(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1]));
+            meter.spend(PRICE.1 * near.len() as u64)?;
+            for mine in near {
                 match crossing(edge, *mine, eps) {
-                    Meeting::Overlapping => return Meeting::Overlapping,
+                    Meeting::Overlapping => return Ok(Meeting::Overlapping),
                     Meeting::Touching => meeting = Meeting::Touching,
                     Meeting::Apart => {}
                 }
             }
         }
         if meeting == Meeting::Apart && self.contains_or_is_contained(other, place) {
-            return Meeting::Overlapping;
+            return Ok(Meeting::Overlapping);
         }
-        meeting
+        Ok(meeting)
     }
 
     /// Whether one figure holds a ring of the other; settles everything where no edges meet.
@@ -208,6 +256,10 @@ mod tests {
     use super::*;
     use arabesque_core::FillRule;
 
+    fn meets(a: &Figure, b: &Figure, place: &Similarity<2>) -> Option<bool> {
+        a.meets(b, place, &mut Budget::default().meter()).unwrap()
+    }
+
     fn square(x: f64, y: f64, side: f64) -> Vec<Vector<2>> {
         vec![Vector::xy(x, y), Vector::xy(x + side, y), Vector::xy(x + side, y + side), Vector::xy(x, y + side)]
     }
@@ -215,26 +267,28 @@ mod tests {
     fn figure(rings: &[Vec<Vector<2>>]) -> Figure {
         let outline = Outline::union(rings, FillRule::EvenOdd);
         let centre = outline.centroid().unwrap();
-        Figure::new(outline, centre)
+        Figure::new(outline, centre, &Budget::default()).unwrap()
     }
 
     fn area(a: &Figure, b: &Figure, shift: Vector<2>) -> f64 {
-        a.overlap(b, &Similarity::shift(shift)).map_or(0.0, |common| common.area())
+        let budget = Budget::default();
+        let common = a.overlap(b, &Similarity::shift(shift), &budget, &mut budget.meter()).unwrap();
+        common.map_or(0.0, |common| common.area())
     }
 
     #[test]
     fn crossing_squares_overlap_and_distant_ones_do_not() {
         let s = figure(&[square(0.0, 0.0, 2.0)]);
         assert!((area(&s, &s, Vector::xy(1.5, 1.0)) - 0.5).abs() < 1e-6);
-        assert_eq!(s.meets(&s, &Similarity::shift(Vector::xy(1.5, 1.0))), Some(true));
-        assert_eq!(s.meets(&s, &Similarity::shift(Vector::xy(3.0, 1.0))), Some(false));
+        assert_eq!(meets(&s, &s, &Similarity::shift(Vector::xy(1.5, 1.0))), Some(true));
+        assert_eq!(meets(&s, &s, &Similarity::shift(Vector::xy(3.0, 1.0))), Some(false));
     }
 
     #[test]
     fn squares_side_by_side_touch_without_area() {
         let s = figure(&[square(0.0, 0.0, 2.0)]);
         let place = Similarity::shift(Vector::xy(2.0, 0.0));
-        assert_eq!(s.meets(&s, &place), None);
+        assert_eq!(meets(&s, &s, &place), None);
         assert!(area(&s, &s, place.translation) < 1e-6);
     }
 
@@ -252,14 +306,31 @@ mod tests {
         let dot = figure(&[square(4.0, 4.0, 1.0)]);
         assert!((area(&leaf, &dot, Vector::ZERO) - 1.0).abs() < 1e-6);
         assert!((area(&dot, &leaf, Vector::ZERO) - 1.0).abs() < 1e-6);
-        assert_eq!(ring.meets(&dot, &Similarity::identity()), Some(false));
-        assert_eq!(dot.meets(&ring, &Similarity::identity()), Some(false));
+        assert_eq!(meets(&ring, &dot, &Similarity::identity()), Some(false));
+        assert_eq!(meets(&dot, &ring, &Similarity::identity()), Some(false));
     }
 
     #[test]
     fn gap_between_squares() {
         let s = figure(&[square(0.0, 0.0, 2.0)]);
-        assert!((s.gap(&s, &Similarity::shift(Vector::xy(5.0, 6.0))) - 5.0).abs() < 1e-9);
+        let gap = s.gap(&s, &Similarity::shift(Vector::xy(5.0, 6.0)), &mut Budget::default().meter()).unwrap();
+        assert!((gap - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn combs_that_cross_all_over_are_refused_before_their_common_part_is_found() {
+        let comb = |n: usize| -> Vec<Vector<2>> {
+            let teeth = (0..n).map(|k| Vector::xy(k as f64, if k.is_multiple_of(2) { 0.0 } else { 2000.0 }));
+            teeth.chain([Vector::xy(n as f64, -1.0), Vector::xy(0.0, -1.0)]).collect()
+        };
+        let upright =
+            Figure::new(Outline { rings: vec![comb(1500)] }, Vector::xy(750.0, 750.0), &Budget::default()).unwrap();
+        let turned = comb(1500).into_iter().map(|p| Vector::xy(p[1], p[0])).collect();
+        let turned =
+            Figure::new(Outline { rings: vec![turned] }, Vector::xy(750.0, 750.0), &Budget::default()).unwrap();
+        let budget = Budget::default();
+        let refused = upright.overlap(&turned, &Similarity::identity(), &budget, &mut budget.meter());
+        assert!(refused.unwrap_err().to_string().contains("--limit crossings="));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! How much the elements of the exemplar overlap: what the output may do as well.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
-use arabesque_core::{Domain, Exemplar, Outline, Placement, Role, Similarity, Warp};
+use arabesque_core::{Budget, Domain, Exemplar, Held, Outline, Placement, Result, Role, Similarity, Warp};
 
 use crate::finish::clearance::{
     arrangement::{Arrangement, Overlap, PlacedFigure},
@@ -20,6 +20,12 @@ const MEASURED_PAIRS: usize = 64;
 
 /// Widest gap that is asked for when two elements are pushed apart, in mean spacings.
 const WIDEST_GAP: f64 = 0.02;
+
+/// Bytes of a corner of an outline, with what is looked up about it.
+const CORNER: usize = 200;
+
+/// The same for an outline, however few corners it has.
+const FIGURE: usize = 400;
 
 /// Two classes, the lower index first.
 type ClassPair = (usize, usize);
@@ -46,40 +52,52 @@ pub(crate) struct ExemplarClearance {
     allowed: BTreeMap<ClassPair, Allowance>,
     /// Common area as a share of all ink, classes that are layered on purpose left out.
     ratio: f64,
+    _held: Arc<Held>,
 }
 
 impl ExemplarClearance {
     /// Measures the exemplar. `None` when no element has an outline: points never overlap.
-    pub(crate) fn new(exemplar: &Exemplar<2>) -> Option<Self> {
-        let figures: Vec<_> = exemplar.elements.iter().map(|e| Figure::new(e.outline.clone(), e.centre)).collect();
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
+        let budget = budget.stage("measuring overlaps of the exemplar");
+        let corners: usize =
+            exemplar.elements.iter().map(|e| e.outline.rings.iter().map(Vec::len).sum::<usize>()).sum();
+        let bytes = corners.saturating_mul(CORNER) + exemplar.elements.len() * FIGURE;
+        let held = Arc::new(budget.hold("outlines", bytes)?);
+        let figure = |e: &arabesque_core::Element<2>| Figure::new(e.outline.clone(), e.centre, &budget);
+        let figures: Vec<_> = exemplar.elements.iter().map(figure).collect::<Result<_>>()?;
         if figures.iter().all(Figure::is_empty) {
-            return None;
+            return Ok(None);
         }
         let class = exemplar.elements.iter().map(|e| e.class).collect();
         let sources = sources(exemplar, &figures);
         let spacing = exemplar.spacing();
-        let mut clearance = Self { figures, class, sources, spacing, allowed: BTreeMap::new(), ratio: 0.0 };
-        clearance.measure(&Domain::Box(exemplar.window));
-        Some(clearance)
+        let allowed = BTreeMap::new();
+        let mut clearance = Self { figures, class, sources, spacing, allowed, ratio: 0.0, _held: held };
+        clearance.measure(&Domain::Box(exemplar.window), &budget)?;
+        Ok(Some(clearance))
     }
 
-    fn measure(&mut self, window: &Domain<2>) {
+    fn measure(&mut self, window: &Domain<2>, budget: &Budget) -> Result<()> {
         let bodies = (0..self.figures.len()).map(|i| self.body(i, Similarity::identity())).collect();
-        let arrangement = Arrangement::new(window, &self.figures, Vec::new(), bodies);
-        let overlaps = arrangement.overlaps();
+        let arrangement = Arrangement::new(window, budget.clone(), &self.figures, Vec::new(), bodies);
+        let overlaps = arrangement.overlaps()?;
         let mut allowed = BTreeMap::<ClassPair, Allowance>::new();
         for overlap in &overlaps {
             let share = overlap.area / smaller_area(&arrangement, overlap);
             let entry = allowed.entry(pair(self.class[overlap.a], self.class[overlap.b])).or_default();
             entry.share = entry.share.max(share);
         }
-        for (classes, gap) in smallest_gaps(&arrangement, &overlaps, WIDEST_GAP * self.spacing) {
+        for (classes, gap) in smallest_gaps(&arrangement, &overlaps, WIDEST_GAP * self.spacing)? {
             allowed.entry(classes).or_default().gap = Some(gap);
         }
         let ratio =
             |this: &Self| this.unlayered_area(&arrangement, &overlaps) / ink(&arrangement).max(f64::MIN_POSITIVE);
         self.allowed.clone_from(&allowed);
         self.ratio = ratio(self);
+        Ok(())
     }
 
     /// PlacedFigure of exemplar element `source` under `place`.
@@ -88,21 +106,26 @@ impl ExemplarClearance {
     }
 
     /// Bodies of placements, with figures of their own for the bent ones.
-    pub(crate) fn bodies(&self, placements: &[Placement<2>]) -> (Vec<Figure>, Vec<PlacedFigure>) {
+    pub(crate) fn bodies(
+        &self,
+        placements: &[Placement<2>],
+        budget: &Budget,
+    ) -> Result<(Vec<Figure>, Vec<PlacedFigure>)> {
         let mut own = Vec::new();
-        let bodies = placements.iter().map(|placement| {
+        let mut bodies = Vec::with_capacity(placements.len());
+        for placement in placements {
             let body = self.body(placement.source, placement.transform);
             let fixed = placement.frozen.is_some();
             if placement.control.is_empty() {
-                return PlacedFigure { fixed, ..body };
+                bodies.push(PlacedFigure { fixed, ..body });
+                continue;
             }
-            let figure = bent(&self.figures[placement.source], placement);
+            let figure = bent(&self.figures[placement.source], placement, budget)?;
             let bent = PlacedFigure::new(self.figures.len() + own.len(), &figure, Similarity::identity());
             own.push(figure);
-            PlacedFigure { class: body.class, fixed, ..bent }
-        });
-        let bodies = bodies.collect();
-        (own, bodies)
+            bodies.push(PlacedFigure { class: body.class, fixed, ..bent });
+        }
+        Ok((own, bodies))
     }
 
     /// Elements of the class of `source` that may be copied and are smaller than it, largest first.
@@ -199,17 +222,18 @@ fn sources(exemplar: &Exemplar<2>, figures: &[Figure]) -> Vec<Vec<usize>> {
 }
 
 /// The outline of a placement that is bent, in output coordinates.
-fn bent(figure: &Figure, placement: &Placement<2>) -> Figure {
+fn bent(figure: &Figure, placement: &Placement<2>, budget: &Budget) -> Result<Figure> {
     let warp = Warp::new(&placement.control);
     let rings = figure.outline().rings.iter().map(|ring| ring.iter().map(|&p| warp.apply(p)).collect()).collect();
-    Figure::new(Outline { rings }, warp.apply(figure.centre))
+    Figure::new(Outline { rings }, warp.apply(figure.centre), budget)
 }
 
 /// Smallest distance between elements of two classes that do not overlap, no larger than `widest`.
-fn smallest_gaps(arrangement: &Arrangement, overlaps: &[Overlap], widest: f64) -> BTreeMap<ClassPair, f64> {
+fn smallest_gaps(arrangement: &Arrangement, overlaps: &[Overlap], widest: f64) -> Result<BTreeMap<ClassPair, f64>> {
+    let mut meter = arrangement.budget.meter();
     let mut near = BTreeMap::<ClassPair, Vec<(f64, usize, usize)>>::new();
     for i in 0..arrangement.bodies.len() {
-        for j in arrangement.neighbours(i, 0.5 * widest).into_iter().filter(|&j| j > i) {
+        for j in arrangement.neighbours(i, 0.5 * widest, &mut meter)?.into_iter().filter(|&j| j > i) {
             let (a, b) = (&arrangement.bodies[i], &arrangement.bodies[j]);
             let between = (a.centre - b.centre).norm() - a.radius - b.radius;
             let apart = overlaps.binary_search_by_key(&(i, j), |o| (o.a, o.b)).is_err();
@@ -218,10 +242,14 @@ fn smallest_gaps(arrangement: &Arrangement, overlaps: &[Overlap], widest: f64) -
             }
         }
     }
-    let smallest = |pairs: &mut Vec<(f64, usize, usize)>| {
+    let mut smallest = BTreeMap::new();
+    for (classes, mut pairs) in near {
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let gaps = pairs.iter().take(MEASURED_PAIRS).map(|&(_, i, j)| arrangement.gap(i, j));
-        gaps.fold(widest, f64::min)
-    };
-    near.into_iter().map(|(classes, mut pairs)| (classes, smallest(&mut pairs))).collect()
+        let mut gap = widest;
+        for &(_, i, j) in pairs.iter().take(MEASURED_PAIRS) {
+            gap = gap.min(arrangement.gap(i, j, &mut meter)?);
+        }
+        smallest.insert(classes, gap);
+    }
+    Ok(smallest)
 }

@@ -15,7 +15,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-use arabesque_core::{Domain, Exemplar, Placement, Request, Vector};
+use arabesque_core::{Budget, Domain, Exemplar, Placement, Request, Result, Vector};
 
 use crate::dimension::Dimension;
 use arrangement::Arrangement;
@@ -23,28 +23,37 @@ pub(crate) use limits::ExemplarClearance;
 use summary::Summary;
 
 /// Measures the exemplar. `None` where overlaps have no meaning: in space, and for points.
-pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>) -> Option<ExemplarClearance>
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn measure<const D: usize>(exemplar: &Exemplar<D>, budget: &Budget) -> Result<Option<ExemplarClearance>>
 where
     Vector<D>: Dimension<D>,
 {
-    Vector::plane_exemplar(exemplar).and_then(ExemplarClearance::new)
+    Vector::plane_exemplar(exemplar).map_or(Ok(None), |exemplar| ExemplarClearance::new(exemplar, budget))
 }
 
 /// Mends overlaps and border violations in `placements`; those with a `frozen` entry stay untouched. Order is kept.
 ///
 /// `clearance` is [`measure`]d from the exemplar of the placements.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the placements stay as they are.
 pub(crate) fn repair<const D: usize>(
     clearance: Option<&ExemplarClearance>,
     request: &Request<D>,
     placements: &mut Vec<Placement<D>>,
-) -> Summary
+    budget: &Budget,
+) -> Result<Summary>
 where
     Vector<D>: Dimension<D>,
 {
     let (request, placements) = (Vector::plane_request(request), Vector::plane_placements(placements));
     match (clearance, request, placements) {
-        (Some(clearance), Some(request), Some(placements)) => repair::repair(clearance, request, placements),
-        _ => Summary::default(),
+        (Some(clearance), Some(request), Some(placements)) => {
+            repair::repair(clearance, request, placements, &budget.stage("mending overlaps"))
+        }
+        _ => Ok(Summary::default()),
     }
 }
 
@@ -52,12 +61,20 @@ where
 ///
 /// `placements` refer to the elements of `exemplar`; on a torus every element counts once, with the images of the
 /// others.
-pub fn overlap_ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], domain: &Domain<2>) -> f64 {
-    let Some(clearance) = ExemplarClearance::new(exemplar) else {
-        return 0.0;
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub fn overlap_ratio(
+    exemplar: &Exemplar<2>,
+    placements: &[Placement<2>],
+    domain: &Domain<2>,
+    budget: &Budget,
+) -> Result<f64> {
+    let Some(clearance) = ExemplarClearance::new(exemplar, budget)? else {
+        return Ok(0.0);
     };
-    let (own, bodies) = clearance.bodies(placements);
-    let arrangement = Arrangement::new(domain, &clearance.figures, own, bodies);
-    let common = arrangement.overlaps().iter().fold(0.0, |sum, overlap| sum + overlap.area);
-    common / limits::ink(&arrangement).max(f64::MIN_POSITIVE)
+    let (own, bodies) = clearance.bodies(placements, budget)?;
+    let arrangement = Arrangement::new(domain, budget.clone(), &clearance.figures, own, bodies);
+    let common = arrangement.overlaps()?.iter().fold(0.0, |sum, overlap| sum + overlap.area);
+    Ok(common / limits::ink(&arrangement).max(f64::MIN_POSITIVE))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use arabesque_core::{Outline, Vector, ring};
+use arabesque_core::{Meter, Outline, Result, Vector, ring};
 use rayon::prelude::*;
 
 use crate::finish::clearance::{
@@ -26,7 +26,12 @@ const DIRECTIONS: u32 = 8;
 impl Repair<'_> {
     /// Pushes pairs apart, round by round, and keeps the state with the least excess. Returns the violations left in
     /// it.
-    pub(crate) fn relax(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn relax(&mut self, violations: Vec<Violation>) -> Result<Vec<Violation>> {
+        let budget = self.arrangement.budget.clone();
+        let mut meter = budget.meter();
         let (mut best, mut best_bodies) = (violations.clone(), Vec::<(usize, PlacedFigure)>::new());
         let mut original = BTreeMap::<usize, PlacedFigure>::new();
         let mut active = violations;
@@ -37,13 +42,13 @@ impl Repair<'_> {
             }
             let mut suspects: BTreeSet<usize> = active.iter().flat_map(|v| [v.0, v.1]).collect();
             for &(i, j, _) in &active {
-                for (k, body) in self.push(i, j).into_iter().flatten() {
+                for (k, body) in self.push(i, j, &mut meter)?.into_iter().flatten() {
                     suspects.insert(k);
                     let before = std::mem::replace(&mut self.arrangement.bodies[k], body);
                     original.entry(k).or_insert(before);
                 }
             }
-            active = self.violations_among(&suspects);
+            active = self.violations_among(&suspects)?;
             idle = if excess(&active) < PROGRESS * excess(&best) { 0 } else { idle + 1 };
             if excess(&active) < excess(&best) {
                 best_bodies = original.keys().map(|&k| (k, self.arrangement.bodies[k].clone())).collect();
@@ -54,32 +59,34 @@ impl Repair<'_> {
         for (k, body) in original {
             self.arrangement.bodies[k] = body;
         }
-        best
+        Ok(best)
     }
 
     /// Violations in which a suspect takes part, in order.
-    fn violations_among(&self, suspects: &BTreeSet<usize>) -> Vec<Violation> {
+    fn violations_among(&self, suspects: &BTreeSet<usize>) -> Result<Vec<Violation>> {
+        let budget = &self.arrangement.budget;
         let list: Vec<usize> = suspects.iter().copied().collect();
         // A pair of suspects is looked at once, from the lower one.
-        let of = |&i: &usize| self.violations_of(i, |j| j > i || !suspects.contains(&j));
-        let found: Vec<Vec<Violation>> = list.par_iter().map(of).collect();
+        let of = |&i: &usize| self.violations_of(i, |j| j > i || !suspects.contains(&j), &mut budget.meter());
+        let found: Vec<Vec<Violation>> = list.par_iter().map(of).collect::<Result<_>>()?;
+        budget.spend(0)?;
         let mut found = found.concat();
         found.sort_by_key(|v| (v.0, v.1));
-        found
+        Ok(found)
     }
 
     /// Bodies `i` and `j` moved apart, each by the share of the other's area: a small element gives way to a large one.
-    fn push(&self, i: usize, j: usize) -> [Option<(usize, PlacedFigure)>; 2] {
+    fn push(&self, i: usize, j: usize, meter: &mut Meter<'_>) -> Result<[Option<(usize, PlacedFigure)>; 2]> {
         let (a, b) = (&self.arrangement.bodies[i], &self.arrangement.bodies[j]);
         if i == j {
-            return [None, None];
+            return Ok([None, None]);
         }
-        let Some((common, offset)) = self.arrangement.overlap_region(a, b) else {
-            return [None, None];
+        let Some((common, offset)) = self.arrangement.overlap_region(a, b, meter)? else {
+            return Ok([None, None]);
         };
         let (area, allowed) = (common.area(), self.allowed_area([i, j], a, b));
         if area <= allowed {
-            return [None, None];
+            return Ok([None, None]);
         }
         let apart = narrowest(&common, offset) * (1.0 - allowed / area);
         let gap = self.limits.gap(a, b) * a.place.scale.min(b.place.scale);
@@ -89,15 +96,15 @@ impl Repair<'_> {
             (_, true) => 1.0,
             _ => b.area / (a.area + b.area).max(f64::MIN_POSITIVE),
         };
-        [self.shifted(i, -(apart * share)), self.shifted(j, apart * (1.0 - share))]
+        Ok([self.shifted(i, -(apart * share), meter)?, self.shifted(j, apart * (1.0 - share), meter)?])
     }
 
     /// PlacedFigure `i` moved by `shift` as far as its reach and the border let it.
-    fn shifted(&self, i: usize, shift: Vector<2>) -> Option<(usize, PlacedFigure)> {
+    fn shifted(&self, i: usize, shift: Vector<2>, meter: &mut Meter<'_>) -> Result<Option<(usize, PlacedFigure)>> {
         let body = &self.arrangement.bodies[i];
         let moved = self.within_reach(i, body.centre + shift);
-        let stays = body.fixed || (!self.admits(&moved) && self.admits(body));
-        (!stays).then_some((i, moved))
+        let stays = body.fixed || (!self.admits(&moved, meter)? && self.admits(body, meter)?);
+        Ok((!stays).then_some((i, moved)))
     }
 }
 

@@ -5,7 +5,7 @@ use std::{
     collections::{BTreeMap, BTreeSet, BinaryHeap},
 };
 
-use arabesque_core::{Placement, Request, Similarity, Vector};
+use arabesque_core::{Budget, Meter, Placement, Request, Result, Similarity, Vector};
 use rayon::prelude::*;
 
 use crate::finish::clearance::{
@@ -37,6 +37,9 @@ const CROWDED: u64 = 2;
 /// A partner of the same size or larger.
 const ONE: u64 = 1000;
 
+/// Nanoseconds for a body that is sorted or counted, and for an edge that is compared with the border of a region.
+const PRICE: (u64, u64) = (50, 300);
+
 /// Two bodies that overlap too much, the lower index first, and by how much area.
 pub(crate) type Violation = (usize, usize, f64);
 
@@ -55,47 +58,58 @@ pub(crate) struct Repair<'a> {
 }
 
 /// See [`super::repair`].
-pub(crate) fn repair(limits: &ExemplarClearance, request: &Request<2>, placements: &mut Vec<Placement<2>>) -> Summary {
-    let mut repair = Repair::new(limits, request, placements);
-    let violations = repair.find_violations();
-    let outside = repair.misplaced();
+pub(crate) fn repair(
+    limits: &ExemplarClearance,
+    request: &Request<2>,
+    placements: &mut Vec<Placement<2>>,
+    budget: &Budget,
+) -> Result<Summary> {
+    let mut repair = Repair::new(limits, request, placements, budget)?;
+    let violations = repair.find_violations()?;
+    let outside = repair.misplaced()?;
     let mut summary = Summary { pairs: violations.len(), outside: outside.len(), ..Summary::default() };
     if violations.is_empty() && outside.is_empty() {
-        return summary;
+        return Ok(summary);
     }
-    let violations = repair.make_room(violations);
-    repair.settle(&violations, &outside);
-    repair.thin_out(violations, 0);
+    let violations = repair.make_room(violations)?;
+    repair.settle(&violations, &outside)?;
+    repair.thin_out(violations, 0)?;
     repair.write_back(placements, &mut summary);
-    summary
+    Ok(summary)
 }
 
 impl<'a> Repair<'a> {
-    fn new(limits: &'a ExemplarClearance, request: &'a Request<2>, placements: &[Placement<2>]) -> Self {
-        let (mut own, mut bodies) = limits.bodies(placements);
+    fn new(
+        limits: &'a ExemplarClearance,
+        request: &'a Request<2>,
+        placements: &[Placement<2>],
+        budget: &Budget,
+    ) -> Result<Self> {
+        budget.spend(10 * PRICE.0 * placements.len() as u64)?;
+        let (mut own, mut bodies) = limits.bodies(placements, budget)?;
         let mut reach: Vec<_> = placements.iter().map(|p| REACH * limits.spacing * p.transform.scale).collect();
         for obstacle in request.obstacles.iter().filter(|o| !o.rings.is_empty()) {
-            let figure = Figure::new(obstacle.clone(), obstacle.bounds().centre());
+            let figure = Figure::new(obstacle.clone(), obstacle.bounds().centre(), budget)?;
             let body = PlacedFigure::new(limits.figures.len() + own.len(), &figure, Similarity::identity());
             bodies.push(PlacedFigure { fixed: true, ..body });
             own.push(figure);
         }
         reach.resize(bodies.len(), 0.0);
         let slack = reach.iter().copied().fold(0.0, f64::max);
-        Self {
+        Ok(Self {
             limits,
             alive: vec![true; bodies.len()],
-            arrangement: Arrangement::new(&request.domain, &limits.figures, own, bodies),
+            arrangement: Arrangement::new(&request.domain, budget.clone(), &limits.figures, own, bodies),
             border_check: BorderCheck { domain: &request.domain, border: request.border },
             surplus: BTreeSet::new(),
             reach,
             slack,
-        }
+        })
     }
 
     /// Every violation at the start; decides which allowed overlaps are too many.
-    fn find_violations(&mut self) -> Vec<Violation> {
-        let mut allowed = self.arrangement.overlaps();
+    fn find_violations(&mut self) -> Result<Vec<Violation>> {
+        let mut allowed = self.arrangement.overlaps()?;
         let mut violations = Vec::new();
         allowed.retain(|o| {
             let excess = self.excess_of(&self.arrangement.bodies[o.a], &self.arrangement.bodies[o.b], o.area);
@@ -109,20 +123,25 @@ impl<'a> Repair<'a> {
             violations.push((overlap.a, overlap.b, overlap.area));
         }
         violations.sort_by_key(|&(i, j, _)| (i, j));
-        violations
+        Ok(violations)
     }
 
-    fn misplaced(&self) -> Vec<usize> {
-        let is_misplaced = |i: &usize| {
-            let body = &self.arrangement.bodies[*i];
-            !body.fixed && body.radius > 0.0 && !self.admits(body)
-        };
-        (0..self.arrangement.bodies.len()).filter(is_misplaced).collect()
+    fn misplaced(&self) -> Result<Vec<usize>> {
+        let mut meter = self.arrangement.budget.meter();
+        let mut misplaced = Vec::new();
+        for (i, body) in self.arrangement.bodies.iter().enumerate() {
+            if !body.fixed && body.radius > 0.0 && !self.admits(body, &mut meter)? {
+                misplaced.push(i);
+            }
+        }
+        Ok(misplaced)
     }
 
     /// Whether the border lets `body` be where it is.
-    pub(crate) fn admits(&self, body: &PlacedFigure) -> bool {
-        self.border_check.admits(body, self.arrangement.figure(body.figure))
+    pub(crate) fn admits(&self, body: &PlacedFigure, meter: &mut Meter<'_>) -> Result<bool> {
+        let figure = self.arrangement.figure(body.figure);
+        meter.spend(PRICE.0 + self.border_check.looks(body, figure) * PRICE.1)?;
+        Ok(self.border_check.admits(body, figure))
     }
 
     /// Common area of `a` and `b` beyond what they may have.
@@ -139,42 +158,64 @@ impl<'a> Repair<'a> {
     }
 
     /// Whether bodies `i` and `j`, as `a` and `b`, overlap too much.
-    fn conflict(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> bool {
+    fn conflict(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure, meter: &mut Meter<'_>) -> Result<bool> {
         if a.fixed && b.fixed {
-            return false;
+            return Ok(false);
         }
-        self.arrangement.overlap_area(a, b, i == j) > self.allowed_area([i, j], a, b)
+        Ok(self.arrangement.overlap_area(a, b, i == j, meter)? > self.allowed_area([i, j], a, b))
     }
 
     /// Violations of body `i` with the partners that `counts` lets through, ascending.
-    pub(crate) fn violations_of(&self, i: usize, counts: impl Fn(usize) -> bool) -> Vec<Violation> {
+    pub(crate) fn violations_of(
+        &self,
+        i: usize,
+        counts: impl Fn(usize) -> bool,
+        meter: &mut Meter<'_>,
+    ) -> Result<Vec<Violation>> {
+        let mut found = Vec::new();
         if !self.alive[i] {
-            return Vec::new();
+            return Ok(found);
         }
         let body = &self.arrangement.bodies[i];
-        let excess = |j: usize| {
+        let neighbours = self.arrangement.neighbours(i, self.slack, meter)?;
+        for j in neighbours.into_iter().filter(|&j| self.alive[j] && counts(j)).chain([i]) {
             let other = &self.arrangement.bodies[j];
-            let area = if body.fixed && other.fixed { 0.0 } else { self.arrangement.overlap_area(body, other, i == j) };
-            (i.min(j), i.max(j), area - self.allowed_area([i, j], body, other))
-        };
-        let others = self.arrangement.neighbours(i, self.slack).into_iter().filter(|&j| self.alive[j] && counts(j));
-        others.chain([i]).map(excess).filter(|v| v.2 > 0.0).collect()
+            let is_fixed = body.fixed && other.fixed;
+            let area = if is_fixed { 0.0 } else { self.arrangement.overlap_area(body, other, i == j, meter)? };
+            let excess = area - self.allowed_area([i, j], body, other);
+            if excess > 0.0 {
+                found.push((i.min(j), i.max(j), excess));
+            }
+        }
+        Ok(found)
     }
 
     /// Whether body `i`, changed to `candidate`, breaks no rule. `neighbours` are those of body `i`.
-    fn is_clean(&self, i: usize, candidate: &PlacedFigure, neighbours: &[usize]) -> bool {
-        self.admits(candidate)
-            && !self.conflict([i, i], candidate, candidate)
-            && neighbours.iter().all(|&j| !self.alive[j] || !self.blocks([i, j], candidate))
+    fn is_clean(
+        &self,
+        i: usize,
+        candidate: &PlacedFigure,
+        neighbours: &[usize],
+        meter: &mut Meter<'_>,
+    ) -> Result<bool> {
+        if !self.admits(candidate, meter)? || self.conflict([i, i], candidate, candidate, meter)? {
+            return Ok(false);
+        }
+        for &j in neighbours {
+            if self.alive[j] && self.blocks([i, j], candidate, meter)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Whether body `j` is in the way of `candidate` for body `i`: where nothing may overlap, a touch is enough.
-    fn blocks(&self, [i, j]: [usize; 2], candidate: &PlacedFigure) -> bool {
+    fn blocks(&self, [i, j]: [usize; 2], candidate: &PlacedFigure, meter: &mut Meter<'_>) -> Result<bool> {
         let other = &self.arrangement.bodies[j];
         if self.must_be_apart([i, j], candidate, other) {
-            return self.arrangement.meet(candidate, other);
+            return self.arrangement.meet(candidate, other, meter);
         }
-        self.conflict([i, j], candidate, other)
+        self.conflict([i, j], candidate, other, meter)
     }
 
     fn must_be_apart(&self, [i, j]: [usize; 2], a: &PlacedFigure, b: &PlacedFigure) -> bool {
@@ -183,12 +224,12 @@ impl<'a> Repair<'a> {
 
     /// Pushes apart what overlaps. Where far too much lies in one place that cannot succeed: there the most crowded
     /// leave first.
-    fn make_room(&mut self, violations: Vec<Violation>) -> Vec<Violation> {
-        let violations = self.thin_out(violations, HOPELESS);
-        let violations = self.relax(violations);
+    fn make_room(&mut self, violations: Vec<Violation>) -> Result<Vec<Violation>> {
+        let violations = self.thin_out(violations, HOPELESS)?;
+        let violations = self.relax(violations)?;
         let before = violations.len();
-        let violations = self.thin_out(violations, CROWDED);
-        if violations.len() < before { self.relax(violations) } else { violations }
+        let violations = self.thin_out(violations, CROWDED)?;
+        if violations.len() < before { self.relax(violations) } else { Ok(violations) }
     }
 
     /// PlacedFigure `i` at `centre`, no farther from its start than its reach.
@@ -200,76 +241,94 @@ impl<'a> Repair<'a> {
     }
 
     /// Mends what pushing could not: body by body, with everything else as it is.
-    fn settle(&mut self, violations: &[Violation], outside: &[usize]) {
+    fn settle(&mut self, violations: &[Violation], outside: &[usize]) -> Result<()> {
+        let budget = self.arrangement.budget.clone();
+        let mut meter = budget.meter();
         for &i in outside.iter() {
-            let stays = self.is_clean(i, &self.arrangement.bodies[i], &self.arrangement.neighbours(i, self.slack));
-            self.alive[i] = stays || self.relocate(i) || self.exchange(i);
+            let neighbours = self.arrangement.neighbours(i, self.slack, &mut meter)?;
+            let stays = self.is_clean(i, &self.arrangement.bodies[i], &neighbours, &mut meter)?;
+            self.alive[i] = stays || self.relocate(i, &mut meter)? || self.exchange(i, &mut meter)?;
         }
         let mut worst_first = violations.to_vec();
         worst_first.sort_by(|x, y| y.2.total_cmp(&x.2).then((x.0, x.1).cmp(&(y.0, y.1))));
         let mut tried = BTreeSet::new();
         for (i, j, _) in worst_first {
-            if self.is_violation(i, j) {
+            if self.is_violation(i, j, &mut meter)? {
                 let mut free: Vec<_> = [i, j].into_iter().filter(|&k| !self.arrangement.bodies[k].fixed).collect();
                 free.sort_by(|&a, &b| {
                     self.arrangement.bodies[a].area.total_cmp(&self.arrangement.bodies[b].area).then(a.cmp(&b))
                 });
                 // What found no place once will hardly find one later: nothing makes room any more.
                 free.retain(|&k| tried.insert(k));
-                let _settled = free.iter().any(|&k| self.relocate(k)) || free.iter().any(|&k| self.exchange(k));
+                let mut is_settled = false;
+                for &k in &free {
+                    is_settled = is_settled || self.relocate(k, &mut meter)?;
+                }
+                for &k in &free {
+                    is_settled = is_settled || self.exchange(k, &mut meter)?;
+                }
             }
         }
+        Ok(())
     }
 
-    fn is_violation(&self, i: usize, j: usize) -> bool {
-        self.alive[i]
-            && self.alive[j]
-            && self.conflict([i, j], &self.arrangement.bodies[i], &self.arrangement.bodies[j])
+    fn is_violation(&self, i: usize, j: usize, meter: &mut Meter<'_>) -> Result<bool> {
+        if !self.alive[i] || !self.alive[j] {
+            return Ok(false);
+        }
+        self.conflict([i, j], &self.arrangement.bodies[i], &self.arrangement.bodies[j], meter)
     }
 
     /// Puts body `i` on the nearest free place within its reach.
-    fn relocate(&mut self, i: usize) -> bool {
-        let neighbours = self.arrangement.neighbours(i, self.slack);
+    fn relocate(&mut self, i: usize, meter: &mut Meter<'_>) -> Result<bool> {
+        let neighbours = self.arrangement.neighbours(i, self.slack, meter)?;
         for ring in 1..=RINGS {
             for place in 0..PLACES {
                 let turn = (f64::from(place) + 0.5 * f64::from(ring % 2)) / f64::from(PLACES) * std::f64::consts::TAU;
                 let shift = Vector::xy(turn.cos(), turn.sin()) * (self.reach[i] * f64::from(ring) / f64::from(RINGS));
                 let candidate = self.arrangement.bodies[i].moved_to(self.arrangement.origin(i) + shift);
-                if self.is_clean(i, &candidate, &neighbours) {
+                if self.is_clean(i, &candidate, &neighbours, meter)? {
                     self.arrangement.bodies[i] = candidate;
-                    return true;
+                    return Ok(true);
                 }
             }
         }
-        false
+        Ok(false)
     }
 
     /// Puts a smaller element of the same class in the place of body `i`, the largest that fits.
-    fn exchange(&mut self, i: usize) -> bool {
+    fn exchange(&mut self, i: usize, meter: &mut Meter<'_>) -> Result<bool> {
         let body = self.arrangement.bodies[i].clone();
         if body.figure >= self.limits.figures.len() {
             // A bent element has no counterpart with its bend.
-            return false;
+            return Ok(false);
         }
-        let neighbours = self.arrangement.neighbours(i, self.slack);
+        let neighbours = self.arrangement.neighbours(i, self.slack, meter)?;
         let smaller: Vec<_> = self.limits.smaller_sources(body.figure).collect();
         let step = smaller.len().div_ceil(EXCHANGES).max(1);
         for &source in smaller.iter().step_by(step) {
             let centre = self.limits.figures[source].centre;
             let place = Similarity::about(centre, body.centre, body.place.rotation, body.place.scale);
             let candidate = self.limits.body(source, place);
-            if self.is_clean(i, &candidate, &neighbours) {
+            if self.is_clean(i, &candidate, &neighbours, meter)? {
                 self.arrangement.bodies[i] = candidate;
-                return true;
+                return Ok(true);
             }
         }
-        false
+        Ok(false)
     }
 
     /// Takes bodies out until none has a crowd of more than `most` around it: the most crowded first, of these the
     /// smallest. Returns the violations that are left.
-    fn thin_out(&mut self, violations: Vec<Violation>, most: u64) -> Vec<Violation> {
-        let mut violations: Vec<_> = violations.into_par_iter().filter(|v| self.is_violation(v.0, v.1)).collect();
+    fn thin_out(&mut self, violations: Vec<Violation>, most: u64) -> Result<Vec<Violation>> {
+        let budget = self.arrangement.budget.clone();
+        let is_left = |v: &Violation| self.is_violation(v.0, v.1, &mut budget.meter());
+        let left: Vec<bool> = violations.par_iter().map(is_left).collect::<Result<_>>()?;
+        budget.spend(0)?;
+        let mut meter = budget.meter();
+        let mut left = left.into_iter();
+        let mut violations = violations;
+        violations.retain(|_| left.next().unwrap_or(false));
         let mut partners = BTreeMap::<usize, Vec<usize>>::new();
         for &(i, j, _) in &violations {
             partners.entry(i).or_default().push(j);
@@ -282,6 +341,7 @@ impl<'a> Repair<'a> {
         let free = partners.keys().filter(|&&i| !self.arrangement.bodies[i].fixed);
         let mut queue: BinaryHeap<_> = free.map(|&i| key(self, i)).collect();
         while let Some(entry) = queue.pop() {
+            meter.spend(PRICE.0 + 5 * partners[&entry.2].len() as u64)?;
             let now = key(self, entry.2);
             if now.0 <= most * ONE {
                 continue;
@@ -293,7 +353,7 @@ impl<'a> Repair<'a> {
             }
         }
         violations.retain(|v| self.alive[v.0] && self.alive[v.1]);
-        violations
+        Ok(violations)
     }
 
     /// Number of partners that are still there, in multiples of [`ONE`]; one that is smaller than body `i` counts by

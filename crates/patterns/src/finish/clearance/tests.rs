@@ -54,7 +54,8 @@ fn centre(exemplar: &Exemplar<2>, placement: &Placement<2>) -> Vector<2> {
 
 fn mend(exemplar: &Exemplar<2>, request: &Request<2>, placements: &[Placement<2>]) -> (Vec<Placement<2>>, Summary) {
     let mut placements = placements.to_vec();
-    let summary = repair(measure(exemplar).as_ref(), request, &mut placements);
+    let clearance = measure(exemplar, &Budget::default()).unwrap();
+    let summary = repair(clearance.as_ref(), request, &mut placements, &Budget::default()).unwrap();
     (placements, summary)
 }
 
@@ -63,7 +64,7 @@ fn on_page(side: f64) -> Request<2> {
 }
 
 fn ratio(exemplar: &Exemplar<2>, placements: &[Placement<2>], request: &Request<2>) -> f64 {
-    overlap_ratio(exemplar, placements, &request.domain)
+    overlap_ratio(exemplar, placements, &request.domain, &Budget::default()).unwrap()
 }
 
 #[test]
@@ -307,12 +308,14 @@ fn a_bent_element_is_checked_as_it_is_drawn() {
 fn points_and_space_have_nothing_to_check() {
     let points = [Vector([0.0, 0.0, 0.0]), Vector([1.0, 2.0, 3.0])];
     let e = Exemplar::from_points("test", &points, &[0, 0], &["a".into()]).unwrap();
-    let clearance = measure(&e);
+    let clearance = measure(&e, &Budget::default()).unwrap();
     assert!(clearance.is_none());
     let bounds = Bounds::new(Vector::ZERO, Vector::splat(10.0));
     let at = |source| Placement { source, transform: Similarity::identity(), control: Vec::new(), frozen: None };
     let mut placements = vec![at(0), at(0)];
-    let summary = repair::<3>(clearance.as_ref(), &Request::new(Domain::Box(bounds)), &mut placements);
+    let summary =
+        repair::<3>(clearance.as_ref(), &Request::new(Domain::Box(bounds)), &mut placements, &Budget::default())
+            .unwrap();
     assert_eq!((placements.len(), summary), (2, Summary::default()));
 }
 

@@ -1,0 +1,56 @@
+//! Exemplars that nothing can be made of: what is there is told before any work is done.
+
+use arabesque_core::{Domain, Error, Exemplar, GridIndex, Result, Spread};
+
+use crate::exemplar::level_exemplar::LevelExemplar;
+
+/// Elements of which the mean one has so many beside it lie in heaps.
+const HEAP: f64 = 1000.0;
+
+/// Most samples on the curves of an exemplar at one level.
+const MAX_NODES: f64 = 10_000.0;
+
+/// Refuses elements that lie on top of one another: nothing tells how they are to be laid out, and every one of them would
+/// have to be compared with all others.
+pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
+    let centres: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
+    let advice = "draw them apart, so that the exemplar shows distances and directions";
+    if exemplar.curves.is_empty() && Spread::of(centres.iter().copied()) == Spread::Place {
+        let problem = format!("all {} elements lie at one place", centres.len());
+        return Err(Error::input("exemplar", problem, advice));
+    }
+    let index = GridIndex::new(&centres, exemplar.spacing(), &Domain::Box(exemplar.window));
+    match index.fullest().filter(|_| index.crowding() > HEAP) {
+        Some((count, place)) => {
+            let problem = format!("{count} elements lie in one heap, around {:.4?}", place.0);
+            Err(Error::input("exemplar", problem, advice))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses an exemplar of elements that are all out of proportion.
+pub(crate) fn sizes<const D: usize>(exemplar: &Exemplar<D>, levels: &[LevelExemplar<D>]) -> Result<()> {
+    let Some(library) = levels.first().map(|s| &s.library).filter(|l| l.giants > 0 && exemplar.curves.is_empty())
+    else {
+        return Ok(());
+    };
+    if library.copyable.iter().any(|copyable| *copyable) {
+        return Ok(());
+    }
+    let problem = "every element is far larger than the frame";
+    Err(Error::input("exemplar", problem, "make the frame larger, or draw the elements smaller"))
+}
+
+/// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.
+pub(crate) fn density(nodes: f64) -> Result<()> {
+    if nodes <= MAX_NODES {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "samples on the curves of the exemplar".into(),
+        found: format!("about {nodes:.0}"),
+        limit: MAX_NODES.to_string(),
+        advice: "show a smaller part of the pattern, draw it with fewer lines, or set a larger spacing".into(),
+    })
+}

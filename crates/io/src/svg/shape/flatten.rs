@@ -26,7 +26,7 @@ pub(crate) fn filled(path: &BezPath, world: Affine, rule: FillRule) -> Outline<2
 pub(crate) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
     match rings {
         [] => Outline::default(),
-        [ring] if is_convex(ring) => {
+        [ring] if ring::is_convex(ring) => {
             let mut ring = ring.clone();
             if ring::area(&ring) < 0.0 {
                 ring.reverse();
@@ -57,26 +57,6 @@ fn is_thin(ring: &[Vector<2>]) -> bool {
     // The product of the two principal moments is the determinant; the smaller one itself would be lost in rounding.
     let across = (xx * yy - xy * xy) / along.max(f64::MIN_POSITIVE);
     across <= 1e-14 * along
-}
-
-/// Whether a ring turns one way all along, once around: then it cannot cross itself.
-fn is_convex(ring: &[Vector<2>]) -> bool {
-    let n = ring.len();
-    let edge = |k: usize| ring[(k + 1) % n] - ring[k % n];
-    let mut turned = 0.0;
-    let mut sign = 0.0;
-    for k in 0..n {
-        let (a, b) = (edge(k), edge(k + 1));
-        let cross = a.cross(b);
-        if cross * sign < 0.0 || a.norm2() == 0.0 {
-            return false;
-        }
-        if cross != 0.0 {
-            sign = cross.signum();
-        }
-        turned += cross.atan2(a.dot(b));
-    }
-    n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
 }
 
 /// The area of a domain, whose border is drawn as it is and must not show its edges.

@@ -118,6 +118,12 @@ impl Outline<2> {
         self.bounds().intersects(&other.bounds()) && !self.intersection(other).rings.is_empty()
     }
 
+    /// An outline that covers the same of a box, by the even-odd rule; what goes on outside is told with few corners.
+    #[must_use]
+    pub fn near(&self, bounds: &Bounds<2>) -> Self {
+        Self { rings: local::reduced(&self.rings, bounds) }
+    }
+
     /// What an operation gives where one of the two is empty.
     fn trivial(&self, other: &Self, rule: OverlayRule) -> Option<Self> {
         if self.rings.is_empty() {
@@ -283,7 +289,7 @@ mod tests {
 
     #[test]
     fn what_lies_far_away_changes_nothing_and_costs_little() {
-        let large = star(4000, 100.0, Vector::xy(3.0, 7.0));
+        let large = star(900, 100.0, Vector::xy(3.0, 7.0));
         for k in 0..40 {
             let turn = f64::from(k) * 0.37;
             let small = star(12, 3.0, Vector::xy(3.0, 7.0) + Vector::xy(turn.cos(), turn.sin()) * (40.0 + turn));
@@ -291,7 +297,7 @@ mod tests {
             assert_eq!(small.try_intersection(&large, &budget).unwrap(), small.intersection(&large));
             assert_eq!(small.try_difference(&large, &budget).unwrap(), small.difference(&large));
             assert_eq!(large.try_intersection(&small, &budget).unwrap(), large.intersection(&small));
-            assert!(budget.work() < 30_000_000, "{}", budget.work());
+            assert!(budget.work() < 6_000_000, "{}", budget.work());
         }
     }
 

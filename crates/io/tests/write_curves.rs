@@ -1,7 +1,7 @@
 //! Strokes written as SVG, and read again.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
-use arabesque_core::{Border, Bounds, Domain, Drawn, Outline, Path, Vector};
+use arabesque_core::{Border, Bounds, Budget, Domain, Drawn, Outline, Path, Vector};
 use arabesque_io::svg::{Drawing, Method, Page, ReadOptions, Sheet, Style, read_exemplar, write_svg};
 
 const NET: &str = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'
@@ -39,6 +39,7 @@ fn written(drawing: &Drawing, curves: &[Drawn<2>], domain: &Domain<2>, shape: Op
         bend: None,
         style: Style::Linked,
         recipe: None,
+        budget: &Budget::default(),
     };
     write_svg(&sheet).unwrap().text
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Drawn, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{Budget, Drawn, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
 use arabesque_io::{
     json,
     raster::png::{RenderJob, Resolution, write_png},
@@ -61,7 +61,7 @@ impl PlaneMade {
         Ok(vec![Warning::new(format!("{what} cannot be written: left out"), advice)])
     }
 
-    fn svg(&self, style: Style, recipe: Option<&str>) -> Result<Written> {
+    fn svg(&self, style: Style, recipe: Option<&str>, budget: &Budget) -> Result<Written> {
         let placements = &self.outcome.placements;
         let bend = |k: usize, p| arabesque_core::warp(&placements[k].control, p);
         write_svg(&SvgSheet {
@@ -77,6 +77,7 @@ impl PlaneMade {
             bend: Some(&bend),
             style,
             recipe,
+            budget,
         })
     }
 }
@@ -109,11 +110,11 @@ impl Made for PlaneMade {
         match sheet.format {
             Format::Svg => {
                 let style = if sheet.output.expand { Style::Expanded } else { Style::Linked };
-                let written = self.svg(style, sheet.recipe)?;
+                let written = self.svg(style, sheet.recipe, sheet.budget)?;
                 Ok(Encoded { bytes: written.text.into_bytes(), warnings: written.warnings })
             }
             Format::Png => {
-                let written = self.svg(Style::Linked, None)?;
+                let written = self.svg(Style::Linked, None, sheet.budget)?;
                 let resolution = resolution(sheet.output)?;
                 let job = RenderJob { svg: &written.text, units: size.0, resolution, recipe: sheet.recipe };
                 Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: written.warnings })

@@ -89,7 +89,7 @@ pub(crate) fn read_shape(input: &Input, drawing: &Drawing, units: Units, files: 
         return Ok((shape, page));
     }
     let rings = shape.outline().rings.iter().map(|ring| ring.iter().map(|&p| p * factor).collect()).collect();
-    let scaled = Shape::from_outline(Outline { rings })
+    let scaled = Shape::try_from_outline(Outline { rings }, &files.budget().stage("scaling a shape"))?
         .ok_or_else(|| Error::input(input.name(), "a shape without area", "draw a closed shape"))?;
     let view = Bounds::new(page.view.min * factor, page.view.max * factor);
     Ok((scaled, Page { view, unit: page.unit, unit_per_user: page.unit_per_user / factor }))

@@ -86,8 +86,9 @@ impl HostFile<'_, '_> {
         let target = &redo.region;
         let drawing = self.document.exemplar()?;
         let whole = self.shape(target, &drawing)?;
-        let page = Shape::rectangle(drawing.page.view);
-        let Some(shape) = page.and_then(|page| whole.within(&page)) else {
+        let budget = self.files.budget().stage("cutting the region at the page");
+        let on_page = |page: Shape| whole.within(&page, &budget);
+        let Some(shape) = Shape::rectangle(drawing.page.view).map_or(Ok(None), on_page)? else {
             let advice = "give a region on the page: x,y,w,h in the units of the file, or the id of a shape";
             return Err(Error::input(self.place_of(target), "the region lies off the page", advice));
         };

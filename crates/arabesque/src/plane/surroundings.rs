@@ -26,11 +26,12 @@ pub(crate) fn avoided(
         outlines.extend(drawing.job.avoid.clone());
     }
     let page = Shape::rectangle(domain.bounds());
+    let budget = files.budget().stage("taking out what is avoided");
     let left = outlines.iter().try_fold(page, |left, shape| match left {
-        Some(left) => Ok(left.without(shape)),
-        None => Err(()),
-    });
-    if !outlines.is_empty() && !matches!(left, Ok(Some(_))) {
+        Some(left) => left.without(shape, &budget),
+        None => Ok(None),
+    })?;
+    if !outlines.is_empty() && left.is_none() {
         let advice = "make the avoided shapes smaller, or the domain larger";
         return Err(Error::no_result("the avoided shapes cover the whole domain", advice));
     }

@@ -1,7 +1,10 @@
 //! Areas: outlines with their boolean operations, shapes that answer distances, and domains; segments and rings, which they are made of.
 
+mod crossings;
 mod domain;
+mod local;
 mod outline;
+mod overlay;
 pub mod ring;
 pub mod segment;
 mod shape;

@@ -21,6 +21,26 @@ pub fn covers(edges: impl IntoIterator<Item = Segment<2>>, p: Vector<2>) -> bool
     edges.into_iter().filter(is_right).count() % 2 == 1
 }
 
+/// Whether a ring turns one way all along, once around: then it cannot cross itself.
+pub fn is_convex(ring: &[Vector<2>]) -> bool {
+    let n = ring.len();
+    let edge = |k: usize| ring[(k + 1) % n] - ring[k % n];
+    let mut turned = 0.0;
+    let mut sign = 0.0;
+    for k in 0..n {
+        let (a, b) = (edge(k), edge(k + 1));
+        let cross = a.cross(b);
+        if cross * sign < 0.0 || a.norm2() == 0.0 {
+            return false;
+        }
+        if cross != 0.0 {
+            sign = cross.signum();
+        }
+        turned += cross.atan2(a.dot(b));
+    }
+    n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
+}
+
 /// How often a ring turns around `p`: 0 outside, negative where it turns from y towards x.
 pub fn winding(ring: &[Vector<2>], p: Vector<2>) -> i32 {
     let mut turns = 0;
@@ -66,6 +86,13 @@ mod tests {
         let (outer, inner) = (star(4), star(4).into_iter().map(|p| p * 0.2).collect::<Vec<_>>());
         let all = || edges(&outer).chain(edges(&inner));
         assert!(!covers(all(), Vector::xy(0.1, 0.2)) && covers(all(), Vector::xy(5.0, 0.2)));
+    }
+
+    #[test]
+    fn stars_are_not_convex() {
+        assert!(is_convex(&star(4)) && !is_convex(&star(14)) && !is_convex(&[]));
+        let twice: Vec<_> = [star(4), star(4)].concat();
+        assert!(!is_convex(&twice), "twice around");
     }
 
     #[test]

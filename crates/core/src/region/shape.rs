@@ -1,12 +1,22 @@
 //! Plane regions bounded by polygons.
 
 use crate::{
+    budget::Budget,
+    error::Result,
     region::{
         FillRule, Outline, Region, Ring,
+        crossings::in_range,
         segment::{self, Segment},
     },
     space::{Bounds, Vector},
 };
+
+/// Cells of the index, at most.
+const MOST_CELLS: usize = 65_536;
+/// Places of edges in cells, for each edge and cell: where there would be more, as with thousands of long edges, cells get larger.
+const MOST: usize = 16;
+/// Work for each edge, and for each cell.
+const PER_ENTRY: u64 = 300;
 
 /// One or several shapes with holes, ready for distance queries.
 ///
@@ -29,11 +39,35 @@ pub struct Shape {
 
 impl Shape {
     /// The region that `rings` enclose under `rule`, or `None` when they enclose no area.
+    ///
+    /// # Errors
+    /// As [`Outline::try_union`].
+    pub fn try_new(rings: &[Ring<2>], rule: FillRule, budget: &Budget) -> Result<Option<Self>> {
+        Self::try_from_outline(Outline::try_union(rings, rule, budget)?, budget)
+    }
+
+    /// As [`Shape::try_new`], for outlines of bounded size: nothing is counted, and nothing refused.
     pub fn new(rings: &[Ring<2>], rule: FillRule) -> Option<Self> {
         Self::from_outline(Outline::union(rings, rule))
     }
 
     /// The region covered by an outline, or `None` when it has no area.
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::Error::Limit) when the work or memory for its index is used up,
+    /// [`Error::Input`](crate::Error::Input) when a coordinate is no sensible number.
+    pub fn try_from_outline(outline: Outline<2>, budget: &Budget) -> Result<Option<Self>> {
+        let corners = outline.rings.iter().map(Vec::len).sum::<usize>();
+        budget.within("corners of outlines", corners, ("outline-nodes", budget.limits().outline_nodes))?;
+        in_range(outline.points(), budget)?;
+        // Whether one edge takes much or little of the index, all of them together take no more than this.
+        let most = MOST * (corners + MOST_CELLS);
+        budget.spend(PER_ENTRY * (corners + MOST_CELLS.min(corners * MOST)) as u64)?;
+        drop(budget.hold("outlines", 16 * most.min(corners * MOST_CELLS))?);
+        Ok(Self::from_outline(outline))
+    }
+
+    /// As [`Shape::try_from_outline`], for outlines of bounded size: nothing is counted, and nothing refused.
     pub fn from_outline(outline: Outline<2>) -> Option<Self> {
         let bounds = outline.bounds();
         let area = outline.area();
@@ -41,18 +75,15 @@ impl Shape {
             return None;
         }
         let edges: Vec<_> = outline.edges().collect();
-        let cells = edges.len().clamp(64, 65_536) as f64;
-        let cell = (bounds.measure() / cells).sqrt().max(bounds.size()[0].max(bounds.size()[1]) / 1024.0);
-        let columns = (bounds.size()[0] / cell) as usize + 1;
-        let rows = (bounds.size()[1] / cell) as usize + 1;
+        let cells = edges.len().clamp(64, MOST_CELLS) as f64;
         let mut shape = Self {
             outline,
             bounds,
             area,
             edges,
-            cell,
-            columns,
-            rows,
+            cell: (bounds.measure() / cells).sqrt().max(bounds.size()[0].max(bounds.size()[1]) / 1024.0),
+            columns: 0,
+            rows: 0,
             starts: Vec::new(),
             members: Vec::new(),
             centre_inside: Vec::new(),
@@ -68,13 +99,19 @@ impl Shape {
     }
 
     /// The shape without the area of `other`, or `None` when nothing is left.
-    pub fn without(&self, other: &Self) -> Option<Self> {
-        Self::from_outline(self.outline.difference(&other.outline))
+    ///
+    /// # Errors
+    /// As [`Outline::try_difference`].
+    pub fn without(&self, other: &Self, budget: &Budget) -> Result<Option<Self>> {
+        Self::try_from_outline(self.outline.try_difference(&other.outline, budget)?, budget)
     }
 
     /// The part of the shape that also lies in `other`, or `None` when nothing is left.
-    pub fn within(&self, other: &Self) -> Option<Self> {
-        Self::from_outline(self.outline.intersection(&other.outline))
+    ///
+    /// # Errors
+    /// As [`Outline::try_intersection`].
+    pub fn within(&self, other: &Self, budget: &Budget) -> Result<Option<Self>> {
+        Self::try_from_outline(self.outline.try_intersection(&other.outline, budget)?, budget)
     }
 
     /// A rectangle.
@@ -88,37 +125,86 @@ impl Shape {
         (at(p[0] - self.bounds.min[0], self.columns), at(p[1] - self.bounds.min[1], self.rows))
     }
 
+    /// Lays the edges into cells as small as may be, without many cells to an edge.
     fn index_edges(&mut self) {
-        let mut lists = vec![Vec::new(); self.columns * self.rows];
-        for (k, &(a, b)) in self.edges.iter().enumerate() {
+        let most = MOST * (self.edges.len() + MOST_CELLS);
+        loop {
+            let across = |k: usize| (self.bounds.size()[k] / self.cell) as usize + 1;
+            (self.columns, self.rows) = (across(0), across(1));
             // A box per edge is coarse for long diagonals, but edges of flattened outlines are short.
-            let (c0, r0) = self.column_row(a.zip(b, f64::min));
-            let (c1, r1) = self.column_row(a.zip(b, f64::max));
+            let in_box = |edge: &Segment<2>| {
+                let ((c0, r0), (c1, r1)) = self.box_of(edge);
+                (c1 - c0 + 1) * (r1 - r0 + 1)
+            };
+            let along = |edge: &Segment<2>| {
+                let ((c0, r0), (c1, r1)) = self.box_of(edge);
+                2 * (c1 - c0 + r1 - r0 + 1)
+            };
+            let total = |cells: &dyn Fn(&Segment<2>) -> usize| self.edges.iter().map(cells).sum::<usize>();
+            let by_box = total(&in_box) <= most;
+            if by_box || total(&along) <= most || self.columns.max(self.rows) <= 2 {
+                return self.fill_cells(by_box);
+            }
+            self.cell *= 2.0;
+        }
+    }
+
+    /// The cells at the corners of the box around an edge.
+    fn box_of(&self, &(a, b): &Segment<2>) -> ((usize, usize), (usize, usize)) {
+        (self.column_row(a.zip(b, f64::min)), self.column_row(a.zip(b, f64::max)))
+    }
+
+    fn fill_cells(&mut self, by_box: bool) {
+        let mut counts = vec![0; self.columns * self.rows + 1];
+        self.each_cell(by_box, |cell, _| counts[cell + 1] += 1);
+        (1..counts.len()).for_each(|c| counts[c] += counts[c - 1]);
+        let mut members = vec![0; counts[self.columns * self.rows]];
+        let mut next = counts.clone();
+        self.each_cell(by_box, |cell, edge| {
+            members[next[cell]] = edge;
+            next[cell] += 1;
+        });
+        (self.starts, self.members) = (counts, members);
+    }
+
+    /// Calls `visit` with each cell of each edge, edge by edge: all cells of the box around it, or those that it runs through.
+    fn each_cell(&self, by_box: bool, mut visit: impl FnMut(usize, u32)) {
+        for (k, edge) in self.edges.iter().enumerate() {
+            let ((c0, r0), (c1, r1)) = self.box_of(edge);
             for r in r0..=r1 {
-                for c in c0..=c1 {
-                    lists[r * self.columns + c].push(k as u32);
-                }
+                let (from, to) = if by_box { (c0, c1) } else { self.columns_in(edge, r, (c0, c1)) };
+                (from..=to).for_each(|c| visit(r * self.columns + c, k as u32));
             }
         }
-        self.starts = std::iter::once(0)
-            .chain(lists.iter().scan(0, |sum, list| {
-                *sum += list.len();
-                Some(*sum)
-            }))
-            .collect();
-        self.members = lists.concat();
+    }
+
+    /// The columns in which an edge runs through a row, a little more for rounding.
+    fn columns_in(&self, &(a, b): &Segment<2>, row: usize, (first, last): (usize, usize)) -> (usize, usize) {
+        let low = self.bounds.min[1] + row as f64 * self.cell;
+        let share = |y: f64| if a[1] == b[1] { f64::NAN } else { ((y - a[1]) / (b[1] - a[1])).clamp(0.0, 1.0) };
+        let [s, t] = [share(low), share(low + self.cell)];
+        if s.is_nan() {
+            return (first, last);
+        }
+        let [x0, x1] = [s, t].map(|s| a[0] + (b[0] - a[0]) * s - self.bounds.min[0]);
+        let column = |x: f64| (x / self.cell).clamp(first as f64, last as f64) as usize;
+        (column(x0.min(x1) - 0.01 * self.cell), column(x0.max(x1) + 0.01 * self.cell))
     }
 
     fn mark_centres(&mut self) {
+        let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); self.rows];
+        for edge in &self.edges {
+            let ((_, r0), (_, r1)) = self.box_of(edge);
+            for (r, row) in crossings.iter_mut().enumerate().take(r1 + 1).skip(r0) {
+                row.extend(segment::crossing_at_height(*edge, self.bounds.min[1] + (r as f64 + 0.5) * self.cell));
+            }
+        }
         let mut inside = vec![false; self.columns * self.rows];
-        for r in 0..self.rows {
-            let y = self.bounds.min[1] + (r as f64 + 0.5) * self.cell;
-            let mut crossings: Vec<f64> =
-                self.edges.iter().filter_map(|&edge| segment::crossing_at_height(edge, y)).collect();
-            crossings.sort_by(f64::total_cmp);
+        for (r, row) in crossings.iter_mut().enumerate() {
+            row.sort_by(f64::total_cmp);
             for c in 0..self.columns {
                 let x = self.bounds.min[0] + (c as f64 + 0.5) * self.cell;
-                inside[r * self.columns + c] = crossings.partition_point(|&v| v <= x) % 2 == 1;
+                inside[r * self.columns + c] = row.partition_point(|&v| v <= x) % 2 == 1;
             }
         }
         self.centre_inside = inside;
@@ -189,7 +275,10 @@ impl Region<2> for Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Stage, Stream};
+    use crate::{
+        random::{Stage, Stream},
+        region::ring,
+    };
 
     fn ring(n: usize, radius: f64) -> Ring<2> {
         (0..n)
@@ -222,8 +311,29 @@ mod tests {
     fn taking_one_shape_out_of_another() {
         let all = Shape::rectangle(Bounds::new(Vector::xy(0.0, 0.0), Vector::xy(4.0, 4.0))).unwrap();
         let half = Shape::rectangle(Bounds::new(Vector::xy(2.0, -1.0), Vector::xy(9.0, 9.0))).unwrap();
-        assert!((all.without(&half).unwrap().measure() - 8.0).abs() < 1e-6);
-        assert!((all.within(&half).unwrap().measure() - 8.0).abs() < 1e-6);
-        assert!(half.without(&half).is_none());
+        let budget = Budget::default();
+        assert!((all.without(&half, &budget).unwrap().unwrap().measure() - 8.0).abs() < 1e-6);
+        assert!((all.within(&half, &budget).unwrap().unwrap().measure() - 8.0).abs() < 1e-6);
+        assert!(half.without(&half, &budget).unwrap().is_none());
+    }
+
+    #[test]
+    fn thousands_of_long_edges_take_a_bounded_index_and_answer_alike() {
+        // A comb with long slanting teeth: the box around each is as large as the shape.
+        let teeth = 6000;
+        let root = |k: usize| Vector::xy(0.02 * k as f64, 0.02 * k as f64);
+        let tip = |k: usize| root(k) + Vector::xy(-90.0, 90.0);
+        let mut comb: Ring<2> = (0..teeth).map(|k| if k % 2 == 0 { root(k) } else { tip(k) }).collect();
+        comb.push(root(teeth) + Vector::xy(1.0, -1.0));
+        comb.push(Vector::xy(1.0, -1.0));
+        let shape = Shape::from_outline(Outline { rings: vec![comb] }).unwrap();
+        assert!(shape.members.len() <= MOST * (shape.edges.len() + MOST_CELLS), "{}", shape.members.len());
+        let mut s = Stream::new(1, Stage::TEST, 0);
+        for _ in 0..100 {
+            let p = Vector::xy(s.range(-95.0, 125.0), s.range(-5.0, 215.0));
+            let nearest = shape.edges.iter().map(|&e| segment::distance(e, p)).fold(f64::INFINITY, f64::min);
+            let want = if ring::covers(shape.edges.iter().copied(), p) { nearest } else { -nearest };
+            assert!((shape.signed_distance(p) - want).abs() < 1e-9, "{p:?}");
+        }
     }
 }

@@ -17,7 +17,7 @@ mod nodes;
 mod raster;
 mod stations;
 
-use arabesque_core::{Bounds, Outline, Path, Vector};
+use arabesque_core::{Bounds, Budget, Outline, Path, Result, Vector};
 
 use self::{
     border::OutlineBorder,
@@ -30,6 +30,9 @@ use self::{
 const PIXELS: [f64; 3] = [9.0, 7.0, 5.0];
 /// Most pixels of a picture.
 const MAX_PIXELS: f64 = 6e7;
+/// Bytes and work for each of them.
+const BYTES: usize = 12;
+const PER_PIXEL: u64 = 20;
 /// Largest spread of the width.
 const MAX_SPREAD: f64 = 0.18;
 /// Least length of all lines together, in widths.
@@ -65,12 +68,39 @@ pub(crate) struct Centrelines {
 ///
 /// Strokes that end on the side of `frame` run up to it; all others end half a width before the tip, where a round cap
 /// begins. What is left of strokes that run along a side of it is dropped.
-pub(crate) fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Option<Centrelines> {
-    let estimate = estimated_width(outline)?;
-    let (raster, pixel) =
-        PIXELS.iter().find_map(|n| Some((Raster::new(outline, estimate / n, MAX_PIXELS)?, estimate / n)))?;
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work or memory for it is used up.
+pub(crate) fn centrelines(
+    outline: &Outline<2>,
+    frame: Option<&Bounds<2>>,
+    budget: &Budget,
+) -> Result<Option<Centrelines>> {
+    let Some(estimate) = estimated_width(outline) else { return Ok(None) };
+    let drawn = |n: &f64| Some((Raster::new(outline, estimate / n, MAX_PIXELS)?, estimate / n));
+    let Some((raster, pixel)) = PIXELS.iter().find_map(drawn) else { return Ok(None) };
+    let pixels = raster.ink.len();
+    let _held = budget.hold("centre lines", BYTES * pixels)?;
+    budget.spend(PER_PIXEL * pixels as u64)?;
     let mut thin = raster.clone();
-    thin.thin();
+    thin.thin(budget)?;
+    Ok(followed(outline, Drawn { raster, thin, estimate, pixel }, frame))
+}
+
+/// An outline as pixels.
+struct Drawn {
+    raster: Raster,
+    /// The same, thinned to lines.
+    thin: Raster,
+    /// About the width of the strokes.
+    estimate: f64,
+    /// Side of a pixel.
+    pixel: f64,
+}
+
+/// The lines that the pixels lead to.
+fn followed(outline: &Outline<2>, drawn: Drawn, frame: Option<&Bounds<2>>) -> Option<Centrelines> {
+    let Drawn { raster, thin, estimate, pixel } = drawn;
     let mut graph = Graph::trace(&thin);
     let border = OutlineBorder::new(outline, estimate);
     graph.tidy(estimate, |line| is_spur(line, &border, estimate), |line| line.length() < 0.75 * estimate);

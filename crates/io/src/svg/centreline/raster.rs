@@ -1,9 +1,15 @@
 //! Outlines as pixels, and pixels thinned to lines of one pixel.
 
-use arabesque_core::{Bounds, Outline, Vector};
+use arabesque_core::{Bounds, Budget, Outline, Result, Vector};
 
 /// Empty pixels around the ink.
 const MARGIN: usize = 2;
+
+/// Work for each pixel in each round of thinning.
+const PER_PIXEL: u64 = 20;
+
+/// Most places at which edges pass rows.
+const MAX_PASSED: f64 = 3e7;
 
 /// A bitmap laid over an outline.
 #[derive(Clone, Debug)]
@@ -19,11 +25,15 @@ pub(super) struct Raster {
 
 impl Raster {
     /// The pixels of side `step` whose centres lie in the outline; gaps narrower than half a pixel are closed.
-    /// `None` for more than `limit` pixels.
+    /// `None` for more than `limit` pixels, and where edges pass too many of their rows.
     pub(super) fn new(outline: &Outline<2>, step: f64, limit: f64) -> Option<Self> {
         let bounds: Bounds<2> = outline.bounds();
         let size = bounds.size().map(|s| (s / step).ceil() + 2.0 * MARGIN as f64);
         if !(size[0] * size[1]).is_finite() || size[0] * size[1] > limit {
+            return None;
+        }
+        let passed: f64 = outline.edges().map(|(a, b)| ((a[1] - b[1]) / step).abs()).sum();
+        if passed > MAX_PASSED {
             return None;
         }
         let (width, height) = (size[0] as usize, size[1] as usize);
@@ -118,11 +128,15 @@ impl Raster {
 
     /// Thins the ink to lines of one pixel with the same connections: Zhang and Suen's parallel thinning, then single
     /// redundant pixels.
-    pub(super) fn thin(&mut self) {
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub(super) fn thin(&mut self, budget: &Budget) -> Result<()> {
         let mut active = self.pixels();
         // Every round takes a layer off, so the rounds are bounded by the size of the picture.
         for _ in 0..self.width.max(self.height) {
             let before = active.len();
+            budget.spend(PER_PIXEL * before as u64)?;
             for first in [true, false] {
                 let gone: Vec<usize> = active.iter().copied().filter(|&p| self.is_rim(p, first)).collect();
                 gone.iter().for_each(|&p| self.ink[p] = false);
@@ -138,6 +152,7 @@ impl Raster {
                 self.ink[p] = false;
             }
         }
+        Ok(())
     }
 
     /// Whether a sub-step of the parallel thinning takes a pixel away.
@@ -177,7 +192,7 @@ mod tests {
     #[test]
     fn a_bar_thins_to_a_line_of_pixels() {
         let mut raster = Raster::new(&bar(10.0), 0.125, 1e6).unwrap();
-        raster.thin();
+        raster.thin(&Budget::default()).unwrap();
         let pixels = raster.pixels();
         assert!(pixels.iter().all(|&p| (raster.centre(p)[1] - 0.5).abs() < 0.15));
         assert_eq!(pixels.iter().filter(|&&p| raster.neighbours(p).count() == 1).count(), 2);
@@ -191,7 +206,7 @@ mod tests {
             for step in [0.11, 0.2, 0.43, 0.6] {
                 let turned = Outline { rings: vec![bar(10.0).rings[0].iter().map(|&p| turn.apply(p)).collect()] };
                 let mut raster = Raster::new(&turned, step, 1e6).unwrap();
-                raster.thin();
+                raster.thin(&Budget::default()).unwrap();
                 let line: Vec<_> = raster.pixels().into_iter().map(|p| raster.centre(p)).collect();
                 let extent = arabesque_core::Bounds::around(line).size().norm();
                 assert!(extent > 7.5, "{degrees} degrees, pixels of {step}: {extent}");

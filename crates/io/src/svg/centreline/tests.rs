@@ -2,6 +2,10 @@ use arabesque_core::{FillRule, Vector};
 
 use super::*;
 
+fn centrelines(outline: &Outline<2>, frame: Option<&Bounds<2>>) -> Option<Centrelines> {
+    super::centrelines(outline, frame, &Budget::default()).unwrap()
+}
+
 fn bar(a: (f64, f64), b: (f64, f64), width: f64) -> Vec<Vector<2>> {
     let (a, b) = (Vector::xy(a.0, a.1), Vector::xy(b.0, b.1));
     let d = b - a;
@@ -15,7 +19,7 @@ fn disc(centre: (f64, f64), radius: f64, n: usize) -> Vec<Vector<2>> {
 }
 
 fn union(rings: &[Vec<Vector<2>>]) -> Outline<2> {
-    Outline::union(rings, FillRule::NonZero)
+    Outline::try_union(rings, FillRule::NonZero, &Budget::default()).unwrap()
 }
 
 fn has_end(path: &Path<2>, x: f64, y: f64) -> bool {
@@ -46,7 +50,8 @@ fn strokes_run_up_to_the_frame() {
 
 #[test]
 fn a_ring_is_one_closed_round_path() {
-    let ring = Outline::union(&[disc((5.0, 5.0), 10.5, 200), disc((5.0, 5.0), 9.5, 200)], FillRule::EvenOdd);
+    let rings = [disc((5.0, 5.0), 10.5, 200), disc((5.0, 5.0), 9.5, 200)];
+    let ring = Outline::try_union(&rings, FillRule::EvenOdd, &Budget::default()).unwrap();
     let found = centrelines(&ring, None).unwrap();
     assert_eq!(found.paths.len(), 1);
     let path = &found.paths[0];
@@ -144,7 +149,8 @@ fn half_lines_along_the_frame_are_dropped() {
     });
     let frame = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
     let page = Outline { rings: vec![bar((0.0, 50.0), (100.0, 50.0), 100.0)] };
-    let found = centrelines(&union(&lines.collect::<Vec<_>>()).intersection(&page), Some(&frame)).unwrap();
+    let on_page = union(&lines.collect::<Vec<_>>()).try_intersection(&page, &Budget::default()).unwrap();
+    let found = centrelines(&on_page, Some(&frame)).unwrap();
     assert!((found.width - 2.0).abs() < 0.05, "{}", found.width);
     assert_eq!(found.paths.len(), 8, "{:?}", found.paths.iter().map(Path::bounds).collect::<Vec<_>>());
     assert!(found.paths.iter().all(|p| (p.bounds().size().norm() - 100.0).abs() < 0.1), "{:?}", found.paths);

@@ -13,6 +13,7 @@ use crate::{
             meta::Part,
             notes::Note,
             scene::{Content, Node},
+            source::clip_text,
             style::Property as P,
         },
         read::document::{Document, Opened, by_id, parts},
@@ -77,6 +78,7 @@ pub(crate) fn shape(
     nodes: &[(Affine, Rc<Node>)],
     frame: Option<Bounds<2>>,
 ) -> Result<Shape> {
+    let budget = painter.source.budget;
     let mut borders = Vec::new();
     for (parent, node) in nodes {
         collect(painter, node, *parent, None, &mut borders)?;
@@ -88,22 +90,34 @@ pub(crate) fn shape(
             open.push(border.name.as_str());
             continue;
         }
-        let area = flatten::filled_finely(&border.path, border.rule);
-        let area = border.clip.as_ref().map_or_else(|| area.clone(), |clip| area.intersection(clip));
-        areas.push(area);
+        let area = flatten::filled_finely(&border.path, border.rule, budget)?;
+        areas.push(match &border.clip {
+            Some(clip) => area.try_intersection(clip, budget)?,
+            None => area,
+        });
     }
     areas.retain(|a| !a.rings.is_empty());
     leave_background(painter, &mut areas, frame);
     let rings: Vec<_> = areas.iter().flat_map(|a| a.rings.iter().cloned()).collect();
-    if let Some(shape) = Shape::new(&rings, FillRule::NonZero) {
+    if let Some(shape) = Shape::try_new(&rings, FillRule::NonZero, budget)? {
         return Ok(shape);
     }
     if open.is_empty() {
         return Err(Error::input(place, "no shape with an area found", "draw a closed shape"));
     }
-    let problem = format!("the outline is open ({}), expected a closed shape", open.join(", "));
+    let problem = format!("the outline is open ({}), expected a closed shape", listed(&open));
     Err(Error::input(place, problem, "close the path: join its end to its start"))
 }
+
+/// The first few names of a list, and how many there are.
+fn listed(names: &[&str]) -> String {
+    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
+    let named: Vec<_> = names.iter().take(NAMED).map(|name| clip_text(name, 40)).collect();
+    format!("{}{more}", named.join(", "))
+}
+
+/// Open shapes that a message names.
+const NAMED: usize = 5;
 
 /// Drops shapes that cover the page where there are others.
 fn leave_background(painter: &Painter<'_, '_>, areas: &mut Vec<Outline<2>>, frame: Option<Bounds<2>>) {
@@ -125,7 +139,7 @@ fn collect(
     let world = parent * node.transform;
     let own = painter.clip(node, world)?;
     let both = match (clip, own) {
-        (Some(a), Some(b)) => Some(a.intersection(&b)),
+        (Some(a), Some(b)) => Some(a.try_intersection(&b, painter.source.budget)?),
         (a, b) => b.or_else(|| a.cloned()),
     };
     if let Content::Shape(geometry) = &node.content {

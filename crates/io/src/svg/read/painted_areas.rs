@@ -104,7 +104,7 @@ impl Taker<'_, '_, '_> {
         let has = |name: &str| node.own.get(name).is_some_and(|v| v != "none" && v != "normal");
         self.effects += usize::from(has("mask") || has("filter") || has("mix-blend-mode"));
         let clip = match (&at.clip, self.painter.clip(node, world)?) {
-            (Some(a), Some(b)) => Some(a.intersection(&b)),
+            (Some(a), Some(b)) => Some(a.try_intersection(&b, self.painter.source.budget)?),
             (a, b) => b.or_else(|| a.clone()),
         };
         let inside = Inherited { opacity, clip };
@@ -118,18 +118,23 @@ impl Taker<'_, '_, '_> {
         let style = &node.style;
         if style.fills() {
             let rule = flatten::fill_rule(style.get(P::FillRule));
-            self.add(flatten::filled(&geometry.path, world, rule), node, FILL, &inside);
+            let outline = flatten::filled(&geometry.path, world, rule, self.painter.source.budget)?;
+            self.add(outline, node, FILL, &inside)?;
         }
         if style.strokes() {
-            self.add(stroked(node, &geometry.path, world), node, STROKE, &inside);
+            let outline = stroked(node, &geometry.path, world, self.painter.source.budget)?;
+            self.add(outline, node, STROKE, &inside)?;
         }
         Ok(())
     }
 
-    fn add(&mut self, outline: Outline<2>, node: &Node, by: PaintedBy, at: &Inherited) {
-        let outline = at.clip.as_ref().map_or_else(|| outline.clone(), |clip| outline.intersection(clip));
+    fn add(&mut self, outline: Outline<2>, node: &Node, by: PaintedBy, at: &Inherited) -> Result<()> {
+        let outline = match &at.clip {
+            Some(clip) => outline.try_intersection(clip, self.painter.source.budget)?,
+            None => outline,
+        };
         if outline.rings.is_empty() {
-            return;
+            return Ok(());
         }
         let paint = node.style.get(by.paint);
         let colour = if reference(paint).is_some() {
@@ -140,6 +145,7 @@ impl Taker<'_, '_, '_> {
             paint.to_owned()
         };
         self.areas.push(Area { outline, colour, opacity: at.opacity * fraction(node.style.get(by.opacity)) });
+        Ok(())
     }
 
     fn warnings(&self, name: &str) -> Vec<Warning> {

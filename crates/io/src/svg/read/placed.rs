@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use arabesque_core::{
-    Bounds, Decimals, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Similarity, Vector,
+    Bounds, Budget, Decimals, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Similarity, Vector,
 };
 use kurbo::Affine;
 
@@ -30,6 +30,11 @@ use crate::{
     },
     text::unit::Unit,
 };
+
+/// Work for looking at an element that something may be a copy of.
+const LOOK: u64 = 10;
+/// Work for comparing two outlines.
+const FIT: u64 = 20_000;
 
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.
 const COLOUR: f64 = 0.2;
@@ -163,7 +168,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
             return Ok(Sorted::Removed);
         }
         let names = classes::names_of(&item.meta, &self.painter.source.sheet);
-        Ok(match self.matcher.place(item, &names) {
+        Ok(match self.matcher.place(item, &names, self.painter.source.budget)? {
             Some(placement) => Sorted::Element(placement),
             None => Sorted::Obstacle { outline: item.outline.clone(), cut: None, is_touched: false },
         })
@@ -193,7 +198,10 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         match drawn.collect::<Option<Vec<_>>>() {
             Some(drawn) => Ok(Sorted::Strokes { drawn, cut: markup, is_touched }),
             None => {
-                let outline = self.area.map_or_else(|| item.outline.clone(), |area| item.outline.difference(area));
+                let outline = match self.area {
+                    Some(area) => item.outline.try_difference(area, self.painter.source.budget)?,
+                    None => item.outline.clone(),
+                };
                 Ok(Sorted::Obstacle { outline, cut: markup, is_touched })
             }
         }
@@ -251,11 +259,14 @@ impl<'d> Matcher<'d> {
         Some(Drawn { path: path.clone(), source, scale, frozen: None })
     }
 
-    fn place(&self, item: &Item, names: &[String]) -> Option<Placement<2>> {
+    fn place(&self, item: &Item, names: &[String], budget: &Budget) -> Result<Option<Placement<2>>> {
         // A clip around everything takes nothing away from what an element is.
-        let whole = if item.is_cut { item.painted.outline() } else { item.outline.clone() };
-        let (source, transform) = self.stated(item, &whole).or_else(|| self.alike(item, &whole, names))?;
-        Some(Placement { source, transform, control: Vec::new(), frozen: None })
+        let whole = if item.is_cut { item.painted.outline(budget)? } else { item.outline.clone() };
+        let found = match self.stated(item, &whole) {
+            Some(stated) => Some(stated),
+            None => self.alike(item, &whole, names, budget)?,
+        };
+        Ok(found.map(|(source, transform)| Placement { source, transform, control: Vec::new(), frozen: None }))
     }
 
     /// The element that a copy says it is: by its transform when its painted area then lies where it should, else by
@@ -275,8 +286,15 @@ impl<'d> Matcher<'d> {
     }
 
     /// The element that looks most like the item.
-    fn alike(&self, item: &Item, whole: &Outline<2>, names: &[String]) -> Option<(usize, Similarity<2>)> {
-        let signature = Signature::new(whole)?;
+    fn alike(
+        &self,
+        item: &Item,
+        whole: &Outline<2>,
+        names: &[String],
+        budget: &Budget,
+    ) -> Result<Option<(usize, Similarity<2>)>> {
+        let Some(signature) = Signature::new(whole) else { return Ok(None) };
+        budget.spend(LOOK * self.elements.len() as u64 * (1 + names.len() as u64))?;
         let colour = item.painted.colour();
         let named = |e: &Element<2>| names.iter().any(|n| n == self.class_names[e.class]);
         let any_named = self.elements.iter().any(named);
@@ -287,13 +305,14 @@ impl<'d> Matcher<'d> {
             if (any_named && !named(element)) || paint > COLOUR || !own.may_match(&signature) {
                 continue;
             }
+            budget.spend(FIT)?;
             let fit = own.fit(&signature);
             let off = fit.distance + 0.1 * paint + 0.05 * fit.pose.scale.ln().abs();
             if fit.distance <= 1.5 * WOBBLE && best.is_none_or(|(least, ..)| off < least) {
                 best = Some((off, i, fit.pose));
             }
         }
-        best.map(|(_, i, pose)| (i, pose))
+        Ok(best.map(|(_, i, pose)| (i, pose)))
     }
 }
 

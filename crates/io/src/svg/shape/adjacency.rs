@@ -1,35 +1,49 @@
 //! Which things touch: sweeps over boxes, and edges that meet.
 
-use arabesque_core::{Bounds, Segment, Vector, segment};
+use arabesque_core::{Bounds, Budget, Result, Segment, Vector, segment};
 
 /// Calls `visit(i, j)`, i before j in the sweep, for each pair of boxes that meet once each is grown by its reach.
 /// Stops when `visit` returns `false`.
-pub(crate) fn meeting(boxes: &[Bounds<2>], reach: impl Fn(usize) -> f64, mut visit: impl FnMut(usize, usize) -> bool) {
+///
+/// # Errors
+/// As [`Budget::spend`], for the pairs that are looked at.
+pub(crate) fn meeting(
+    boxes: &[Bounds<2>],
+    reach: impl Fn(usize) -> f64,
+    budget: &Budget,
+    mut visit: impl FnMut(usize, usize) -> bool,
+) -> Result<()> {
     let grown: Vec<_> = boxes.iter().enumerate().map(|(i, b)| b.grown(reach(i))).collect();
     let mut order: Vec<usize> = (0..boxes.len()).filter(|&i| !boxes[i].is_empty()).collect();
     order.sort_by(|&a, &b| grown[a].min[0].total_cmp(&grown[b].min[0]));
     let mut active: Vec<usize> = Vec::new();
+    let mut meter = budget.meter();
     for &i in &order {
         active.retain(|&j| grown[j].max[0] >= grown[i].min[0]);
+        meter.spend(PAIR * (1 + active.len() as u64))?;
         for &j in &active {
             if grown[j].intersects(&grown[i]) && !visit(j, i) {
-                return;
+                return Ok(());
             }
         }
         active.push(i);
     }
+    Ok(())
 }
+
+/// Work for each pair of boxes, and of edges.
+const PAIR: u64 = 5;
 
 /// An edge between two points.
 pub(crate) type Edge = Segment<2>;
 
 /// How many pairs of edges may still be looked at.
 #[derive(Debug)]
-pub(crate) struct Budget(pub(crate) u64);
+pub(crate) struct Looks(pub(crate) u64);
 
-impl Budget {
+impl Looks {
     /// Whether `test` holds for an edge of `a` and one of `b` whose boxes come within `tolerance` of those of the other
-    /// side; `None` when the budget is spent.
+    /// side; `None` when none is left.
     pub(crate) fn any(
         &mut self,
         a: &[Edge],
@@ -49,9 +63,9 @@ impl Budget {
     }
 }
 
-/// Whether an edge of `a` comes within `tolerance` of an edge of `b`; `None` when the budget is spent.
-pub(crate) fn edges_meet(a: &[Edge], b: &[Edge], tolerance: f64, budget: &mut Budget) -> Option<bool> {
-    budget.any(a, b, tolerance, |p, q| edge_distance(p, q) <= tolerance)
+/// Whether an edge of `a` comes within `tolerance` of an edge of `b`; `None` when no look is left.
+pub(crate) fn edges_meet(a: &[Edge], b: &[Edge], tolerance: f64, looks: &mut Looks) -> Option<bool> {
+    looks.any(a, b, tolerance, |p, q| edge_distance(p, q) <= tolerance)
 }
 
 /// Distance between two edges.
@@ -89,21 +103,23 @@ mod tests {
         meeting(
             &boxes,
             |_| 0.3,
+            &Budget::default(),
             |i, j| {
                 pairs.push((i, j));
                 true
             },
-        );
+        )
+        .unwrap();
         assert_eq!(pairs, [(0, 1), (1, 2), (2, 3), (3, 4)]);
     }
 
     #[test]
     fn squares_meet_within_the_tolerance() {
         let (a, b) = (edges(&square(0.0, 0.0, 1.0)), edges(&square(1.1, 0.0, 1.0)));
-        let mut budget = Budget(1000);
-        assert_eq!(edges_meet(&a, &b, 0.2, &mut budget), Some(true));
-        assert_eq!(edges_meet(&a, &b, 0.05, &mut budget), Some(false));
-        assert_eq!(edges_meet(&a, &edges(&square(0.5, 0.5, 1.0)), 0.0, &mut budget), Some(true));
-        assert_eq!(edges_meet(&a, &a, 0.0, &mut Budget(9)), None);
+        let mut looks = Looks(1000);
+        assert_eq!(edges_meet(&a, &b, 0.2, &mut looks), Some(true));
+        assert_eq!(edges_meet(&a, &b, 0.05, &mut looks), Some(false));
+        assert_eq!(edges_meet(&a, &edges(&square(0.5, 0.5, 1.0)), 0.0, &mut looks), Some(true));
+        assert_eq!(edges_meet(&a, &a, 0.0, &mut Looks(9)), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, DisjointSets, Vector};
+use arabesque_core::{Bounds, Budget, DisjointSets, Result, Vector};
 use kurbo::Affine;
 
 use crate::svg::{
@@ -52,7 +52,10 @@ pub(crate) fn longer(b: &Bounds<2>) -> f64 {
 }
 
 /// The boxes fall into this many sets whose gaps are wider than `share` of the smaller neighbour.
-pub(crate) fn clusters(boxes: &[Bounds<2>], share: f64) -> usize {
+///
+/// # Errors
+/// As [`Budget::spend`].
+pub(crate) fn clusters(boxes: &[Bounds<2>], share: f64, budget: &Budget) -> Result<usize> {
     let gap = |a: &Bounds<2>, b: &Bounds<2>| {
         let d = (0..2).map(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0));
         d.map(|v| v * v).sum::<f64>().sqrt()
@@ -61,14 +64,15 @@ pub(crate) fn clusters(boxes: &[Bounds<2>], share: f64) -> usize {
     meeting(
         boxes,
         |i| share * longer(&boxes[i]),
+        budget,
         |i, j| {
             if gap(&boxes[i], &boxes[j]) <= share * longer(&boxes[i]).min(longer(&boxes[j])) {
                 sets.join(i, j);
             }
             true
         },
-    );
-    sets.groups().into_iter().filter(|g| g.iter().any(|&i| !boxes[i].is_empty())).count()
+    )?;
+    Ok(sets.groups().into_iter().filter(|g| g.iter().any(|&i| !boxes[i].is_empty())).count())
 }
 
 /// The only shape inside a node.
@@ -103,9 +107,9 @@ mod tests {
     #[test]
     fn close_boxes_are_one_cluster() {
         let at = |x: f64, side: f64| Bounds::new(Vector::xy(x, 0.0), Vector::xy(x + side, side));
-        assert_eq!(clusters(&[at(0.0, 10.0), at(12.0, 10.0), at(24.0, 10.0)], 0.3), 1);
-        assert_eq!(clusters(&[at(0.0, 10.0), at(14.0, 10.0)], 0.3), 2);
-        assert_eq!(clusters(&[at(0.0, 10.0), at(12.0, 1.0)], 0.3), 2);
-        assert_eq!(clusters(&[], 0.3), 0);
+        assert_eq!(clusters(&[at(0.0, 10.0), at(12.0, 10.0), at(24.0, 10.0)], 0.3, &Budget::default()).unwrap(), 1);
+        assert_eq!(clusters(&[at(0.0, 10.0), at(14.0, 10.0)], 0.3, &Budget::default()).unwrap(), 2);
+        assert_eq!(clusters(&[at(0.0, 10.0), at(12.0, 1.0)], 0.3, &Budget::default()).unwrap(), 2);
+        assert_eq!(clusters(&[], 0.3, &Budget::default()).unwrap(), 0);
     }
 }

@@ -1,6 +1,6 @@
 //! Filled paths as polygons.
 
-use arabesque_core::{FillRule, Outline, Ring, Vector, ring};
+use arabesque_core::{Budget, FillRule, Outline, Result, Ring, Vector, ring};
 use kurbo::{Affine, BezPath, PathEl};
 
 /// Largest deviation of a flattened outline, as a share of the diagonal of its subpath.
@@ -18,26 +18,29 @@ pub(crate) fn fill_rule(name: &str) -> FillRule {
 }
 
 /// The area that a filled path covers.
-pub(crate) fn filled(path: &BezPath, world: Affine, rule: FillRule) -> Outline<2> {
-    covered(&rings(&(world * path.clone())), rule)
+///
+/// # Errors
+/// As [`Outline::try_union`].
+pub(crate) fn filled(path: &BezPath, world: Affine, rule: FillRule, budget: &Budget) -> Result<Outline<2>> {
+    covered(&rings(&(world * path.clone())), rule, budget)
 }
 
 /// The union of rings under a rule, with a short cut for one plain ring.
-pub(crate) fn covered(rings: &[Ring<2>], rule: FillRule) -> Outline<2> {
+pub(crate) fn covered(rings: &[Ring<2>], rule: FillRule, budget: &Budget) -> Result<Outline<2>> {
     match rings {
-        [] => Outline::default(),
-        [ring] if is_convex(ring) => {
+        [] => Ok(Outline::default()),
+        [ring] if ring::is_convex(ring) => {
             let mut ring = ring.clone();
             if ring::area(&ring) < 0.0 {
                 ring.reverse();
             }
-            Outline { rings: vec![ring] }
+            Ok(Outline { rings: vec![ring] })
         }
         _ if rings.iter().any(|ring| is_thin(ring)) => {
             let thick: Vec<_> = rings.iter().filter(|ring| !is_thin(ring)).cloned().collect();
-            Outline::union(&thick, rule)
+            Outline::try_union(&thick, rule, budget)
         }
-        _ => Outline::union(rings, rule),
+        _ => Outline::try_union(rings, rule, budget),
     }
 }
 
@@ -59,31 +62,11 @@ fn is_thin(ring: &[Vector<2>]) -> bool {
     across <= 1e-14 * along
 }
 
-/// Whether a ring turns one way all along, once around: then it cannot cross itself.
-fn is_convex(ring: &[Vector<2>]) -> bool {
-    let n = ring.len();
-    let edge = |k: usize| ring[(k + 1) % n] - ring[k % n];
-    let mut turned = 0.0;
-    let mut sign = 0.0;
-    for k in 0..n {
-        let (a, b) = (edge(k), edge(k + 1));
-        let cross = a.cross(b);
-        if cross * sign < 0.0 || a.norm2() == 0.0 {
-            return false;
-        }
-        if cross != 0.0 {
-            sign = cross.signum();
-        }
-        turned += cross.atan2(a.dot(b));
-    }
-    n >= 3 && (turned.abs() - std::f64::consts::TAU).abs() < 1e-6
-}
-
 /// The area of a domain, whose border is drawn as it is and must not show its edges.
-pub(crate) fn filled_finely(path: &BezPath, rule: FillRule) -> Outline<2> {
+pub(crate) fn filled_finely(path: &BezPath, rule: FillRule, budget: &Budget) -> Result<Outline<2>> {
     let fine = |elements: &[PathEl]| flattened_to(elements, FINE * DEVIATION);
     let rings: Vec<_> = path.subpaths().map(fine).filter(|ring| ring.len() >= 3).collect();
-    covered(&rings, rule)
+    covered(&rings, rule, budget)
 }
 
 /// The subpaths of a path as polygons, as fine as their size deserves.

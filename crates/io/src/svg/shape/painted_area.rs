@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Error, FillRule, Outline, Result, Ring};
+use arabesque_core::{Budget, Error, FillRule, Outline, Result, Ring};
 use kurbo::{Affine, Shape as _};
 
 use crate::svg::{
@@ -33,8 +33,11 @@ pub(crate) struct PaintedArea {
 
 impl PaintedArea {
     /// The covered area as disjoint polygons.
-    pub(crate) fn outline(&self) -> Outline<2> {
-        united(&self.shapes)
+    ///
+    /// # Errors
+    /// As [`Outline::try_union`].
+    pub(crate) fn outline(&self, budget: &Budget) -> Result<Outline<2>> {
+        united(&self.shapes, budget)
     }
 
     /// Mean colour by area; black where there is none.
@@ -71,10 +74,10 @@ impl PaintedArea {
         self.colours.extend(other.colours);
     }
 
-    fn clipped(self, clip: &Outline<2>) -> Self {
-        let outline = self.outline().intersection(clip);
+    fn clipped(self, clip: &Outline<2>, budget: &Budget) -> Result<Self> {
+        let outline = self.outline(budget)?.try_intersection(clip, budget)?;
         let shapes = if outline.rings.is_empty() { Vec::new() } else { vec![outline] };
-        Self { shapes, colours: self.colours }
+        Ok(Self { shapes, colours: self.colours })
     }
 }
 
@@ -83,17 +86,17 @@ const AT_ONCE: usize = 8;
 
 /// The union of shapes. Many are united by halves: where they lie on top of each other, as in blends, most borders
 /// vanish early.
-fn united(shapes: &[Outline<2>]) -> Outline<2> {
+fn united(shapes: &[Outline<2>], budget: &Budget) -> Result<Outline<2>> {
     match shapes {
-        [] => Outline::default(),
-        [one] => one.clone(),
+        [] => Ok(Outline::default()),
+        [one] => Ok(one.clone()),
         few if few.len() <= AT_ONCE => {
             let rings: Vec<_> = few.iter().flat_map(|shape| shape.rings.iter().cloned()).collect();
-            Outline::union(&rings, FillRule::NonZero)
+            Outline::try_union(&rings, FillRule::NonZero, budget)
         }
         many => {
             let (left, right) = many.split_at(many.len() / 2);
-            united(&[united(left), united(right)])
+            united(&[united(left, budget)?, united(right, budget)?], budget)
         }
     }
 }
@@ -131,7 +134,7 @@ impl<'a, 's> Painter<'a, 's> {
             Content::Shape(geometry) => self.shape(node, geometry, world, &mut own)?,
         }
         if let Some(clip) = self.clip(node, world)? {
-            own = own.clipped(&clip);
+            own = own.clipped(&clip, self.source.budget)?;
         }
         painted.append(own);
         Ok(())
@@ -143,16 +146,17 @@ impl<'a, 's> Painter<'a, 's> {
             return Ok(());
         }
         if geometry.paint == Painted::Picture {
-            painted.add(filled(&geometry.path, world, FillRule::NonZero), [0.5; 3]);
+            painted.add(filled(&geometry.path, world, FillRule::NonZero, self.source.budget)?, [0.5; 3]);
             return Ok(());
         }
         let style = &node.style;
         if style.fills() {
             let rule = fill_rule(style.get(P::FillRule));
-            painted.add(filled(&geometry.path, world, rule), colour::of_paint(self.source, style.get(P::Fill)));
+            let outline = filled(&geometry.path, world, rule, self.source.budget)?;
+            painted.add(outline, colour::of_paint(self.source, style.get(P::Fill)));
         }
         if style.strokes() {
-            let outline = stroked(node, &geometry.path, world);
+            let outline = stroked(node, &geometry.path, world, self.source.budget)?;
             painted.add(outline, colour::of_paint(self.source, style.get(P::Stroke)));
         }
         Ok(())
@@ -193,12 +197,12 @@ impl<'a, 's> Painter<'a, 's> {
         let by_viewport = match node.viewport_clip {
             Some(viewport) => {
                 self.check_extent(node, world.transform_rect_bbox(viewport), 0.0)?;
-                Some(filled(&viewport.to_path(0.1), world, FillRule::NonZero))
+                Some(filled(&viewport.to_path(0.1), world, FillRule::NonZero, self.source.budget)?)
             }
             None => None,
         };
         Ok(match (by_path, by_viewport) {
-            (Some(a), Some(b)) => Some(a.intersection(&b)),
+            (Some(a), Some(b)) => Some(a.try_intersection(&b, self.source.budget)?),
             (a, b) => a.or(b),
         })
     }
@@ -221,11 +225,14 @@ impl<'a, 's> Painter<'a, 's> {
         for child in clip.children() {
             self.clip_rings(child, space * clip.transform, &mut rings)?;
         }
-        let area = Outline::union(&rings, FillRule::NonZero);
+        let area = Outline::try_union(&rings, FillRule::NonZero, self.source.budget)?;
         match clip.own.get("clip-path").and_then(reference) {
             Some(Ok((outer, _))) => {
                 let outer = self.clip_area(outer, node, world, nested + 1)?;
-                Ok(Some(outer.map_or_else(|| area.clone(), |o| area.intersection(&o))))
+                match outer {
+                    Some(outer) => Ok(Some(area.try_intersection(&outer, self.source.budget)?)),
+                    None => Ok(Some(area)),
+                }
             }
             _ => Ok(Some(area)),
         }
@@ -235,7 +242,8 @@ impl<'a, 's> Painter<'a, 's> {
         let world = parent * node.transform;
         if let (Content::Shape(geometry), false) = (&node.content, flattens(world)) {
             self.check(node, geometry, world)?;
-            rings.extend(filled(&geometry.path, world, fill_rule(node.style.get(P::ClipRule))).rings);
+            let rule = fill_rule(node.style.get(P::ClipRule));
+            rings.extend(filled(&geometry.path, world, rule, self.source.budget)?.rings);
         }
         node.children().iter().try_for_each(|child| self.clip_rings(child, world, rings))
     }
@@ -287,7 +295,7 @@ mod tests {
         let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{svg}</svg>");
         with_source(&text, &ReadOptions::new("i.svg"), |source| {
             let root = scene::build(source, Viewport { width: 100.0, height: 100.0 })?;
-            Ok(Painter::new(source).painted(&root, Affine::IDENTITY)?.outline().area())
+            Ok(Painter::new(source).painted(&root, Affine::IDENTITY)?.outline(source.budget)?.area())
         })
         .unwrap()
     }

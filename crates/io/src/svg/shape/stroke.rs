@@ -1,6 +1,6 @@
 //! Strokes as areas: widths, caps, joins, dashes.
 
-use arabesque_core::{FillRule, Outline};
+use arabesque_core::{Budget, FillRule, Outline, Result};
 use kurbo::{Affine, BezPath, Cap, Join, PathEl, Shape as _, Stroke, StrokeOpts};
 
 use crate::svg::{
@@ -23,7 +23,10 @@ pub(crate) fn growth(transform: Affine) -> f64 {
 }
 
 /// The area that the stroke of a shape covers.
-pub(crate) fn stroked(node: &Node, path: &BezPath, world: Affine) -> Outline<2> {
+///
+/// # Errors
+/// As [`Outline::try_union`].
+pub(crate) fn stroked(node: &Node, path: &BezPath, world: Affine, budget: &Budget) -> Result<Outline<2>> {
     let style = &node.style;
     let width = style.number(P::StrokeWidth);
     let scale = growth(world);
@@ -41,10 +44,10 @@ pub(crate) fn stroked(node: &Node, path: &BezPath, world: Affine) -> Outline<2> 
         }
     }
     if !outline.is_finite() {
-        return Outline::default();
+        return Ok(Outline::default());
     }
     let rings = rings(&(world * outline));
-    covered(&rings, FillRule::NonZero)
+    covered(&rings, FillRule::NonZero, budget)
 }
 
 fn pen(style: &ComputedStyle, width: f64, path: &BezPath) -> Stroke {

@@ -8,12 +8,12 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Bounds, DisjointSets, Result, Vector, ring};
+use arabesque_core::{Bounds, Budget, DisjointSets, Result, Vector, ring};
 
 use crate::svg::{
     centreline::centrelines,
     shape::{
-        adjacency::{Budget, Edge, edge_distance, meeting},
+        adjacency::{Edge, Looks, edge_distance, meeting},
         painted_area::Painter,
     },
     understand::item::{Item, Kind, Origin},
@@ -21,6 +21,9 @@ use crate::svg::{
 
 /// Pairs of edges that are looked at in one file.
 const EDGE_PAIRS: u64 = 200_000_000;
+
+/// Work for each of them.
+const PAIR: u64 = 5;
 
 /// Share of the painted area of tiles that lines make up where tiles without a net are put together.
 const NEARLY_ALL: f64 = 0.9;
@@ -39,7 +42,7 @@ pub(crate) fn join_lines(
     tolerance: f64,
 ) -> Result<Vec<Item>> {
     let mut joined = Vec::with_capacity(items.len());
-    for group in abutting(&items, tolerance) {
+    for group in abutting(&items, tolerance, painter.source.budget)? {
         let tiles: Vec<Item> = group.iter().map(|&i| items[i].clone()).collect();
         match tiles.len() {
             1 => joined.extend(tiles),
@@ -52,7 +55,9 @@ pub(crate) fn join_lines(
 /// What tiles show together: one net, or, where they are taken apart, lines and other things.
 fn whole(tiles: &[Item], painter: &Painter<'_, '_>, frame: Bounds<2>, tolerance: f64) -> Result<Option<Vec<Item>>> {
     let all: Vec<usize> = (0..tiles.len()).collect();
-    if let Some(net) = lined(Item::merged(tiles, &all, frame), frame).filter(|net| net.kind == Kind::Large) {
+    let budget = painter.source.budget;
+    let merged = Item::merged(tiles, &all, frame, budget)?;
+    if let Some(net) = lined(merged, frame, budget)?.filter(|net| net.kind == Kind::Large) {
         return Ok(Some(vec![net]));
     }
     if tiles.iter().all(|tile| tile.compound.is_none()) {
@@ -62,11 +67,11 @@ fn whole(tiles: &[Item], painter: &Painter<'_, '_>, frame: Bounds<2>, tolerance:
     let (mut has_net, mut painted, mut lines) = (false, 0.0, 0.0);
     let mut found = Vec::new();
     let mut place = vec![0; items.len()];
-    for group in touching(&items, tolerance) {
+    for group in touching(&items, tolerance, budget)? {
         group.iter().for_each(|&i| place[i] = found.len());
-        let one = Item::merged(&items, &group, frame);
+        let one = Item::merged(&items, &group, frame, budget)?;
         let area = one.outline.area();
-        let item = lined(one.clone(), frame).inspect(|_| lines += area).unwrap_or(one);
+        let item = lined(one.clone(), frame, budget)?.inspect(|_| lines += area).unwrap_or(one);
         // What is not a net now is a thing of its own, and not a scrap of one.
         let origin = if item.lines.is_some() { item.origin } else { Origin::Whole };
         let item = Item { origin, ..item };
@@ -75,13 +80,16 @@ fn whole(tiles: &[Item], painter: &Painter<'_, '_>, frame: Bounds<2>, tolerance:
         found.push(item);
     }
     let homes: Vec<_> = homes.into_iter().map(|(i, home)| (place[i], place[home])).collect();
-    Ok((has_net || lines >= NEARLY_ALL * painted).then(|| nested(&found, &homes, frame)))
+    if has_net || lines >= NEARLY_ALL * painted {
+        return Ok(Some(nested(&found, &homes, frame, budget)?));
+    }
+    Ok(None)
 }
 
 /// An item with its lines; `None` where it is not a set of lines of one width.
-fn lined(item: Item, frame: Bounds<2>) -> Option<Item> {
-    let lines = centrelines(&item.outline, Some(&frame))?;
-    Some(Item { lines: (item.kind == Kind::Large).then(|| Rc::new(lines)), ..item })
+fn lined(item: Item, frame: Bounds<2>, budget: &Budget) -> Result<Option<Item>> {
+    let lines = centrelines(&item.outline, Some(&frame), budget)?;
+    Ok(lines.map(|lines| Item { lines: (item.kind == Kind::Large).then(|| Rc::new(lines)), ..item }))
 }
 
 /// Tiles taken apart.
@@ -113,7 +121,7 @@ fn apart(tiles: &[Item], painter: &Painter<'_, '_>, frame: Bounds<2>) -> Result<
 }
 
 /// Joins what lies in the hole of something no larger than an element to it, or did so in a tile.
-fn nested(items: &[Item], homes: &[(usize, usize)], frame: Bounds<2>) -> Vec<Item> {
+fn nested(items: &[Item], homes: &[(usize, usize)], frame: Bounds<2>, budget: &Budget) -> Result<Vec<Item>> {
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let may_hold = |home: usize| items[home].kind == Kind::Element;
     let is_around = |home: usize, k: usize| {
@@ -125,50 +133,58 @@ fn nested(items: &[Item], homes: &[(usize, usize)], frame: Bounds<2>) -> Vec<Ite
     meeting(
         &boxes,
         |_| 0.0,
+        budget,
         |i, j| {
             if is_around(i, j) || is_around(j, i) {
                 sets.join(i, j);
             }
             true
         },
-    );
-    sets.groups().iter().map(|group| Item::merged(items, group, frame)).collect()
+    )?;
+    sets.groups().iter().map(|group| Item::merged(items, group, frame, budget)).collect()
 }
 
 /// Items in groups that seams connect.
-fn abutting(items: &[Item], tolerance: f64) -> Vec<Vec<usize>> {
-    grouped(items, tolerance, |p, q| is_seam(p, q, tolerance))
+fn abutting(items: &[Item], tolerance: f64, budget: &Budget) -> Result<Vec<Vec<usize>>> {
+    grouped(items, tolerance, budget, |p, q| is_seam(p, q, tolerance))
 }
 
 /// Items in groups whose borders meet.
-fn touching(items: &[Item], tolerance: f64) -> Vec<Vec<usize>> {
-    grouped(items, tolerance, |p, q| edge_distance(p, q) <= tolerance)
+fn touching(items: &[Item], tolerance: f64, budget: &Budget) -> Result<Vec<Vec<usize>>> {
+    grouped(items, tolerance, budget, |p, q| edge_distance(p, q) <= tolerance)
 }
 
 /// Fills of one colour in groups, connected where a test holds for an edge of either.
-fn grouped(items: &[Item], tolerance: f64, test: impl Fn(Edge, Edge) -> bool) -> Vec<Vec<usize>> {
+fn grouped(
+    items: &[Item],
+    tolerance: f64,
+    budget: &Budget,
+    test: impl Fn(Edge, Edge) -> bool,
+) -> Result<Vec<Vec<usize>>> {
     let is_fill = |item: &Item| matches!(item.origin, Origin::Fill | Origin::Piece) && item.kind != Kind::Curve;
     let colours: Vec<String> = items.iter().map(|item| item.painted.colours_key()).collect();
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
     let mut sets = DisjointSets::new(items.len());
-    let mut budget = Budget(EDGE_PAIRS);
+    let mut looks = Looks(EDGE_PAIRS);
     meeting(
         &boxes,
         |_| 0.5 * tolerance,
+        budget,
         |i, j| {
             let alike = is_fill(&items[i]) && is_fill(&items[j]) && colours[i] == colours[j];
             if !alike || sets.of(i) == sets.of(j) {
                 return true;
             }
-            let meets = budget.any(&edges[i], &edges[j], tolerance, &test);
+            let meets = looks.any(&edges[i], &edges[j], tolerance, &test);
             if meets == Some(true) {
                 sets.join(i, j);
             }
             meets.is_some()
         },
-    );
-    sets.groups()
+    )?;
+    budget.spend(PAIR * (EDGE_PAIRS - looks.0))?;
+    Ok(sets.groups())
 }
 
 /// Whether two edges run along one another, each with the inside on the other side.

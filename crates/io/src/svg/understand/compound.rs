@@ -56,7 +56,7 @@ impl Compound {
             return Ok(None);
         }
         let rule = flatten::fill_rule(leaf.style.get(P::FillRule));
-        let Some(pieces) = pieces::pieces(&geometry.path, rule) else {
+        let Some(pieces) = pieces::pieces(&geometry.path, rule, painter.source.budget)? else {
             painter.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
             return Ok(None);
         };
@@ -114,7 +114,10 @@ fn unwrap(
     loop {
         world *= at.transform;
         if let Some(clip) = painter.clip(at, world)? {
-            let both = inside.clip.as_ref().map_or_else(|| clip.clone(), |outer| outer.intersection(&clip));
+            let both = match &inside.clip {
+                Some(outer) => outer.try_intersection(&clip, painter.source.budget)?,
+                None => clip,
+            };
             inside.clip = Some(Rc::new(both));
         }
         if Rc::ptr_eq(at, leaf) {

@@ -126,7 +126,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         let world = at.parent * node.transform;
         let opacity = at.opacity * node.own.get("opacity").map_or(1.0, fraction);
         let clip = match (&at.clip, self.painter.clip(node, world)?) {
-            (Some(a), Some(b)) => Some(Rc::new(a.intersection(&b))),
+            (Some(a), Some(b)) => Some(Rc::new(a.try_intersection(&b, self.painter.source.budget)?)),
             (a, b) => b.map(Rc::new).or_else(|| a.clone()),
         };
         let inside = Inside { parent: world, opacity, clip };

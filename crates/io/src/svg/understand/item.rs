@@ -3,7 +3,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, FillRule, Outline, Result};
+use arabesque_core::{Bounds, Budget, FillRule, Outline, Result};
 use kurbo::Affine;
 
 use crate::svg::{
@@ -75,13 +75,14 @@ impl Item {
         kind: Kind,
         origin: Origin,
     ) -> Result<Option<Self>> {
+        let budget = painter.source.budget;
         let painted = painter.painted(node, at.parent)?;
         let mut item = Self {
             parts: vec![(at.parent, Rc::clone(node))],
             meta: named(node),
             layer: at.layer.clone(),
             opacity: at.opacity,
-            outline: painted.outline(),
+            outline: painted.outline(budget)?,
             painted,
             kind,
             origin,
@@ -92,7 +93,7 @@ impl Item {
         };
         if let Some(clip) = &at.clip {
             let before = item.outline.area();
-            item.outline = item.outline.intersection(clip);
+            item.outline = item.outline.try_intersection(clip, budget)?;
             item.is_cut = item.outline.area() < 0.999 * before;
         }
         let is_seen = !item.outline.rings.is_empty() && longer(&item.outline.bounds()) > painter.source.limits.extent;
@@ -121,10 +122,13 @@ impl Item {
     }
 
     /// The items of a group as one.
-    pub(crate) fn merged(items: &[Self], group: &[usize], frame: Bounds<2>) -> Self {
+    ///
+    /// # Errors
+    /// As [`Outline::try_union`].
+    pub(crate) fn merged(items: &[Self], group: &[usize], frame: Bounds<2>, budget: &Budget) -> Result<Self> {
         let mut all = items[group[0]].clone();
         if group.len() == 1 {
-            return all;
+            return Ok(all);
         }
         for &i in &group[1..] {
             all.parts.extend(items[i].parts.iter().map(|(t, n)| (*t, Rc::clone(n))));
@@ -133,7 +137,7 @@ impl Item {
         }
         all.compound = None;
         let rings: Vec<_> = group.iter().flat_map(|&i| items[i].outline.rings.iter().cloned()).collect();
-        all.outline = Outline::union(&rings, FillRule::NonZero);
+        all.outline = Outline::try_union(&rings, FillRule::NonZero, budget)?;
         let strokes = group.iter().any(|&i| items[i].kind == Kind::Curve);
         let large = all.outline.bounds().measure() >= 0.5 * frame.measure();
         all.kind = match (strokes, large) {
@@ -141,7 +145,7 @@ impl Item {
             (false, true) => Kind::Large,
             (false, false) => Kind::Element,
         };
-        all
+        Ok(all)
     }
 
     /// What messages call it: its label or id, else its place in the file.

@@ -6,7 +6,7 @@ use crate::svg::{
     options::Method,
     parse::notes::Note,
     shape::{
-        adjacency::{Budget, Edge, edges_meet, meeting},
+        adjacency::{Edge, Looks, edges_meet, meeting},
         extent::longer,
         painted_area::Painter,
     },
@@ -18,6 +18,9 @@ use crate::svg::{
 
 /// Pairs of edges that are looked at in one file.
 const EDGE_PAIRS: u64 = 200_000_000;
+
+/// Work for each of them.
+const PAIR: u64 = 5;
 
 /// Gap that still counts as touching, as a share of the frame.
 const SEAM: f64 = 2e-4;
@@ -38,8 +41,9 @@ pub(crate) fn join(found: Selection, painter: &Painter<'_, '_>, frame: Bounds<2>
         (!is_done && pieces) || (method == Method::Elements && loose && (a == Origin::Stroke || b == Origin::Stroke))
     };
     let items = if items.iter().any(|item| matches!(item.origin, Origin::Piece | Origin::Stroke)) {
-        let groups = connected(&items, may_join, tolerance, painter);
-        groups.into_iter().map(|group| Item::merged(&items, &group, frame)).collect()
+        let groups = connected(&items, may_join, tolerance, painter)?;
+        let merged = |group: Vec<usize>| Item::merged(&items, &group, frame, painter.source.budget);
+        groups.into_iter().map(merged).collect::<Result<_>>()?
     } else {
         items
     };
@@ -51,19 +55,20 @@ fn connected(
     may_join: impl Fn(usize, usize) -> bool,
     tolerance: f64,
     painter: &Painter<'_, '_>,
-) -> Vec<Vec<usize>> {
+) -> Result<Vec<Vec<usize>>> {
     let boxes: Vec<_> = items.iter().map(|item| item.outline.bounds()).collect();
     let edges: Vec<Vec<Edge>> = items.iter().map(|item| item.outline.edges().collect()).collect();
     let mut sets = DisjointSets::new(items.len());
-    let mut budget = Budget(EDGE_PAIRS);
+    let mut looks = Looks(EDGE_PAIRS);
     meeting(
         &boxes,
         |_| 0.5 * tolerance,
+        painter.source.budget,
         |i, j| {
             if !may_join(i, j) || sets.of(i) == sets.of(j) {
                 return true;
             }
-            let meets = edges_meet(&edges[i], &edges[j], tolerance, &mut budget);
+            let meets = edges_meet(&edges[i], &edges[j], tolerance, &mut looks);
             let inside = |a: &Item, b: &Item| a.outline.points().next().is_some_and(|p| b.outline.contains(p));
             match meets {
                 Some(true) => sets.join(i, j),
@@ -73,6 +78,7 @@ fn connected(
             }
             meets.is_some()
         },
-    );
-    sets.groups()
+    )?;
+    painter.source.budget.spend(PAIR * (EDGE_PAIRS - looks.0))?;
+    Ok(sets.groups())
 }

@@ -23,18 +23,18 @@ use crate::svg::{
 pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>) -> Result<()> {
     let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
-        if follow(source, item, window) {
+        if follow(source, item, window)? {
             paints.insert(item.painted.colours_key());
         }
     }
     // Smaller pieces of the same paint are parts of the same net.
     for item in items.iter_mut().filter(|item| item.kind == Kind::Element && item.origin != Origin::Whole) {
         if paints.contains(&item.painted.colours_key()) && is_plain_fill(item) {
-            follow(source, item, window);
+            follow(source, item, window)?;
         }
     }
     for item in items.iter_mut().filter(|item| item.kind == Kind::Curve && is_plain_fill(item)) {
-        if !follow(source, item, window) {
+        if !follow(source, item, window)? {
             return Err(Error::Unsupported {
                 what: format!(
                     "{}: {}, filled and marked as a curve but not the outline of lines of one width",
@@ -49,15 +49,15 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
 }
 
 /// Makes an item a curve where it is the outline of lines.
-fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> bool {
+fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> Result<bool> {
     if item.lines.is_none() {
-        item.lines = centrelines(&item.outline, Some(window)).map(Rc::new);
+        item.lines = centrelines(&item.outline, Some(window), source.budget)?.map(Rc::new);
     }
     if item.lines.is_some() {
         item.kind = Kind::Curve;
         source.notes.add(Note::Traced, || item.name(source));
     }
-    item.lines.is_some()
+    Ok(item.lines.is_some())
 }
 
 /// Whether everything in an item is filled, and nothing has a stroke.

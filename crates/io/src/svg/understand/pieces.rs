@@ -3,16 +3,19 @@
 //! Subpaths whose borders meet belong together; so does a subpath that lies in the filled area of others. What lies in
 //! a hole is a piece of its own, and knows the piece that it lies in.
 
-use arabesque_core::{Bounds, DisjointSets, FillRule, Ring, ring};
+use arabesque_core::{Bounds, Budget, DisjointSets, FillRule, Result, Ring, ring};
 use kurbo::{BezPath, PathEl};
 
 use crate::svg::shape::{
-    adjacency::{Budget, Edge, edges_meet, meeting},
+    adjacency::{Edge, Looks, edges_meet, meeting},
     flatten::flattened,
 };
 
 /// Pairs of edges that are looked at in one path.
 const EDGE_PAIRS: u64 = 50_000_000;
+
+/// Work for each pair of edges, and for each edge that a point is compared with.
+const PAIR: u64 = 5;
 
 /// A connected part of a compound path.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,19 +28,23 @@ pub(crate) struct Piece {
 
 /// The pieces of a path filled under `rule`, in the order of their first subpaths; `None` when it is too tangled to
 /// take apart.
-pub(crate) fn pieces(path: &BezPath, rule: FillRule) -> Option<Vec<Piece>> {
+///
+/// # Errors
+/// As [`Budget::spend`].
+pub(crate) fn pieces(path: &BezPath, rule: FillRule, budget: &Budget) -> Result<Option<Vec<Piece>>> {
     let rings: Vec<Ring<2>> = path.subpaths().map(flattened).collect();
     let boxes: Vec<_> = rings.iter().map(|r| Bounds::around(r.iter().copied())).collect();
     let outlines: Vec<Vec<Edge>> = rings.iter().map(|r| ring::edges(r).collect()).collect();
     let mut sets = DisjointSets::new(rings.len());
-    let mut budget = Budget(EDGE_PAIRS);
+    let mut looks = Looks(EDGE_PAIRS);
     let mut tangled = false;
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); rings.len()];
     meeting(
         &boxes,
         |_| 0.0,
+        budget,
         |i, j| {
-            match edges_meet(&outlines[i], &outlines[j], 0.0, &mut budget) {
+            match edges_meet(&outlines[i], &outlines[j], 0.0, &mut looks) {
                 Some(true) => sets.join(i, j),
                 Some(false) => {
                     // Borders that do not meet: one may lie inside the other as a whole.
@@ -51,21 +58,30 @@ pub(crate) fn pieces(path: &BezPath, rule: FillRule) -> Option<Vec<Piece>> {
             }
             !tangled
         },
-    );
+    )?;
+    budget.spend(PAIR * (EDGE_PAIRS - looks.0))?;
     if tangled {
-        return None;
+        return Ok(None);
     }
-    let homes = nest(&rings, &around, rule, &mut sets);
-    Some(gather(sets, &homes))
+    let homes = nest(&rings, &around, rule, &mut sets, budget)?;
+    Ok(Some(gather(sets, &homes)))
 }
 
 /// Joins each ring that lies in a filled area to that area. Returns for every ring in a hole the innermost ring around
 /// it.
-fn nest(rings: &[Ring<2>], around: &[Vec<usize>], rule: FillRule, sets: &mut DisjointSets) -> Vec<Option<usize>> {
+fn nest(
+    rings: &[Ring<2>],
+    around: &[Vec<usize>],
+    rule: FillRule,
+    sets: &mut DisjointSets,
+    budget: &Budget,
+) -> Result<Vec<Option<usize>>> {
+    let mut meter = budget.meter();
     let areas: Vec<f64> = rings.iter().map(|r| ring::area(r).abs()).collect();
     let mut homes = vec![None; rings.len()];
     for (inner, points) in rings.iter().enumerate() {
         let Some(&p) = points.first() else { continue };
+        meter.spend(PAIR * around[inner].iter().map(|&o| rings[o].len() as u64).sum::<u64>())?;
         let turns: Vec<(usize, i32)> =
             around[inner].iter().map(|&o| (o, ring::winding(&rings[o], p))).filter(|(_, w)| *w != 0).collect();
         let Some(&(nearest, _)) = turns.iter().min_by(|a, b| areas[a.0].total_cmp(&areas[b.0]).then(a.0.cmp(&b.0)))
@@ -83,7 +99,7 @@ fn nest(rings: &[Ring<2>], around: &[Vec<usize>], rule: FillRule, sets: &mut Dis
             homes[inner] = Some(nearest);
         }
     }
-    homes
+    Ok(homes)
 }
 
 fn gather(sets: DisjointSets, homes: &[Option<usize>]) -> Vec<Piece> {
@@ -109,7 +125,7 @@ mod tests {
 
     fn split(data: &str, rule: FillRule) -> Vec<(Vec<usize>, Option<usize>)> {
         let path = BezPath::from_svg(data).unwrap();
-        pieces(&path, rule).unwrap().into_iter().map(|p| (p.subpaths, p.within)).collect()
+        pieces(&path, rule, &Budget::default()).unwrap().unwrap().into_iter().map(|p| (p.subpaths, p.within)).collect()
     }
 
     #[test]

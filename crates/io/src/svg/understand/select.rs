@@ -14,7 +14,7 @@
 
 use std::rc::Rc;
 
-use arabesque_core::{Bounds, DisjointSets, FillRule, Outline, Result, ring};
+use arabesque_core::{Bounds, Budget, DisjointSets, FillRule, Outline, Result, ring};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
@@ -75,7 +75,11 @@ pub(crate) fn select(
             [one] if one.origin == Origin::Whole && one.meta.mark.is_none() && one.meta.tag != "use" => Some(one),
             _ => None,
         };
-        match lonely.filter(|one| is_spread(&one.parts)).map(|one| one.meta.xml) {
+        let spread = match lonely {
+            Some(one) if is_spread(&one.parts, painter.source.budget)? => Some(one.meta.xml),
+            _ => None,
+        };
+        match spread {
             Some(id) if !opened.contains(&id) => opened.push(id),
             _ => {
                 if method == Method::Auto {
@@ -102,12 +106,12 @@ fn is_all_strokes(node: &Node) -> bool {
     }
 }
 
-fn is_spread(parts: &[(Affine, Rc<Node>)]) -> bool {
+fn is_spread(parts: &[(Affine, Rc<Node>)], budget: &Budget) -> Result<bool> {
     let boxes = parts.iter().flat_map(|(parent, node)| {
         let world = *parent * node.transform;
         node.children().iter().map(move |child| bounds(child, world))
     });
-    clusters(&boxes.collect::<Vec<_>>(), GAP) > 1
+    Ok(clusters(&boxes.collect::<Vec<_>>(), GAP, budget)? > 1)
 }
 
 impl Selector<'_, '_, '_> {
@@ -120,7 +124,7 @@ impl Selector<'_, '_, '_> {
         let world = at.parent * node.transform;
         let clip = self.painter.clip(node, world)?;
         let clip = match (&at.clip, clip) {
-            (Some(a), Some(b)) => Some(Rc::new(a.intersection(&b))),
+            (Some(a), Some(b)) => Some(Rc::new(a.try_intersection(&b, self.painter.source.budget)?)),
             (a, b) => b.map(Rc::new).or_else(|| a.clone()),
         };
         let opacity = at.opacity * node.own.get("opacity").map_or(1.0, fraction);
@@ -162,7 +166,7 @@ impl Selector<'_, '_, '_> {
         if self.method == Method::Curves && is_all_strokes(node) {
             return self.open(node, at);
         }
-        if self.is_container(node, &extent, at) {
+        if self.is_container(node, &extent, at)? {
             return self.open(node, at);
         }
         self.take(node, at, Kind::Element, Origin::Whole)
@@ -178,17 +182,17 @@ impl Selector<'_, '_, '_> {
         Ok(extent)
     }
 
-    fn is_container(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Surroundings) -> bool {
+    fn is_container(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Surroundings) -> Result<bool> {
         let share = self.share(extent);
         if share >= HALF {
-            return true;
+            return Ok(true);
         }
         if node.meta.tag == "use" || share < ROOMY {
-            return false;
+            return Ok(false);
         }
         let world = at.parent * node.transform;
         let boxes: Vec<_> = node.children().iter().map(|child| bounds(child, world)).collect();
-        clusters(&boxes, GAP) >= 4
+        Ok(clusters(&boxes, GAP, self.painter.source.budget)? >= 4)
     }
 
     /// Takes a node as a whole.
@@ -215,7 +219,9 @@ impl Selector<'_, '_, '_> {
                 Painted::Style => Compound::new(self.painter, node, only, at)?.map(Rc::new),
                 Painted::Picture => None,
             };
-            if let Some(compound) = compound.as_ref().filter(|compound| !self.is_compact(compound)) {
+            if let Some(compound) = &compound
+                && !self.is_compact(compound)?
+            {
                 return self.split(compound);
             }
             let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
@@ -223,7 +229,7 @@ impl Selector<'_, '_, '_> {
             self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
             return Ok(());
         }
-        if closed && self.is_frame(leaf, geometry, world) {
+        if closed && self.is_frame(leaf, geometry, world)? {
             self.painter.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
             return Ok(());
         }
@@ -233,12 +239,14 @@ impl Selector<'_, '_, '_> {
     }
 
     /// Whether a stroke encloses nearly the whole frame and hardly more.
-    fn is_frame(&self, leaf: &Node, geometry: &Geometry, world: Affine) -> bool {
+    fn is_frame(&self, leaf: &Node, geometry: &Geometry, world: Affine) -> Result<bool> {
         let extent = bounds(leaf, world * leaf.transform.inverse());
         let near = 0.04 * longer(&self.frame);
         let close = |a: f64, b: f64| (a - b).abs() < near;
         let along = (0..2).all(|k| close(extent.min[k], self.frame.min[k]) && close(extent.max[k], self.frame.max[k]));
-        along && flatten::filled(&geometry.path, world, FillRule::NonZero).area() >= 0.85 * self.frame.measure()
+        let budget = self.painter.source.budget;
+        let area = || Ok(flatten::filled(&geometry.path, world, FillRule::NonZero, budget)?.area());
+        Ok(along && area()? >= 0.85 * self.frame.measure())
     }
 
     fn covers_frame(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Surroundings) -> Result<bool> {
@@ -250,7 +258,9 @@ impl Selector<'_, '_, '_> {
         }
         let (a, b) = (self.frame.min, self.frame.max);
         let corners = vec![a, arabesque_core::Vector::xy(b[0], a[1]), b, arabesque_core::Vector::xy(a[0], b[1])];
-        let outline = self.painter.painted(node, at.parent)?.outline().intersection(&Outline { rings: vec![corners] });
+        let budget = self.painter.source.budget;
+        let painted = self.painter.painted(node, at.parent)?.outline(budget)?;
+        let outline = painted.try_intersection(&Outline { rings: vec![corners] }, budget)?;
         Ok(outline.area() >= COVER * self.frame.measure())
     }
 
@@ -269,9 +279,9 @@ impl Selector<'_, '_, '_> {
         Ok(())
     }
 
-    fn is_compact(&self, compound: &Compound) -> bool {
+    fn is_compact(&self, compound: &Compound) -> Result<bool> {
         let all = compound.boxes.iter().fold(Bounds::EMPTY, |all, b| all.union(b));
-        self.share(&all) < ROOMY && clusters(&compound.boxes, GAP) == 1
+        Ok(self.share(&all) < ROOMY && clusters(&compound.boxes, GAP, self.painter.source.budget)? == 1)
     }
 }
 

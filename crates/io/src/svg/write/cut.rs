@@ -1,12 +1,13 @@
 //! Cutting painted paths at the border of the domain.
 
-use arabesque_core::{FillRule, Outline, Ring, Shape, Vector, segment};
+use arabesque_core::{Bounds, Budget, FillRule, Outline, Region, Result, Ring, Segment, Shape, Vector, ring, segment};
 use kurbo::{BezPath, PathEl};
 
 /// The border that elements are cut at.
 pub(crate) struct Cutter {
     shape: Shape,
     tolerance: f64,
+    budget: Budget,
 }
 
 /// What is left of a path.
@@ -20,90 +21,74 @@ pub(crate) enum Remainder {
     Part(BezPath),
 }
 
+/// Work for each piece of a line and each edge of the border near it.
+const PER_EDGE: u64 = 4;
+
 /// Areas that differ by less than this share are the same: polygon operations round to a fine grid.
 const SAME_AREA: f64 = 1e-5;
 
 impl Cutter {
     /// A cutter along `outline`; curves are replaced by chords within `tolerance`. `None` when it encloses no area.
-    pub(crate) fn new(outline: &Outline<2>, tolerance: f64) -> Option<Self> {
-        Some(Self { shape: Shape::from_outline(outline.clone())?, tolerance })
+    ///
+    /// # Errors
+    /// As [`Shape::try_from_outline`].
+    pub(crate) fn new(outline: &Outline<2>, tolerance: f64, budget: &Budget) -> Result<Option<Self>> {
+        let shape = Shape::try_from_outline(outline.clone(), budget)?;
+        Ok(shape.map(|shape| Self { shape, tolerance, budget: budget.clone() }))
     }
 
     /// Whether everything within `radius` of `centre` is inside.
     pub(crate) fn spares(&self, centre: Vector<2>, radius: f64) -> bool {
-        use arabesque_core::Region;
         self.shape.signed_distance(centre) >= radius
     }
 
     /// The inside part of a filled path.
-    pub(crate) fn fill(&self, path: &BezPath, rule: FillRule) -> Remainder {
+    ///
+    /// # Errors
+    /// As [`Outline::try_union`].
+    pub(crate) fn fill(&self, path: &BezPath, rule: FillRule) -> Result<Remainder> {
         let rings: Vec<Ring<2>> = self.polylines(path).into_iter().map(|(points, _)| points).collect();
-        let area = Outline::union(&rings, rule);
-        let inside = area.intersection(self.shape.outline());
+        let area = Outline::try_union(&rings, rule, &self.budget)?;
+        let inside = area.try_intersection(self.shape.outline(), &self.budget)?;
         if inside.rings.is_empty() {
-            return Remainder::Nothing;
+            return Ok(Remainder::Nothing);
         }
         if (inside.area() - area.area()).abs() <= SAME_AREA * area.area() {
-            return Remainder::Everything;
+            return Ok(Remainder::Everything);
         }
         let mut part = BezPath::new();
         for ring in &inside.rings {
             append(&mut part, ring, true);
         }
-        Remainder::Part(part)
+        Ok(Remainder::Part(part))
     }
 
     /// The inside part of the line of a path.
-    pub(crate) fn stroke(&self, path: &BezPath) -> Remainder {
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub(crate) fn stroke(&self, path: &BezPath) -> Result<Remainder> {
         let (mut part, mut whole) = (BezPath::new(), true);
-        for (mut points, closed) in self.polylines(path) {
+        let lines = self.polylines(path);
+        let extent = Bounds::around(lines.iter().flat_map(|(points, _)| points.iter().copied()));
+        let border: Vec<_> = self.shape.outline().near(&extent).edges().collect();
+        let pieces: usize = lines.iter().map(|(points, _)| points.len()).sum();
+        self.budget.spend(PER_EDGE * (self.shape.outline().rings.iter().map(Vec::len).sum::<usize>()) as u64)?;
+        let mut meter = self.budget.meter();
+        (0..pieces).try_for_each(|_| meter.spend(PER_EDGE * border.len() as u64))?;
+        for (mut points, closed) in lines {
             if closed && let Some(&first) = points.first() {
                 points.push(first);
             }
-            for run in self.runs(&points, &mut whole) {
+            for run in runs(&points, &border, &mut whole) {
                 append(&mut part, &run, false);
             }
         }
-        match (whole, part.is_empty()) {
+        Ok(match (whole, part.is_empty()) {
             (true, _) => Remainder::Everything,
             (false, true) => Remainder::Nothing,
             (false, false) => Remainder::Part(part),
-        }
-    }
-
-    /// The inside stretches of a polyline; `whole` becomes false when something is left out.
-    fn runs(&self, points: &[Vector<2>], whole: &mut bool) -> Vec<Vec<Vector<2>>> {
-        let (mut runs, mut run) = (Vec::new(), Vec::<Vector<2>>::new());
-        for pair in points.windows(2) {
-            let (a, b) = (pair[0], pair[1]);
-            let mut cuts = self.crossings(a, b);
-            cuts.extend([0.0, 1.0]);
-            cuts.sort_by(f64::total_cmp);
-            for span in cuts.windows(2).filter(|s| s[1] > s[0]) {
-                let at = |t: f64| a + (b - a) * t;
-                if self.shape.outline().contains(at(0.5 * (span[0] + span[1]))) {
-                    if run.is_empty() {
-                        run.push(at(span[0]));
-                    }
-                    run.push(at(span[1]));
-                } else {
-                    *whole = false;
-                    runs.extend((run.len() > 1).then(|| std::mem::take(&mut run)));
-                    run.clear();
-                }
-            }
-        }
-        runs.extend((run.len() > 1).then_some(run));
-        runs
-    }
-
-    /// Where the segment from `a` to `b` crosses the border, as shares of it.
-    fn crossings(&self, a: Vector<2>, b: Vector<2>) -> Vec<f64> {
-        let share = |edge| {
-            let [t, u] = segment::crossing((a, b), edge)?;
-            (t > 0.0 && t < 1.0 && (0.0..=1.0).contains(&u)).then_some(t)
-        };
-        self.shape.outline().edges().filter_map(share).collect()
+        })
     }
 
     /// The subpaths as polylines, and whether each is closed.
@@ -118,6 +103,41 @@ impl Cutter {
         lines.retain(|(points, _)| points.len() > 1);
         lines
     }
+}
+
+/// The inside stretches of a polyline; `whole` becomes false when something is left out.
+fn runs(points: &[Vector<2>], border: &[Segment<2>], whole: &mut bool) -> Vec<Vec<Vector<2>>> {
+    let (mut runs, mut run) = (Vec::new(), Vec::<Vector<2>>::new());
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let mut cuts = crossings((a, b), border);
+        cuts.extend([0.0, 1.0]);
+        cuts.sort_by(f64::total_cmp);
+        for span in cuts.windows(2).filter(|s| s[1] > s[0]) {
+            let at = |t: f64| a + (b - a) * t;
+            if ring::covers(border.iter().copied(), at(0.5 * (span[0] + span[1]))) {
+                if run.is_empty() {
+                    run.push(at(span[0]));
+                }
+                run.push(at(span[1]));
+            } else {
+                *whole = false;
+                runs.extend((run.len() > 1).then(|| std::mem::take(&mut run)));
+                run.clear();
+            }
+        }
+    }
+    runs.extend((run.len() > 1).then_some(run));
+    runs
+}
+
+/// Where a segment crosses the border, as shares of it.
+fn crossings(line: Segment<2>, border: &[Segment<2>]) -> Vec<f64> {
+    let share = |edge: &Segment<2>| {
+        let [t, u] = segment::crossing(line, *edge)?;
+        (t > 0.0 && t < 1.0 && (0.0..=1.0).contains(&u)).then_some(t)
+    };
+    border.iter().filter_map(share).collect()
 }
 
 fn append(path: &mut BezPath, points: &[Vector<2>], closed: bool) {
@@ -136,13 +156,13 @@ mod tests {
 
     fn cutter() -> Cutter {
         let ring = vec![Vector::xy(0.0, 0.0), Vector::xy(10.0, 0.0), Vector::xy(10.0, 10.0), Vector::xy(0.0, 10.0)];
-        Cutter::new(&Outline { rings: vec![ring] }, 0.01).unwrap()
+        Cutter::new(&Outline { rings: vec![ring] }, 0.01, &Budget::default()).unwrap().unwrap()
     }
 
     #[test]
     fn a_disc_on_the_border_is_halved() {
         let disc = kurbo::Circle::new((0.0, 5.0), 2.0).to_path(1e-3);
-        let Remainder::Part(half) = cutter().fill(&disc, FillRule::NonZero) else { panic!("not cut") };
+        let Remainder::Part(half) = cutter().fill(&disc, FillRule::NonZero).unwrap() else { panic!("not cut") };
         assert!((half.area().abs() - 2.0 * std::f64::consts::PI).abs() < 0.05);
         assert!(half.bounding_box().x0 >= -1e-6);
     }
@@ -150,7 +170,7 @@ mod tests {
     #[test]
     fn a_line_through_the_domain_keeps_its_inside() {
         let line = BezPath::from_svg("M-5 5L15 5").unwrap();
-        let Remainder::Part(part) = cutter().stroke(&line) else { panic!("not cut") };
+        let Remainder::Part(part) = cutter().stroke(&line).unwrap() else { panic!("not cut") };
         assert_eq!(part.bounding_box(), kurbo::Rect::new(0.0, 5.0, 10.0, 5.0));
     }
 
@@ -159,10 +179,10 @@ mod tests {
         let c = cutter();
         let inside = kurbo::Circle::new((5.0, 5.0), 2.0).to_path(1e-3);
         let outside = kurbo::Circle::new((50.0, 5.0), 2.0).to_path(1e-3);
-        assert!(matches!(c.fill(&inside, FillRule::NonZero), Remainder::Everything));
-        assert!(matches!(c.stroke(&inside), Remainder::Everything));
-        assert!(matches!(c.fill(&outside, FillRule::NonZero), Remainder::Nothing));
-        assert!(matches!(c.stroke(&outside), Remainder::Nothing));
+        assert!(matches!(c.fill(&inside, FillRule::NonZero).unwrap(), Remainder::Everything));
+        assert!(matches!(c.stroke(&inside).unwrap(), Remainder::Everything));
+        assert!(matches!(c.fill(&outside, FillRule::NonZero).unwrap(), Remainder::Nothing));
+        assert!(matches!(c.stroke(&outside).unwrap(), Remainder::Nothing));
         assert!(c.spares(Vector::xy(5.0, 5.0), 4.9) && !c.spares(Vector::xy(5.0, 5.0), 5.1));
     }
 }

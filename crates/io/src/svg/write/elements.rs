@@ -18,6 +18,9 @@ use crate::{
     text::xml::escape,
 };
 
+/// Work for writing one element.
+const PER_ELEMENT: u64 = 3000;
+
 impl Writer<'_> {
     pub(crate) fn elements(&mut self) -> Result<()> {
         let _ = write!(
@@ -31,7 +34,8 @@ impl Writer<'_> {
         self.out.push_str(">\n");
         let cut = self.cut_outline();
         let clip = self.sheet.shape.map(|_| format!("{}-domain", self.prefix));
-        let flattener = Flattener::new(self.sheet.drawing, cut.as_ref(), clip.as_deref(), self.decimals);
+        let flattener =
+            Flattener::new(self.sheet.drawing, cut.as_ref(), clip.as_deref(), self.decimals, self.sheet.budget)?;
         if self.sheet.drawing.stacking == Stacking::ElementsAbove {
             self.curves();
         }
@@ -39,6 +43,7 @@ impl Writer<'_> {
         let sheet = self.sheet;
         let is_new = |p: &Placement<2>| sheet.host.is_none() || p.frozen.is_none();
         for (index, placement) in sheet.placements.iter().enumerate().filter(|(_, p)| is_new(p)) {
+            self.sheet.budget.spend(PER_ELEMENT)?;
             for (copy, shift) in self.copies(placement).into_iter().enumerate() {
                 let id = if copy == 0 {
                     format!("{}-{index}", self.prefix)

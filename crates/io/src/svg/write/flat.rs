@@ -2,7 +2,7 @@
 
 use std::{cell::OnceCell, fmt::Write as _};
 
-use arabesque_core::{Decimals, FillRule, Outline, Result, Similarity, Vector};
+use arabesque_core::{Budget, Decimals, FillRule, Outline, Result, Similarity, Vector};
 use kurbo::{Affine, BezPath, CubicBez, ParamCurve, PathEl, PathSeg, Point};
 
 use crate::{
@@ -59,20 +59,25 @@ pub(crate) struct Flattener<'a> {
 
 impl<'a> Flattener<'a> {
     /// A flattener that cuts along `cut`, if given; what cannot be cut is clipped by the clip path with the id `clip`.
+    ///
+    /// # Errors
+    /// As [`Cutter::new`].
     pub(crate) fn new(
         drawing: &'a Drawing,
         cut: Option<&Outline<2>>,
         clip: Option<&'a str>,
         decimals: Decimals,
-    ) -> Self {
+        budget: &Budget,
+    ) -> Result<Self> {
         let spacing = drawing.exemplar.spacing();
-        Self {
-            cutter: cut.and_then(|outline| Cutter::new(outline, CUT_TOLERANCE * 0.05 * spacing)),
+        let cutter = |outline| Cutter::new(outline, CUT_TOLERANCE * 0.05 * spacing, budget);
+        Ok(Self {
+            cutter: cut.map_or(Ok(None), cutter)?,
             pieces: drawing.fragments.iter().map(|_| OnceCell::new()).collect(),
             drawing,
             clip,
             decimals,
-        }
+        })
     }
 
     fn pieces(&self, source: usize) -> Result<&[MarkupPiece]> {
@@ -97,7 +102,7 @@ impl<'a> Flattener<'a> {
             match piece {
                 MarkupPiece::Open(tag) => flat.markup.push_str(tag),
                 MarkupPiece::Close => flat.markup.push_str("</g>"),
-                MarkupPiece::Path(path) => self.path(path, warp, cutter, &mut flat.markup),
+                MarkupPiece::Path(path) => self.path(path, warp, cutter, &mut flat.markup)?,
                 MarkupPiece::Whole(markup) => {
                     flat.kept_whole += usize::from(style == Style::Expanded);
                     let placed = format!("<g transform=\"{}\">{markup}</g>", self.matrix(moved));
@@ -114,19 +119,22 @@ impl<'a> Flattener<'a> {
         Ok(flat)
     }
 
-    fn path(&self, painted: &PaintedPath, warp: &Warp<'_>, cutter: Option<&Cutter>, out: &mut String) {
+    fn path(&self, painted: &PaintedPath, warp: &Warp<'_>, cutter: Option<&Cutter>, out: &mut String) -> Result<()> {
         let path = match warp {
             Warp::Rigid(s) => affine(s) * painted.path.clone(),
             Warp::Bent(bend, _) => bent(&painted.path, bend),
         };
         let scale = warp.similarity().scale;
-        let Some(cutter) = cutter else { return self.push(out, painted, &path, scale, Paint::Both) };
+        let Some(cutter) = cutter else {
+            self.push(out, painted, &path, scale, Paint::Both);
+            return Ok(());
+        };
         let rule = match painted.attributes.get("fill-rule").map(String::as_str) {
             Some("evenodd") => FillRule::EvenOdd,
             _ => FillRule::NonZero,
         };
-        let fill = if painted.is_filled() { cutter.fill(&path, rule) } else { Remainder::Nothing };
-        let stroke = if painted.is_stroked() { cutter.stroke(&path) } else { Remainder::Nothing };
+        let fill = if painted.is_filled() { cutter.fill(&path, rule)? } else { Remainder::Nothing };
+        let stroke = if painted.is_stroked() { cutter.stroke(&path)? } else { Remainder::Nothing };
         match (fill, stroke) {
             (Remainder::Everything, Remainder::Everything) => self.push(out, painted, &path, scale, Paint::Both),
             (fill, stroke) => {
@@ -134,6 +142,7 @@ impl<'a> Flattener<'a> {
                 self.push_part(out, painted, &CutPath { whole: &path, rest: &stroke }, scale, Paint::Stroke);
             }
         }
+        Ok(())
     }
 
     fn push_part(&self, out: &mut String, painted: &PaintedPath, part: &CutPath<'_>, scale: f64, paint: Paint) {

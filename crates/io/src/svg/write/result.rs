@@ -22,7 +22,8 @@ use crate::svg::{
 /// Writes a result.
 ///
 /// # Errors
-/// [`arabesque_core::Error::Input`] when the markup of an element cannot be taken apart for expanding or bending.
+/// [`arabesque_core::Error::Input`] when the markup of an element cannot be taken apart for expanding or bending,
+/// [`arabesque_core::Error::Limit`] when the work for it is used up.
 pub fn write_svg(sheet: &Sheet<'_>) -> Result<Written> {
     let mut writer = Writer::new(sheet);
     writer.document()?;
@@ -97,7 +98,7 @@ impl Writer<'_> {
 
 #[cfg(test)]
 mod tests {
-    use arabesque_core::{Border, Bounds, Domain, Exemplar, Placement, Similarity, Vector};
+    use arabesque_core::{Border, Bounds, Budget, Domain, Exemplar, Placement, Similarity, Vector};
 
     use super::*;
     use crate::{
@@ -160,6 +161,7 @@ mod tests {
             bend: None,
             style,
             recipe,
+            budget: &Budget::default(),
         };
         write_svg(&sheet).unwrap().text
     }

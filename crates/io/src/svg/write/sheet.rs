@@ -1,6 +1,6 @@
 //! Everything that one SVG file of a result is made of.
 
-use arabesque_core::{Border, Domain, Drawn, Outline, Placement, Vector, Warning};
+use arabesque_core::{Border, Budget, Domain, Drawn, Outline, Placement, Vector, Warning};
 
 use crate::svg::drawing::{Drawing, HostDocument, Page, Placed};
 
@@ -43,6 +43,8 @@ pub struct Sheet<'a> {
     pub style: Style,
     /// The recipe, as TOML.
     pub recipe: Option<&'a str>,
+    /// What writing may use up.
+    pub budget: &'a Budget,
 }
 
 /// An SVG text and what could not be written as asked.

@@ -128,8 +128,21 @@ pub(crate) fn free_prefix(sheet: &Sheet<'_>) -> String {
         .collect();
     let host = sheet.host.into_iter().flat_map(|h| [&h.head, &h.tail, &h.moved, &h.definitions]);
     let texts: Vec<&String> = texts.into_iter().chain(host).collect();
-    let starts = |t: &str, prefix: &str| ['"', '\''].iter().any(|q| t.contains(&format!("{q}{prefix}-")));
-    let taken = |prefix: &str| texts.iter().any(|t| starts(t, prefix));
-    let candidates = std::iter::once("arabesque".to_owned()).chain((2..).map(|n| format!("arabesque{n}")));
-    candidates.into_iter().find(|p| !taken(p)).unwrap_or_else(|| "arabesque".to_owned())
+    let taken: BTreeSet<&str> = texts.iter().flat_map(|t| numbers_of(t)).collect();
+    let number = std::iter::once(String::new()).chain((2..).map(|n: u64| n.to_string()));
+    let free = { number }.find(|n| !taken.contains(n.as_str()));
+    format!("{PREFIX}{}", free.unwrap_or_default())
+}
+
+/// What ids of the program start with, before a number and a dash.
+const PREFIX: &str = "arabesque";
+
+/// The numbers in ids, or references to them, that could be the program's own; none at all is empty.
+fn numbers_of(text: &str) -> impl Iterator<Item = &str> {
+    text.match_indices(PREFIX).filter_map(|(at, _)| {
+        let is_start = text[..at].ends_with(['"', '\'']);
+        let rest = &text[at + PREFIX.len()..];
+        let number = &rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())];
+        (is_start && rest[number.len()..].starts_with('-')).then_some(number)
+    })
 }

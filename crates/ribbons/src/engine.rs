@@ -2,22 +2,28 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
+use arabesque_core::{Budget, Error, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
+use rayon::prelude::*;
 
 use crate::{
     constraints::demands::Plan,
-    constraints::mask::{Mask, forbidden},
-    constraints::valid::{Demands, Grade, Position},
+    constraints::mask::{Forbidden, Mask},
+    constraints::valid::{Grade, Offset, Position},
     exemplar::columns::Columns,
-    exemplar::strip::{self, Strip, StripExemplar},
-    geometry::cage::Cage,
+    exemplar::strip::{self, Strip, StripExemplar, sample},
+    geometry::cage::{Cage, CagePlan},
     params::RibbonParams,
     pieces::piece::{Piece, Ribbon},
     pieces::stitch,
     request::RibbonRequest,
     search::reuse::Reuse,
-    search::solve::{Course, Kept, Solution},
+    search::solve::{Course, Ended, Kept, Solution},
 };
+
+/// What errors of a run begin with.
+const LAYING: &str = "laying pieces";
+/// Most work of stitching that is still done when somebody asked to stop; pieces that would take more stay unbent.
+const QUICK: u64 = 200_000_000;
 
 /// The result of a run.
 #[derive(Clone, Debug)]
@@ -56,31 +62,51 @@ pub struct Prepared {
     params: RibbonParams,
     /// As the search sees them.
     strip: Strip,
-    /// As they are drawn.
-    full: Strip,
+    /// Rows of the highest one.
+    height: usize,
 }
 
 /// One curve of a run.
-struct CurveRun<'a> {
+struct CurveRun<'a, const D: usize> {
+    cage: &'a Cage<D>,
+    /// The pixels that each piece leaves free.
+    free: &'a [Arc<Vec<Offset>>],
     /// What messages call it.
     name: &'a str,
-    seed: u64,
+    request: &'a RibbonRequest<D>,
     /// Rows of an earlier run that may be taken over.
     rows: &'a [Kept],
+    budget: &'a Budget,
+}
+
+impl<const D: usize> RibbonOutcome<D> {
+    fn new() -> Self {
+        let (stopped, memory) = (StopReason::Finished, Memory::default());
+        Self { ribbons: Vec::new(), warnings: Vec::new(), stopped, memory }
+    }
+
+    /// What was laid so far is all there will be.
+    fn end(&mut self, ended: Ended) {
+        self.stopped = StopReason::Stopped;
+        if let Ended::Budget(Error::Limit { what, found, limit, advice }) = ended {
+            let message = format!("{what}: {found} is over the limit of {limit}; this is what was laid until then");
+            self.warnings.push(Warning::new(message, advice));
+        }
+    }
 }
 
 impl Prepared {
     /// Prepares `exemplars`.
     ///
     /// # Errors
-    /// [`arabesque_core::Error::Parameter`] for a parameter out of range, [`arabesque_core::Error::Input`] for an exemplar that has no pattern on a transparent
-    /// background, [`arabesque_core::Error::Limit`] beyond [`strip::PIXELS`].
+    /// [`Error::Parameter`] for a parameter out of range, [`Error::Input`] for an exemplar that has no pattern on a transparent background,
+    /// [`Error::Limit`] beyond [`strip::PIXELS`], or when the work or the memory is used up.
     pub fn new(exemplars: Vec<StripExemplar>, params: RibbonParams, budget: &Budget) -> Result<Self> {
         params.check()?;
-        budget.check()?;
-        strip::check(&exemplars, params.coarse, params.relax)?;
-        let (strip, full) = (Strip::new(&exemplars, params.coarse), Strip::new(&exemplars, 1));
-        Ok(Self { exemplars: Arc::new(exemplars), params, strip, full })
+        strip::check(&exemplars, params.coarse, params.relax, budget)?;
+        let strip = Strip::new(&exemplars, params.coarse, budget)?;
+        let height = exemplars.iter().map(|e| e.image.height).max().unwrap_or(0);
+        Ok(Self { exemplars: Arc::new(exemplars), params, strip, height })
     }
 
     /// The exemplars.
@@ -90,9 +116,12 @@ impl Prepared {
 
     /// Lays the pattern along curves in the plane.
     ///
+    /// When the budget is used up or somebody asks to stop, the pieces that were laid until then are the result, with
+    /// [`StopReason::Stopped`].
+    ///
     /// # Errors
-    /// [`arabesque_core::Error::NoResult`] names a piece for which no part of the exemplar is valid; [`arabesque_core::Error::Input`] and [`arabesque_core::Error::Limit`] a curve that
-    /// cannot be used.
+    /// [`Error::NoResult`] names a piece for which no part of the exemplar is valid; [`Error::Input`] and [`Error::Limit`] a curve that
+    /// cannot be used. [`Error::Limit`] and [`Error::Stopped`] also when the run ended before there was a piece.
     pub fn run(&self, request: &RibbonRequest<2>, watch: &mut dyn Watch<Snapshot<2>>) -> Result<RibbonOutcome<2>> {
         self.resume(request, &Memory::default(), watch)
     }
@@ -108,14 +137,15 @@ impl Prepared {
         before: &Memory,
         watch: &mut dyn Watch<Snapshot<2>>,
     ) -> Result<RibbonOutcome<2>> {
-        let along = |(name, path): &(String, Path<2>)| {
-            Cage::along(path, &self.params, self.full.height as f64, self.scale(), name)
-        };
-        let cages = request.curves.iter().map(along).collect::<Result<Vec<_>>>()?;
-        let free = forbidden(&cages, request.avoid.as_ref());
-        let mut outcome = self.lay(&cages, free, request, before, watch)?;
-        for (ribbon, cage) in outcome.ribbons.iter_mut().zip(&cages) {
-            self.spare(ribbon, cage, request.avoid.as_ref());
+        let budget = request.budget.stage(LAYING);
+        let cages = self.cages(&request.curves, Cage::<2>::along, &budget)?;
+        let mask = request.avoid.as_ref();
+        let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget)?;
+        let mut outcome = self.lay(&cages, &free, (request, before), watch)?;
+        let Some(mask) = mask else { return Ok(outcome) };
+        let spared = self.spare(&mut outcome.ribbons, &cages, mask, &after(&budget, outcome.stopped));
+        if let Err(error) = spared {
+            outcome.end(Ended::of(error)?);
         }
         Ok(outcome)
     }
@@ -129,64 +159,75 @@ impl Prepared {
         request: &RibbonRequest<3>,
         watch: &mut dyn Watch<Snapshot<3>>,
     ) -> Result<RibbonOutcome<3>> {
-        let along = |(name, path): &(String, Path<3>)| {
-            Cage::in_space(path, &self.params, self.full.height as f64, self.scale(), name)
-        };
-        let cages = request.curves.iter().map(along).collect::<Result<Vec<_>>>()?;
-        let free = cages.iter().map(|cage| vec![Vec::new(); cage.len()]).collect();
-        self.lay(&cages, free, request, &Memory::default(), watch)
+        let cages = self.cages(&request.curves, Cage::<3>::in_space, &request.budget.stage(LAYING))?;
+        self.lay(&cages, &Forbidden::none(&cages), (request, &Memory::default()), watch)
     }
 
-    /// User units per pixel of the search.
-    fn scale(&self) -> f64 {
-        self.params.scale * self.params.coarse as f64
+    /// The ribbons around all curves, after what can be known of them was found to be within the limits.
+    fn cages<const D: usize>(
+        &self,
+        curves: &[(String, Path<D>)],
+        cut: impl Fn(&Path<D>, &CagePlan<'_>) -> Result<Cage<D>>,
+        budget: &Budget,
+    ) -> Result<Vec<Cage<D>>> {
+        let plan = |place| CagePlan { params: &self.params, height: self.height as f64, place, budget };
+        plan("").check_width()?;
+        let (mut cages, mut pieces, mut stitches) = (Vec::new(), 0, 0_u64);
+        let limit = budget.limits().output_elements;
+        for (name, path) in curves {
+            let cage = cut(path, &plan(name))?;
+            pieces += cage.len();
+            budget.within("pieces along all curves", pieces, ("output-elements", limit))?;
+            if self.params.stitch {
+                let (work, bytes) = stitch::demand(cage.forms.iter().map(|form| form.rows()).max().unwrap_or(0));
+                budget.hold("stitches across the whole width of the ribbon", bytes)?;
+                stitches = stitches.saturating_add(work.saturating_mul(cage.len() as u64));
+            }
+            cages.push(cage);
+        }
+        budget.foresee(stitches)?;
+        Ok(cages)
     }
 
     fn lay<const D: usize>(
         &self,
         cages: &[Cage<D>],
-        free: Vec<Vec<Vec<crate::constraints::valid::Offset>>>,
-        request: &RibbonRequest<D>,
-        before: &Memory,
+        free: &Forbidden,
+        (request, before): (&RibbonRequest<D>, &Memory),
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<RibbonOutcome<D>> {
+        let budget = request.budget.stage(LAYING);
         let basis = Basis { params: self.params.clone(), seed: request.seed, exemplars: Arc::clone(&self.exemplars) };
         let known = before.basis.as_ref() == Some(&basis);
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
-        let mut outcome = RibbonOutcome {
-            ribbons: Vec::new(),
-            warnings: Vec::new(),
-            stopped: StopReason::Finished,
-            memory: Memory::default(),
-        };
+        let mut outcome = RibbonOutcome::new();
         let total = cages.iter().map(Cage::len).sum();
         let mut done = 0;
-        for (k, (cage, free)) in cages.iter().zip(free).enumerate() {
+        for (k, (cage, free)) in cages.iter().zip(&free.cages).enumerate() {
             let name = &request.curves[k].0;
             let rows = if known { before.curves.get(k).map_or(&[][..], |c| c) } else { &[] };
-            let demands = Plan { strip: &self.strip, params: &self.params, request, cage }.demands(free)?;
+            let curve = CurveRun { cage, free, name, request, rows, budget: &budget };
             let finished = &outcome.ribbons;
-            let solution =
-                self.solve(cage, &demands, &CurveRun { name, seed: request.seed, rows }, &mut |rows, energy, path| {
-                    let iteration = done + rows;
-                    let progress = Progress {
-                        stage: "laying pieces".into(),
-                        done: iteration,
-                        total,
-                        fraction: iteration as f64 / total as f64,
-                        energy: Some(energy),
-                        count: iteration,
-                    };
-                    let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };
-                    watch.step(&progress, &preview).is_continue()
-                })?;
+            let solved = self.solve(&curve, &mut |rows, energy, path| {
+                let progress = progress(done + rows, total, energy);
+                let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };
+                watch.step(&progress, &preview).is_continue()
+            });
+            let mut solution = match solved {
+                Ok(solution) => solution,
+                Err(error) if k == 0 => return Err(error),
+                Err(error) => {
+                    outcome.end(Ended::of(error)?);
+                    break;
+                }
+            };
             done += cage.len();
             memory.resumed += solution.resumed;
             outcome.warnings.extend(forced(name, &solution, cage));
-            outcome.ribbons.push(self.ribbon(cage, &solution));
+            outcome.ribbons.push(self.ribbon(cage, &mut solution, &budget)?);
             memory.curves.push(solution.kept);
-            if solution.stopped {
-                outcome.stopped = StopReason::Stopped;
+            if let Some(ended) = solution.ended {
+                outcome.end(ended);
                 break;
             }
         }
@@ -196,22 +237,24 @@ impl Prepared {
 
     fn solve<const D: usize>(
         &self,
-        cage: &Cage<D>,
-        demands: &[Demands],
-        curve: &CurveRun<'_>,
+        curve: &CurveRun<'_, D>,
         watch: &mut crate::search::solve::Watch<'_>,
     ) -> Result<Solution> {
-        let reuse = Reuse::new(&self.params, curve.seed, cage.len(), &cage.forms[0], &self.strip);
+        let CurveRun { cage, request, name, budget, .. } = *curve;
+        let plan = Plan { strip: &self.strip, params: &self.params, request, cage, budget };
+        let demands = plan.demands(curve.free.to_vec())?;
+        let reuse = Reuse::new(&self.params, request.seed, (cage.len(), &cage.forms[0]), &self.strip, budget)?;
         let places: Vec<String> = (0..cage.len()).map(|k| place(cage, k)).collect();
         let course = Course {
             strip: &self.strip,
             params: &self.params,
             forms: &cage.forms,
-            demands,
+            demands: &demands,
             closed: cage.closed,
             reuse,
-            name: curve.name,
+            name,
             places: &places,
+            budget,
         };
         course.solve(curve.rows, watch)
     }
@@ -233,40 +276,118 @@ impl Prepared {
         Patch { source, corners: [a.top, b.top, b.bottom, a.bottom], texture }
     }
 
-    fn ribbon<const D: usize>(&self, cage: &Cage<D>, solution: &Solution) -> Ribbon<D> {
+    /// The pieces of a solution, bent to meet; `solution` then says whether that ended early.
+    fn ribbon<const D: usize>(&self, cage: &Cage<D>, solution: &mut Solution, budget: &Budget) -> Result<Ribbon<D>> {
+        let shifts = match &solution.ended {
+            None | Some(Ended::Watch) => self.shifts(cage, solution, budget),
+            Some(Ended::Budget(_)) => self.quick_shifts(cage, solution, budget),
+        };
+        let shifts = match shifts {
+            Ok(shifts) => shifts,
+            // A second request to stop ends it.
+            Err(error) if matches!(solution.ended, Some(Ended::Budget(_))) => return Err(error),
+            Err(error) => {
+                solution.ended = Some(Ended::of(error)?);
+                self.quick_shifts(cage, solution, budget)?
+            }
+        };
+        let pieces = solution.positions.iter().zip(shifts).enumerate();
+        let pieces = pieces.map(|(k, (&position, shift))| Piece { patch: self.patch(cage, k, position), shift });
+        let whole = solution.positions.len() == cage.len();
+        Ok(Ribbon { pieces: pieces.collect(), closed: cage.closed && whole, cost: solution.cost })
+    }
+
+    /// How the right edge of each piece is bent to meet the next one.
+    fn shifts<const D: usize>(&self, cage: &Cage<D>, solution: &Solution, budget: &Budget) -> Result<Vec<Vec<f32>>> {
         let n = solution.positions.len();
-        let whole = n == cage.len();
-        let pieces = solution.positions.iter().enumerate().map(|(k, &position)| {
-            let next = if k + 1 < n { Some(k + 1) } else { (cage.closed && whole).then_some(0) };
-            let shift = next.filter(|_| self.params.stitch).map(|next| self.shift(cage, k, next, solution));
-            Piece { patch: self.patch(cage, k, position), shift: shift.unwrap_or_default() }
-        });
-        Ribbon { pieces: pieces.collect(), closed: cage.closed && whole, cost: solution.cost }
+        if !self.params.stitch {
+            return Ok(vec![Vec::new(); n]);
+        }
+        let shift = |k: usize| {
+            let next = if k + 1 < n { Some(k + 1) } else { (cage.closed && n == cage.len()).then_some(0) };
+            next.map_or(Ok(Vec::new()), |next| self.shift(cage, [k, next], solution, budget))
+        };
+        (0..n).into_par_iter().map(shift).collect()
+    }
+
+    /// The same on a fresh account, where that takes little time; else nothing is bent.
+    fn quick_shifts<const D: usize>(
+        &self,
+        cage: &Cage<D>,
+        solution: &Solution,
+        budget: &Budget,
+    ) -> Result<Vec<Vec<f32>>> {
+        let n = solution.positions.len();
+        let work: u64 = cage.forms[..n].iter().map(|form| stitch::demand(form.rows()).0).sum();
+        if work > QUICK {
+            return Ok(vec![Vec::new(); n]);
+        }
+        self.shifts(cage, solution, &budget.fresh())
     }
 
     /// How the right edge of piece `k` is bent to meet the left edge of `next`.
-    fn shift<const D: usize>(&self, cage: &Cage<D>, k: usize, next: usize, solution: &Solution) -> Vec<f32> {
-        let right =
-            Columns::right(&self.strip, &cage.forms[k], cage.forms[next].rows(), 0.0, &solution.positions[k..=k]);
-        let left = Columns::left(&self.strip, &cage.forms[next], 0.0, &solution.positions[next..=next]);
-        let pixels = (cage.forms[next].left() / cage.forms[next].rows() as f64 * self.params.coarse as f64) as f32;
-        stitch::align(&right, &left).into_iter().map(|samples| samples * pixels).collect()
+    fn shift<const D: usize>(
+        &self,
+        cage: &Cage<D>,
+        [k, next]: [usize; 2],
+        solution: &Solution,
+        budget: &Budget,
+    ) -> Result<Vec<f32>> {
+        let (form, after) = (&cage.forms[k], &cage.forms[next]);
+        let [own, others] = [k, next].map(|k| &solution.positions[k..=k]);
+        let right = Columns::right(&self.strip, (form, after.rows()), 0.0, own, budget)?;
+        let left = Columns::left(&self.strip, after, 0.0, others, budget)?;
+        let pixels = (after.left() / after.rows() as f64 * self.params.coarse as f64) as f32;
+        Ok(stitch::align(&right, &left, budget)?.into_iter().map(|samples| samples * pixels).collect())
     }
 
-    /// Leaves a piece unbent where bending would put ink on the mask.
-    fn spare(&self, ribbon: &mut Ribbon<2>, cage: &Cage<2>, mask: Option<&Mask>) {
-        let Some(mask) = mask else { return };
-        for (k, piece) in ribbon.pieces.iter_mut().enumerate().filter(|(_, piece)| !piece.shift.is_empty()) {
-            let strip = Strip::new(&self.exemplars[piece.patch.source..=piece.patch.source], 1);
-            let around = cage.bounds(k).grown(2.0 * self.params.scale);
-            let span = 0..strip.width;
-            let inked = |p: Vector<2>| strip.sample(piece.bent(piece.to_exemplar(p)), &span)[3] > 0.0;
-            let inside = |p: Vector<2>| cage.forms[k].depth(cage.local(k, p)) > -1.5;
-            let hit = mask.points(around, self.params.scale).any(|p| inside(p) && inked(p));
-            if hit {
-                piece.shift.clear();
+    /// Leaves pieces unbent where bending would put ink on the mask; all of them where there is no time to find out.
+    fn spare(&self, ribbons: &mut [Ribbon<2>], cages: &[Cage<2>], mask: &Mask, budget: &Budget) -> Result<()> {
+        let hits = ribbons.iter().zip(cages).map(|(ribbon, cage)| {
+            let hit = |(k, piece): (usize, &Piece<2>)| {
+                if piece.shift.is_empty() { Ok(false) } else { self.hits(piece, (cage, k), mask, budget) }
+            };
+            ribbon.pieces.par_iter().enumerate().map(hit).collect::<Result<Vec<bool>>>()
+        });
+        let hits = hits.collect::<Result<Vec<Vec<bool>>>>();
+        for (r, ribbon) in ribbons.iter_mut().enumerate() {
+            for (k, piece) in ribbon.pieces.iter_mut().enumerate() {
+                if hits.as_ref().map_or(true, |hits| hits[r][k]) {
+                    piece.shift.clear();
+                }
             }
         }
+        hits.map(|_| ())
+    }
+
+    /// Whether a piece puts ink on the mask as it is bent.
+    fn hits(&self, piece: &Piece<2>, (cage, k): (&Cage<2>, usize), mask: &Mask, budget: &Budget) -> Result<bool> {
+        let image = &self.exemplars[piece.patch.source].image;
+        let around = cage.bounds(k).grown(2.0 * self.params.scale);
+        let inked = |p: Vector<2>| sample(image, piece.bent(piece.to_exemplar(p)))[3] > 0.0;
+        let inside = |p: Vector<2>| cage.forms[k].depth(cage.local(k, p)) > -1.5;
+        let mut hit = false;
+        mask.points(around, self.params.scale, &mut budget.meter(), |p| {
+            hit = inside(p) && inked(p);
+            Ok(hit)
+        })?;
+        Ok(hit)
+    }
+}
+
+/// What is left to do after a run is done on its own account, or on a fresh one when that has ended.
+fn after(budget: &Budget, stopped: StopReason) -> Budget {
+    if stopped == StopReason::Finished { budget.clone() } else { budget.fresh() }
+}
+
+fn progress(done: usize, total: usize, energy: f64) -> Progress {
+    Progress {
+        stage: LAYING.into(),
+        done,
+        total,
+        fraction: done as f64 / total as f64,
+        energy: Some(energy),
+        count: done,
     }
 }
 

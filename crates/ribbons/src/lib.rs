@@ -46,11 +46,11 @@ mod search;
 
 pub use constraints::mask::Mask;
 pub use engine::{Memory, Prepared, RibbonOutcome};
-pub use exemplar::strip::{PIXELS, StripExemplar};
-pub use geometry::cage::PIECES;
+pub use exemplar::strip::{PIXELS, StripExemplar, check_pixels};
+pub use geometry::cage::{PIECES, ROWS};
 pub use params::{Closing, RibbonParams, Search, Width};
 pub use pieces::piece::{Piece, Ribbon};
-pub use pieces::render::{Canvas, render};
+pub use pieces::render::{Canvas, render, render_rows};
 pub use pieces::{
     facets::{Facet, facets},
     rungs::{Rung, rungs},

@@ -162,7 +162,7 @@ fn blocked(mask: &Mask, outcome: &RibbonOutcome<2>, exemplar: &StripExemplar, sc
         pixels_per_unit: scale,
     };
     // Drawn without the mask: the pattern itself must stay off it.
-    let image = render(&outcome.ribbons, std::slice::from_ref(exemplar), None, &canvas);
+    let image = render(&outcome.ribbons, std::slice::from_ref(exemplar), None, &canvas, &Budget::default()).unwrap();
     let centre = |k: usize| {
         let (x, y) = (k % canvas.width, k / canvas.width);
         canvas.origin + Vector::xy(x as f64 + 0.5, y as f64 + 0.5) * (1.0 / scale)
@@ -206,7 +206,7 @@ fn no_way_through_is_an_error_that_names_the_piece_and_relaxing_cuts_it() {
     let relaxed = run(&exemplar, &RibbonParams { relax: true, ..params }, &wanted);
     assert_eq!(relaxed.warnings.len(), 1);
     let canvas = Canvas { origin: Vector::ZERO, width: 200, height: 100, pixels_per_unit: 1.0 };
-    let image = render(&relaxed.ribbons, &[exemplar], Some(&mask), &canvas);
+    let image = render(&relaxed.ribbons, &[exemplar], Some(&mask), &canvas, &Budget::default()).unwrap();
     assert!(image.pixels.iter().enumerate().all(|(k, p)| p[3] == 0 || !mask.blocked[k]));
 }
 

@@ -56,7 +56,7 @@ fn orientation(input: &Input, bounds: &Bounds<2>, files: &Files) -> Result<Orien
     let bytes = files.read(input)?;
     let is_drawing = bytes.trim_ascii_start().starts_with(b"<") || bytes.starts_with(&[0xEF, 0xBB, 0xBF, b'<']);
     if png::is_png(&bytes) || !is_drawing {
-        return Picture::read(input.name(), &bytes, files.budget())?.orientation_field(input.name(), *bounds);
+        return Picture::new(input.name(), &bytes, files.budget()).orientation_field(*bounds);
     }
     let strokes = svg::read_flow(&file::decode_text(input.name(), &bytes)?, &options(input, files))?;
     OrientationField::from_strokes(&strokes, *bounds, STROKE_NODES).ok_or_else(|| {
@@ -79,8 +79,7 @@ fn factor(
                 return Err(Error::parameter(name, format!("{}..{}", range[0], range[1]), expected()));
             }
             let bytes = files.embed(&mut field.file)?;
-            let picture = Picture::read(field.file.name(), &bytes, files.budget())?;
-            Ok(picture.scalar_field(*bounds, range))
+            Picture::new(field.file.name(), &bytes, files.budget()).scalar_field(*bounds, range)
         }
         other => constant_factor(name, other.as_deref()),
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Decimals, Error, Patch, Result, Snapshot, StopReason, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Decimals, Error, Held, Patch, Result, Snapshot, StopReason, Vector, Warning};
 use arabesque_io::{
     json::ribbon,
     mesh::{
@@ -24,6 +24,10 @@ use crate::{
 
 /// Pixels per metre of an embedded picture.
 const PER_METRE: f64 = PIXELS_PER_INCH / 0.0254;
+
+/// Bytes and work of one cell of a strip: four corners with their places in the picture, and two triangles.
+const CELL: usize = 4 * 40 + 2 * 12;
+const CELL_WORK: u64 = 300;
 
 /// Ribbons along curves.
 #[derive(Debug)]
@@ -134,14 +138,14 @@ impl RibbonMade {
         sides.into_iter().fold(0.0, f64::max)
     }
 
-    fn json(&self, recipe: Option<&str>) -> Result<String> {
+    fn json(&self, recipe: Option<&str>, budget: &Budget) -> Result<String> {
         match &self.laid {
-            Laid::Plane(ribbons) => self.json_of(ribbons, recipe),
-            Laid::Space(ribbons) => self.json_of(ribbons, recipe),
+            Laid::Plane(ribbons) => self.json_of(ribbons, recipe, budget),
+            Laid::Space(ribbons) => self.json_of(ribbons, recipe, budget),
         }
     }
 
-    fn json_of<const D: usize>(&self, ribbons: &[Ribbon<D>], recipe: Option<&str>) -> Result<String> {
+    fn json_of<const D: usize>(&self, ribbons: &[Ribbon<D>], recipe: Option<&str>, budget: &Budget) -> Result<String> {
         let lines = ribbons.iter().zip(self.names()).map(|(ribbon, name)| ribbon::RibbonLine {
             name,
             closed: ribbon.closed,
@@ -159,28 +163,39 @@ impl RibbonMade {
             extent: self.extent(),
             warnings: &self.warnings,
             recipe,
+            budget,
         })
     }
 
-    /// A textured strip for each exemplar.
-    fn parts(&self, pictures: Pictures) -> Result<Vec<Part>> {
+    /// A textured strip for each exemplar, and its memory.
+    fn parts(&self, pictures: Pictures, budget: &Budget) -> Result<(Vec<Part>, Held)> {
         let mut parts = Vec::new();
         for (exemplar, source) in self.exemplars().iter().zip(&self.strips.sources) {
             let picture = match pictures {
-                Pictures::Held => png::write_image(&exemplar.image, PER_METRE, None)?,
+                Pictures::Held => png::write_image(&exemplar.image, PER_METRE, None, budget)?,
                 Pictures::Left => Vec::new(),
             };
             parts.push(Part { name: source.name.clone(), picture, strip: Strip::default() });
         }
-        match &self.laid {
+        let held = match &self.laid {
             // A drawing has its y axis downwards, a mesh upwards.
-            Laid::Plane(ribbons) => self.strips(ribbons, |p| [p[0], -p[1], 0.0], &mut parts),
-            Laid::Space(ribbons) => self.strips(ribbons, |p| p.0, &mut parts),
-        }
-        Ok(parts)
+            Laid::Plane(ribbons) => self.strips(ribbons, |p| [p[0], -p[1], 0.0], &mut parts, budget),
+            Laid::Space(ribbons) => self.strips(ribbons, |p| p.0, &mut parts, budget),
+        }?;
+        Ok((parts, held))
     }
 
-    fn strips<const D: usize>(&self, ribbons: &[Ribbon<D>], at: fn(Vector<D>) -> [f64; 3], parts: &mut [Part]) {
+    fn strips<const D: usize>(
+        &self,
+        ribbons: &[Ribbon<D>],
+        at: fn(Vector<D>) -> [f64; 3],
+        parts: &mut [Part],
+        budget: &Budget,
+    ) -> Result<Held> {
+        let cells = |p: &Piece<D>| p.shift.len() + 1;
+        let most: usize = ribbons.iter().flat_map(|r| &r.pieces).map(cells).sum();
+        let held = budget.hold("triangles of the strips", most.saturating_mul(CELL))?;
+        budget.spend(CELL_WORK * most as u64)?;
         for piece in ribbons.iter().flat_map(|r| &r.pieces) {
             let source = piece.patch.source;
             let (Some(exemplar), Some(part)) = (self.exemplars().get(source), parts.get_mut(source)) else { continue };
@@ -193,6 +208,7 @@ impl RibbonMade {
                 part.strip.push(upper, lower);
             }
         }
+        Ok(held)
     }
 
     /// The exemplars as areas, where they are drawings.
@@ -200,30 +216,35 @@ impl RibbonMade {
         self.strips.sources.iter().map(|s| s.areas.as_deref()).collect()
     }
 
-    fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>) -> Result<String> {
+    fn svg(&self, ribbons: &[Ribbon<2>], page: &Page, recipe: Option<&str>, budget: &Budget) -> Result<String> {
         let size = page.view.size();
         let decimals = Decimals::for_extent(size[0].max(size[1]));
         let drawings = self.drawings();
         let mut pictures = Vec::new();
         if drawings.is_none() {
             for exemplar in self.exemplars() {
-                let data = encode(&png::write_image(&exemplar.image, PER_METRE, None)?);
+                let data = encode(&png::write_image(&exemplar.image, PER_METRE, None, budget)?);
                 pictures.push(Embedded { size: [exemplar.image.width, exemplar.image.height], data });
             }
         }
         let look = |ribbon: &Ribbon<2>| match &drawings {
-            Some(drawings) => Look::Markup(markup(ribbon, drawings, decimals)),
-            None => Look::Cells(ribbon.pieces.iter().flat_map(|piece| self.cells(piece)).collect()),
+            Some(drawings) => markup(ribbon, drawings, decimals, budget).map(Look::Markup),
+            None => self.cells(ribbon, budget).map(Look::Cells),
         };
-        let looks: Vec<_> = ribbons.iter().zip(self.names()).map(|(r, name)| (name.to_owned(), look(r))).collect();
-        Ok(write_ribbons(&RibbonSheet { page: *page, pictures: &pictures, ribbons: &looks, recipe }))
+        let looks = ribbons.iter().zip(self.names()).map(|(r, name)| Ok((name.to_owned(), look(r)?)));
+        let looks = looks.collect::<Result<Vec<_>>>()?;
+        write_ribbons(&RibbonSheet { page: *page, pictures: &pictures, ribbons: &looks, recipe, budget })
     }
 
-    /// The facets of a piece, as SVG has them.
-    fn cells(&self, piece: &Piece<2>) -> impl Iterator<Item = Cell> {
-        let exemplar = self.exemplars().get(piece.patch.source);
-        let facets = exemplar.map(|exemplar| facets(piece, &exemplar.image)).unwrap_or_default();
-        facets.into_iter().map(|f| Cell { source: f.source, ring: f.ring, matrix: f.matrix })
+    /// The facets of all pieces, as SVG has them.
+    fn cells(&self, ribbon: &Ribbon<2>, budget: &Budget) -> Result<Vec<Cell>> {
+        let mut cells = Vec::new();
+        for piece in &ribbon.pieces {
+            let Some(exemplar) = self.exemplars().get(piece.patch.source) else { continue };
+            let facets = facets(piece, &exemplar.image, budget)?;
+            cells.extend(facets.into_iter().map(|f| Cell { source: f.source, ring: f.ring, matrix: f.matrix }));
+        }
+        Ok(cells)
     }
 }
 
@@ -239,21 +260,27 @@ fn patches<const D: usize>(ribbons: &[Ribbon<D>]) -> Vec<Patch<D>> {
 
 impl Made for RibbonMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
-        let recipe = sheet.recipe;
+        let (recipe, budget) = (sheet.recipe, sheet.budget);
         self.check_resolution(sheet)?;
         let bytes = match (sheet.format, &self.laid, &*self.track) {
-            (Format::Json, ..) => self.json(recipe)?.into_bytes(),
-            (Format::Obj, ..) => strips::write_strips(&self.parts(Pictures::Left)?, self.extent(), recipe).into_bytes(),
-            (Format::Glb, ..) => gltf::write_glb(&self.parts(Pictures::Held)?, recipe)?,
-            (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page }) => {
+            (Format::Json, ..) => self.json(recipe, budget)?.into_bytes(),
+            (Format::Obj, ..) => {
+                let (parts, _held) = self.parts(Pictures::Left, budget)?;
+                strips::write_strips(&parts, self.extent(), recipe, budget)?.into_bytes()
+            }
+            (Format::Glb, ..) => {
+                let (parts, _held) = self.parts(Pictures::Held, budget)?;
+                gltf::write_glb(&parts, recipe, budget)?
+            }
+            (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page, .. }) => {
                 let avoid = request.avoid.as_ref();
                 match self.drawings() {
-                    Some(_) => picture::of_drawing(&self.svg(ribbons, page, None)?, avoid, page, sheet)?,
+                    Some(_) => picture::of_drawing(&self.svg(ribbons, page, None, budget)?, avoid, page, sheet)?,
                     None => picture::of_pieces(ribbons, self.exemplars(), avoid, page, sheet)?,
                 }
             }
             (Format::Svg, Laid::Plane(ribbons), Track::Plane { page, .. }) => {
-                self.svg(ribbons, page, recipe)?.into_bytes()
+                self.svg(ribbons, page, recipe, budget)?.into_bytes()
             }
             _ => {
                 let space = matches!(self.laid, Laid::Space(_));
@@ -292,14 +319,14 @@ impl Made for RibbonMade {
 }
 
 /// A ribbon of drawings, as SVG.
-fn markup(ribbon: &Ribbon<2>, drawings: &[&[Area]], decimals: Decimals) -> String {
+fn markup(ribbon: &Ribbon<2>, drawings: &[&[Area]], decimals: Decimals, budget: &Budget) -> Result<String> {
     let outlines: Vec<Vec<_>> = drawings.iter().map(|areas| areas.iter().map(|a| &a.outline).collect()).collect();
-    let shown = shown_areas(ribbon, &outlines);
+    let shown = shown_areas(ribbon, &outlines, budget)?;
     let filled = shown.iter().map(|s| {
         let Area { colour, opacity, .. } = &drawings[s.source][s.area];
         Filled { outline: &s.outline, tolerance: s.tolerance, colour, opacity: *opacity }
     });
-    areas_markup(filled, decimals)
+    areas_markup(filled, decimals, budget)
 }
 
 /// Whether a mesh holds its pictures.

@@ -1,12 +1,12 @@
 //! Ribbons as pictures.
 
-use arabesque_core::{Budget, Error, Image, Result, Vector};
+use arabesque_core::{Budget, Error, Result, Vector};
 use arabesque_io::{
-    raster::{image::draw_svg, png, size::checked_size},
+    raster::{png, size::checked_size},
     svg::Page,
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
-use arabesque_ribbons::{Canvas, Mask, Ribbon, StripExemplar, render};
+use arabesque_ribbons::{Canvas, Mask, Ribbon, StripExemplar, render_rows};
 
 use crate::{
     artwork::Sheet,
@@ -41,6 +41,11 @@ impl Pixels {
         Ok(Canvas { origin: page.view.min, width, height, pixels_per_unit: self.0 })
     }
 
+    /// Pixels per metre of a picture of a page.
+    fn per_metre(self, page: &Page) -> f64 {
+        self.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE
+    }
+
     /// Width and height of the picture of a page.
     ///
     /// # Errors
@@ -62,29 +67,20 @@ pub(crate) fn of_pieces(
     sheet: &Sheet<'_>,
 ) -> Result<Vec<u8>> {
     let scale = resolution_of_canvas(sheet.output, Some(page))?;
-    encode(&render(ribbons, exemplars, avoid, &scale.canvas(page, sheet.budget)?), scale, page, sheet)
+    let canvas = scale.canvas(page, sheet.budget)?;
+    png::write_rows([canvas.width, canvas.height], scale.per_metre(page), sheet.recipe, sheet.budget, |write| {
+        render_rows((ribbons, exemplars), avoid, &canvas, sheet.budget, write)
+    })
 }
 
-/// Ribbons of drawings, drawn as the vectors of `svg`, as PNG.
+/// Ribbons of drawings, drawn as the vectors of `svg`, as PNG. Ink on what is to be avoided is left out, as pieces of pictures do.
 pub(crate) fn of_drawing(svg: &str, avoid: Option<&Mask>, page: &Page, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
     let scale = resolution_of_canvas(sheet.output, Some(page))?;
     let canvas = scale.canvas(page, sheet.budget)?;
-    let mut image = draw_svg("the ribbon", svg, (page.view.size().0, scale.0), sheet.budget)?;
-    avoid.into_iter().for_each(|mask| clear(&mut image, mask, &canvas));
-    encode(&image, scale, page, sheet)
-}
-
-fn encode(image: &Image, scale: Pixels, page: &Page, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
-    let per_metre = scale.0 / pixels_per_user(page) * PIXELS_PER_INCH * INCHES_PER_METRE;
-    png::write_image(image, per_metre, sheet.recipe)
-}
-
-/// Leaves out ink on what is to be avoided, as pieces of pictures do.
-fn clear(image: &mut Image, mask: &Mask, canvas: &Canvas) {
-    for (k, pixel) in image.pixels.iter_mut().enumerate() {
-        let at = Vector::xy((k % image.width) as f64 + 0.5, (k / image.width) as f64 + 0.5);
-        if mask.blocks(canvas.origin + at * (1.0 / canvas.pixels_per_unit)) {
-            *pixel = [0; 4];
-        }
-    }
+    let hidden = |x: usize, y: usize| {
+        let at = Vector::xy(x as f64 + 0.5, y as f64 + 0.5) * (1.0 / canvas.pixels_per_unit);
+        avoid.is_some_and(|mask| mask.blocks(canvas.origin + at))
+    };
+    let drawing = (page.view.size().0, scale.0);
+    png::write_drawing(("the ribbon", svg), drawing, &hidden, (scale.per_metre(page), sheet.recipe), sheet.budget)
 }

@@ -1,15 +1,16 @@
 //! The exemplars of ribbons, as pictures.
 
-use arabesque_core::{Error, Image, Outline, Result, Vector, Warning};
+use arabesque_core::{Error, Held, Image, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
     raster::{
         image::{self, Alpha},
         png,
+        rows::picture_size,
     },
     svg::{self, Area},
 };
-use arabesque_ribbons::{Prepared as Engine, RibbonParams, StripExemplar, Width};
+use arabesque_ribbons::{Prepared as Engine, RibbonParams, StripExemplar, Width, check_pixels};
 
 use crate::{
     method::Preparation,
@@ -32,6 +33,8 @@ pub(crate) struct RibbonStrips {
     pub(crate) sources: Vec<Source>,
     /// Pixels of the search per pixel or unit of the exemplars.
     pub(crate) finer: f64,
+    /// The memory of the pictures.
+    _held: Held,
 }
 
 /// An exemplar as its file has it.
@@ -46,13 +49,16 @@ pub(crate) struct Source {
 pub(crate) fn read(ribbon: &Ribbon, preparation: &mut Preparation<'_>) -> Result<RibbonStrips> {
     let mut params = ribbon.engine_params()?;
     let mut ribbon = ribbon.clone();
-    let mut loading = Loading { ribbon: &mut ribbon, files: preparation.files, warnings: &mut preparation.warnings };
+    let (files, coarse, warnings) = (preparation.files, params.coarse, &mut preparation.warnings);
+    let mut loading = Loading { ribbon: &mut ribbon, files, warnings, coarse, pixels: 0 };
     let (exemplars, sources, finer) = loading.exemplars(&mut preparation.exemplar, &mut params)?;
+    let pixels = exemplars.iter().map(|e| e.image.pixels.len()).sum::<usize>();
+    let held = files.budget().hold("pictures of the exemplars", pixels * size_of::<[u8; 4]>())?;
     preparation.warnings.extend(width_warning(&params, &exemplars));
     let names: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();
-    let engine = Engine::new(exemplars, params, preparation.files.budget()).map_err(|error| named(error, &names))?;
+    let engine = Engine::new(exemplars, params, files.budget()).map_err(|error| named(error, &names))?;
     preparation.job = Job::Ribbon(ribbon);
-    Ok(RibbonStrips { engine, sources, finer })
+    Ok(RibbonStrips { engine, sources, finer, _held: held })
 }
 
 /// The exemplars on their way into memory.
@@ -60,9 +66,20 @@ struct Loading<'a> {
     ribbon: &'a mut Ribbon,
     files: &'a Files,
     warnings: &'a mut Vec<Warning>,
+    /// Pixels along each side that the search takes as one.
+    coarse: usize,
+    /// Pixels of all exemplars so far.
+    pixels: usize,
 }
 
 impl Loading<'_> {
+    /// Refuses more pixels than the search can take, before they are read.
+    fn count(&mut self, name: &str, [width, height]: [f64; 2]) -> Result<()> {
+        // A float too large for the integer becomes its largest value.
+        self.pixels = self.pixels.saturating_add((width * height) as usize);
+        check_pixels(self.pixels, self.coarse).map_err(|error| named(error, &[name]))
+    }
+
     /// The exemplars as pictures, which are embedded, and the pixels of the search per pixel or unit of theirs; `params` then counts
     /// in pixels of the search.
     fn exemplars(
@@ -103,6 +120,7 @@ impl Loading<'_> {
             *finer = Some(factor);
             return Ok((image, Source { name: path, areas: Some(areas) }));
         }
+        self.count(name, picture_size(name, bytes)?.map(|n| n as f64))?;
         let (image, alpha) = image::read_image(name, bytes, self.files.budget())?;
         if alpha == Alpha::Missing && !self.ribbon.relax {
             let problem = "a picture without an alpha channel, where a transparent background was expected to outline the pattern";
@@ -123,6 +141,7 @@ impl Loading<'_> {
         if !(factor.is_finite() && factor > 0.0) {
             return Err(Error::input(name, "a page without height", "give the page a width and a height"));
         }
+        self.count(name, view.size().0.map(|side| (side * factor).round().max(1.0)))?;
         let image = image::draw_svg(name, text, (view.size().0, factor), self.files.budget())?;
         let size = view.size();
         let pixels = [image.width as f64 / size[0], image.height as f64 / size[1]];

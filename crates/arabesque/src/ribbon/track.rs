@@ -1,10 +1,12 @@
 //! What ribbons follow: curves on a page or in space, and what is to be avoided beside them.
 
-use arabesque_core::{Bounds, Error, Path, Result, Warning};
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Error, Held, Path, Result, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
-    raster::{image, mask::MaskRaster, png},
+    raster::{mask::MaskRaster, png},
     svg::{self, Page, Unit},
 };
 use arabesque_ribbons::{Mask, RibbonRequest};
@@ -20,7 +22,12 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) enum Track {
     /// Curves on a page.
-    Plane { request: RibbonRequest<2>, page: Page },
+    Plane {
+        request: RibbonRequest<2>,
+        page: Page,
+        /// The memory of what is to be avoided.
+        held: Option<Arc<Held>>,
+    },
     /// Curves in space.
     Space { request: RibbonRequest<3> },
 }
@@ -34,11 +41,13 @@ impl Track {
         let mut track = follow(&mut ribbon, context)?;
         let first = first_piece(&ribbon, finer)?;
         match &mut track {
-            Track::Plane { request, page } => {
+            Track::Plane { request, page, held } => {
                 request.changes.clone_from(&ribbon.changes);
                 request.first = first;
                 request.seed = context.seed;
-                request.avoid = avoided(&mut ribbon.avoid, page, context)?;
+                if let Some((mask, memory)) = avoided(&mut ribbon.avoid, page, context)? {
+                    (request.avoid, *held) = (Some(mask), Some(Arc::new(memory)));
+                }
                 context.warnings.extend(off_canvas(request, page));
             }
             Track::Space { request } => {
@@ -100,32 +109,34 @@ fn follow(ribbon: &mut Ribbon, context: &mut RunContext<'_>) -> Result<Track> {
     Ok(Track::Plane {
         request: RibbonRequest { budget: files.budget().clone(), ..RibbonRequest::new(lines.paths) },
         page,
+        held: None,
     })
 }
 
 /// The cells of the canvas that must stay free, one for each pixel of the canvas. The files are embedded.
-fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Result<Option<Mask>> {
+fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Result<Option<(Mask, Held)>> {
     if inputs.is_empty() {
         return Ok(None);
     }
     let (files, budget) = (context.files, context.budget());
     let [width, height] = resolution_of_canvas(context.output(), Some(page))?.pixels(page, budget)?;
-    let mut region = MaskRaster::empty(page.view, width, height);
+    let mut region = MaskRaster::empty(page.view, width, height, budget)?;
     for input in inputs {
         let bytes = files.embed(input)?;
         if png::is_png(&bytes) {
-            region.add_picture(&image::read_image(input.name(), &bytes, budget)?.0);
+            region.add_picture(input.name(), &bytes, budget)?;
             continue;
         }
         let text = file::decode_text(input.name(), &bytes)?;
-        region.add_outline(svg::read_shape(&text, input.id.as_deref(), &options(input, files))?.0.outline());
+        let shape = svg::read_shape(&text, input.id.as_deref(), &options(input, files))?.0;
+        region.add_outline(shape.outline(), budget)?;
     }
     if region.uniform() == Some(true) {
         let advice = "make the avoided regions smaller; of a picture, transparent and light pixels are free";
         return Err(Error::no_result("what is to be avoided covers the whole canvas", advice));
     }
-    let MaskRaster { bounds, width, height, cells } = region;
-    Ok(Some(Mask { bounds, width, height, blocked: cells }))
+    let MaskRaster { bounds, width, height, cells, held } = region;
+    Ok(Some((Mask { bounds, width, height, blocked: cells }, held)))
 }
 
 /// Warnings of curves that lie off the canvas.

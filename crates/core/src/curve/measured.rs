@@ -39,6 +39,11 @@ impl<const D: usize> Measured<D> {
         Self { path, knots, points }
     }
 
+    /// Number of points that `path` is flattened to when it is measured with `tolerance`.
+    pub fn count(path: &Path<D>, tolerance: f64) -> usize {
+        path.cubics.iter().map(|c| steps(c, tolerance).max(2)).sum::<usize>() + 1
+    }
+
     /// The path.
     pub fn path(&self) -> &Path<D> {
         &self.path
@@ -139,6 +144,7 @@ mod tests {
 
     #[test]
     fn a_part_keeps_the_corners_and_may_cross_the_start() {
+        assert_eq!(Measured::count(square().path(), 1e-3), square().points().len());
         let part = square().part(3.5, 5.5);
         assert_eq!(part.cubics.len(), 3);
         assert!((part.start().unwrap() - Vector::xy(0.0, 0.5)).norm() < 1e-12);

@@ -1,9 +1,15 @@
 //! JSON: the pieces of ribbons with their texture coordinates.
 
-use arabesque_core::{Decimals, Patch, Result, Warning};
+use arabesque_core::{Budget, Decimals, Patch, Result, Warning};
 use serde::Serialize;
 
 use crate::json::warning::{WarningRecord, warning_records};
+
+/// Bytes of one piece and of one number of its shift, as records and as text.
+const PIECE: usize = 1_600;
+const NUMBER: usize = 80;
+/// Work of one byte.
+const BYTE: u64 = 4;
 
 /// One ribbon.
 #[derive(Clone, Debug)]
@@ -33,6 +39,8 @@ pub struct Document<'a, const D: usize> {
     pub warnings: &'a [Warning],
     /// The recipe, as TOML.
     pub recipe: Option<&'a str>,
+    /// What writing may use up.
+    pub budget: &'a Budget,
 }
 
 #[derive(Serialize)]
@@ -82,8 +90,12 @@ struct PieceRecord {
 /// corners in pixels of the exemplar.
 ///
 /// # Errors
-/// [`arabesque_core::Error::Input`] when a number cannot be written, which no ribbon should hold.
+/// [`arabesque_core::Error::Limit`] when the work or the memory is used up, and [`arabesque_core::Error::Input`] when a number cannot be written, which no ribbon should hold.
 pub fn write_ribbons<const D: usize>(document: &Document<'_, D>) -> Result<String> {
+    let pieces = document.ribbons.iter().flat_map(|line| &line.pieces);
+    let bytes = pieces.map(|(_, shift)| PIECE + NUMBER * shift.len()).sum::<usize>();
+    document.budget.spend(BYTE * bytes as u64)?;
+    let _held = document.budget.hold("the text of the pieces", bytes)?;
     let decimals = Decimals::for_extent(document.extent);
     let file = File {
         generator: "arabesque",
@@ -133,6 +145,7 @@ mod tests {
             extent: 10.0,
             warnings: &[],
             recipe: Some("seed = 1\n"),
+            budget: &Budget::default(),
         })
         .unwrap();
         let value: serde_json::Value = serde_json::from_str(&text).unwrap();

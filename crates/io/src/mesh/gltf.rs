@@ -1,6 +1,6 @@
 //! GLB: textured strips with their pictures inside.
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Budget, Error, Result};
 use serde_json::{Value, json};
 
 use crate::mesh::strip::Part;
@@ -18,6 +18,12 @@ const LINEAR: u32 = 9729;
 const CLAMP_TO_EDGE: u32 = 33071;
 /// Where in `asset` the recipe stands.
 const RECIPE: &str = "arabesque recipe";
+
+/// Work of one corner.
+const CORNER: u64 = 200;
+/// Bytes of one corner, in the file and on the way there, and of one triangle.
+const CORNER_BYTES: usize = 3 * (12 + 8);
+const TRIANGLE_BYTES: usize = 3 * 12;
 
 /// The binary chunk while it grows.
 #[derive(Default)]
@@ -104,10 +110,18 @@ impl Content {
 /// picture's top is at texture coordinate 0, as the format has it. Parts without triangles are left out.
 ///
 /// # Errors
-/// [`Error::Limit`] beyond 4 GiB.
-pub fn write_glb(parts: &[Part], recipe: Option<&str>) -> Result<Vec<u8>> {
+/// [`Error::Limit`] beyond 4 GiB or when the work or the memory is used up, [`Error::Stopped`] when somebody asked to stop.
+pub fn write_glb(parts: &[Part], recipe: Option<&str>, budget: &Budget) -> Result<Vec<u8>> {
+    let bytes = parts.iter().map(|part| {
+        let strip = &part.strip;
+        CORNER_BYTES * strip.positions.len() + TRIANGLE_BYTES * strip.triangles.len() + 3 * part.picture.len()
+    });
+    let _held = budget.hold("the bytes of the mesh", bytes.sum())?;
     let mut content = Content::default();
-    parts.iter().filter(|part| !part.strip.triangles.is_empty()).for_each(|part| content.add(part));
+    for part in parts.iter().filter(|part| !part.strip.triangles.is_empty()) {
+        budget.spend(CORNER.saturating_mul(part.strip.positions.len() as u64))?;
+        content.add(part);
+    }
     let Content { buffer, primitives, materials, textures, images } = content;
     let mut asset = json!({ "version": "2.0", "generator": concat!("arabesque ", env!("CARGO_PKG_VERSION")) });
     if let Some(recipe) = recipe {
@@ -186,7 +200,7 @@ mod tests {
 
     #[test]
     fn the_container_holds_what_its_header_says() {
-        let bytes = write_glb(&[part()], Some("seed = 1\n")).unwrap();
+        let bytes = write_glb(&[part()], Some("seed = 1\n"), &Budget::default()).unwrap();
         let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
         assert!(is_glb(&bytes));
         assert_eq!((number(4), number(8)), (2, bytes.len()));
@@ -205,7 +219,7 @@ mod tests {
 
     #[test]
     fn broken_files_have_no_recipe() {
-        let bytes = write_glb(&[part()], None).unwrap();
+        let bytes = write_glb(&[part()], None, &Budget::default()).unwrap();
         assert_eq!(recipe_of(&bytes), None);
         for end in [0, 4, 15, 20, 40] {
             assert_eq!(recipe_of(&bytes[..end]), None);

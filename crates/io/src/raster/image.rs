@@ -1,9 +1,9 @@
 //! Pictures as they are: straight RGBA, from PNG or drawn from SVG.
 
-use arabesque_core::{Budget, Error, Image, Result};
-use resvg::{tiny_skia, usvg};
+use arabesque_core::{Budget, Image, Result};
+use png::{BitDepth, ColorType};
 
-use crate::raster::{field, png::straight, size::checked_size};
+use crate::raster::{drawn::Drawn, rows::Rows, size::checked_size};
 
 /// Whether a picture says anything about transparency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,49 +17,63 @@ pub enum Alpha {
 /// Reads a PNG picture: gray, colour or palette, up to 16 bits per channel.
 ///
 /// # Errors
-/// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`].
+/// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`] or when the work
+/// or the memory is used up.
 pub fn read_image(name: &str, bytes: &[u8], budget: &Budget) -> Result<(Image, Alpha)> {
-    let raw = field::decode(name, bytes, budget)?;
-    let alpha = match raw.kind {
-        png::ColorType::Rgba | png::ColorType::GrayscaleAlpha => Alpha::Given,
+    let rows = Rows::open(name, bytes, budget)?;
+    let alpha = match rows.kind {
+        ColorType::Rgba | ColorType::GrayscaleAlpha => Alpha::Given,
         _ => Alpha::Missing,
     };
+    let (width, height, kind, depth) = (rows.width, rows.height, rows.kind, rows.depth);
+    let (mut pixels, _held) = budget.list(&format!("{name}: pixels of the picture"), width * height)?;
+    rows.each(|_, row| {
+        pixels.extend(straight_pixels(row, kind, depth));
+        Ok(())
+    })?;
+    Ok((Image { width, height, pixels }, alpha))
+}
+
+/// The pixels of a row as RGBA of 8 bits.
+pub(crate) fn straight_pixels(row: &[u8], kind: ColorType, depth: BitDepth) -> impl Iterator<Item = [u8; 4]> + '_ {
+    let channels = kind.samples();
     // Of two bytes the first is the higher one.
-    let wide = if raw.depth == png::BitDepth::Sixteen { 2 } else { 1 };
-    let samples: Vec<u8> = raw.samples.iter().step_by(wide).copied().collect();
-    let pixels = samples
-        .chunks_exact(raw.kind.samples())
-        .map(|s| match *s {
-            [g] => [g, g, g, 255],
-            [g, a] => [g, g, g, a],
-            [r, g, b] => [r, g, b, 255],
-            [r, g, b, a, ..] => [r, g, b, a],
-            [] => [0; 4],
-        })
-        .collect();
-    Ok((Image { width: raw.width, height: raw.height, pixels }, alpha))
+    let wide = if depth == BitDepth::Sixteen { 2 } else { 1 };
+    row.chunks_exact(channels * wide).map(move |pixel| {
+        let at = |k: usize| pixel[k * wide];
+        match channels {
+            1 => [at(0), at(0), at(0), 255],
+            2 => [at(0), at(0), at(0), at(1)],
+            3 => [at(0), at(1), at(2), 255],
+            _ => [at(0), at(1), at(2), at(3)],
+        }
+    })
 }
 
 /// Draws an SVG text on a transparent background, `scale` pixels per user unit of its page, whose size in user units is
 /// `units`.
 ///
 /// # Errors
-/// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`].
+/// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`] or when the
+/// work or the memory is used up.
 pub fn draw_svg(name: &str, text: &str, (units, scale): ([f64; 2], f64), budget: &Budget) -> Result<Image> {
-    let fail = |problem: String| Error::input(name, problem, "open the file in a drawing program and save it again");
-    let tree = usvg::Tree::from_str(text, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
-    let [width, height] = units.map(|u| (u * scale).round().max(1.0));
+    let size = units.map(|u| (u * scale).round().max(1.0));
     let advice = "make the page of the drawing less long and narrow";
-    let [columns, rows] = checked_size(&format!("{name}: size as a picture"), [width, height], budget, advice)?;
-    let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
-    let size = [f64::from(tree.size().width()), f64::from(tree.size().height())];
-    let stretch = tiny_skia::Transform::from_scale((width / size[0]) as f32, (height / size[1]) as f32);
-    resvg::render(&tree, stretch, &mut pixmap.as_mut());
-    Ok(straight(&pixmap))
+    let [width, height] =
+        checked_size(&format!("{name}: size as a picture"), size, budget, advice)?.map(|n| n as usize);
+    let drawn = Drawn::read(name, text, budget)?;
+    let (mut pixels, _held) = budget.list(&format!("{name}: pixels of the picture"), width * height)?;
+    drawn.rows(size, |_, row| {
+        pixels.extend_from_slice(row);
+        Ok(())
+    })?;
+    Ok(Image { width, height, pixels })
 }
 
 #[cfg(test)]
 mod tests {
+    use arabesque_core::Error;
+
     use super::*;
 
     fn encoded(kind: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {

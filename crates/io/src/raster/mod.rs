@@ -1,7 +1,11 @@
 //! Pictures made of pixels: results drawn as PNG, exemplars, and pictures that stand for numbers.
 
+mod demand;
+mod drawn;
+mod expansion;
 pub mod field;
 pub mod image;
 pub mod mask;
 pub mod png;
+pub mod rows;
 pub mod size;

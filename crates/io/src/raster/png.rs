@@ -1,10 +1,11 @@
 //! PNG: pictures of results, with their resolution and their recipe.
 
-use arabesque_core::{Budget, Error, Image, Result};
-use resvg::{tiny_skia, usvg};
+use std::io::{self, Write};
+
+use arabesque_core::{Budget, Error, Held, Image, Result};
 
 use crate::{
-    raster::size::checked_size,
+    raster::{drawn::Drawn, size::checked_size},
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
 
@@ -25,6 +26,15 @@ impl Default for Resolution {
 
 /// Keyword of the text chunk that holds the recipe.
 const RECIPE_KEYWORD: &str = "arabesque recipe";
+
+/// Most bytes of a recipe that was compressed.
+const RECIPE: usize = 64 << 20;
+/// Most bytes of one chunk of compressed pixels.
+const PART: usize = 64 << 20;
+/// Least by which the file grows.
+const GROWTH: usize = 1 << 16;
+/// Work of compressing one pixel.
+const COMPRESSING: u64 = 40;
 
 /// What a picture is made from.
 #[derive(Clone, Copy, Debug)]
@@ -48,67 +58,135 @@ pub struct RenderJob<'a> {
 /// [`Error::Limit`] when it would have more than [`arabesque_core::Limits::pixels`] pixels, [`Error::Input`] when the text cannot be
 /// drawn.
 pub fn write_png(job: &RenderJob<'_>, budget: &Budget) -> Result<Vec<u8>> {
-    let fail = |problem: String| Error::input("drawing the result", problem, "write it as SVG instead");
-    let tree = usvg::Tree::from_str(job.svg, &usvg::Options::default()).map_err(|e| fail(e.to_string()))?;
-    let page = [f64::from(tree.size().width()), f64::from(tree.size().height())];
+    let drawn = Drawn::read("drawing the result", job.svg, budget)?;
+    let page = drawn.page();
     let scale = match job.resolution {
         Resolution::PerInch(dpi) => [dpi / PIXELS_PER_INCH; 2],
         Resolution::PerUnit(n) => [n * job.units[0] / page[0], n * job.units[1] / page[1]],
     };
     // A clamp keeps NaN, which the limit below then refuses.
-    let side = |k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX);
-    let (width, height) = (side(0), side(1));
+    let size = [0, 1].map(|k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX));
     let advice = "ask for fewer pixels, or write SVG";
-    let [columns, rows] = checked_size("size of the picture", [width, height], budget, advice)?;
-    let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or_else(|| fail("no pixels".into()))?;
-    let stretch = tiny_skia::Transform::from_scale((width / page[0]) as f32, (height / page[1]) as f32);
-    resvg::render(&tree, stretch, &mut pixmap.as_mut());
-    let per_metre = width / page[0] * PIXELS_PER_INCH * INCHES_PER_METRE;
-    encode(&straight(&pixmap), per_metre, job.recipe).map_err(|e| fail(e.to_string()))
+    let pixels = checked_size("size of the picture", size, budget, advice)?.map(|n| n as usize);
+    let per_metre = size[0] / page[0] * PIXELS_PER_INCH * INCHES_PER_METRE;
+    write_rows(pixels, per_metre, job.recipe, budget, |write| drawn.rows(size, |_, row| write(row)))
+}
+
+/// Draws an SVG text as PNG, `scale` pixels per user unit of a page of `units`, without what lies where `hidden` holds; errors call the
+/// text `name`.
+///
+/// # Errors
+/// As [`write_png`].
+pub fn write_drawing(
+    (name, text): (&str, &str),
+    (units, scale): ([f64; 2], f64),
+    hidden: &dyn Fn(usize, usize) -> bool,
+    (per_metre, recipe): (f64, Option<&str>),
+    budget: &Budget,
+) -> Result<Vec<u8>> {
+    let size = units.map(|u| (u * scale).round().max(1.0));
+    let advice = "make the page of the drawing less long and narrow";
+    let pixels = checked_size(&format!("{name}: size as a picture"), size, budget, advice)?.map(|n| n as usize);
+    let drawn = Drawn::read(name, text, budget)?;
+    let mut shown = Vec::new();
+    write_rows(pixels, per_metre, recipe, budget, |write| {
+        drawn.rows(size, |y, row| {
+            shown.clear();
+            shown.extend(row.iter().enumerate().map(|(x, pixel)| if hidden(x, y) { [0; 4] } else { *pixel }));
+            write(&shown)
+        })
+    })
 }
 
 /// Writes a picture with straight alpha as PNG.
 ///
 /// # Errors
-/// [`Error::Input`] when the encoder refuses it.
-pub fn write_image(image: &Image, per_metre: f64, recipe: Option<&str>) -> Result<Vec<u8>> {
-    encode(image, per_metre, recipe)
-        .map_err(|e| Error::input("writing the picture", e.to_string(), "write it as SVG instead"))
+/// [`Error::Input`] when the encoder refuses it, [`Error::Limit`] when the work or the memory is used up.
+pub fn write_image(image: &Image, per_metre: f64, recipe: Option<&str>, budget: &Budget) -> Result<Vec<u8>> {
+    write_rows([image.width, image.height], per_metre, recipe, budget, |write| {
+        image.pixels.chunks(image.width.max(1)).try_for_each(write)
+    })
 }
 
-/// The pixels with their alpha divided out.
-pub(crate) fn straight(pixmap: &tiny_skia::Pixmap) -> Image {
-    let pixels = pixmap
-        .pixels()
-        .iter()
-        .map(|p| {
-            let c = p.demultiply();
-            [c.red(), c.green(), c.blue(), c.alpha()]
-        })
-        .collect();
-    Image { width: pixmap.width() as usize, height: pixmap.height() as usize, pixels }
-}
-
-fn encode(image: &Image, per_metre: f64, recipe: Option<&str>) -> std::result::Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, image.width as u32, image.height as u32);
+/// Writes the rows that `rows` hands over as PNG: RGBA with straight alpha, from the top.
+///
+/// # Errors
+/// As [`write_image`], and those of `rows`.
+pub fn write_rows(
+    size: [usize; 2],
+    per_metre: f64,
+    recipe: Option<&str>,
+    budget: &Budget,
+    rows: impl FnOnce(&mut dyn FnMut(&[[u8; 4]]) -> Result<()>) -> Result<()>,
+) -> Result<Vec<u8>> {
+    let refuse = |e: png::EncodingError| refused(&e.into());
+    let [width, height] = size.map(|n| n as u32);
+    let mut file = Growing { bytes: Vec::new(), held: Vec::new(), budget };
+    let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     let density = per_metre.round().clamp(1.0, f64::from(u32::MAX)) as u32;
     encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: density, yppu: density, unit: png::Unit::Meter }));
     if let Some(recipe) = recipe {
-        encoder.add_itxt_chunk(RECIPE_KEYWORD.into(), recipe.into())?;
+        encoder.add_itxt_chunk(RECIPE_KEYWORD.into(), recipe.into()).map_err(refuse)?;
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(image.pixels.as_flattened())?;
-    writer.finish()?;
-    Ok(bytes)
+    let mut writer = encoder.write_header().map_err(refuse)?;
+    // Compressed pixels are rarely more than the pixels themselves; up to the size of a part they are one chunk.
+    let pixels = (size[0] + 1).saturating_mul(size[1]).saturating_mul(4);
+    let part = pixels.saturating_add(pixels / 1000 + 1024).min(PART);
+    let _part = budget.hold("a part of the picture", part)?;
+    let mut stream = writer.stream_writer_with_size(part).map_err(refuse)?;
+    rows(&mut |row| {
+        budget.spend(COMPRESSING * row.len() as u64)?;
+        stream.write_all(row.as_flattened()).map_err(|e| refused(&e))
+    })?;
+    stream.finish().map_err(refuse)?;
+    writer.finish().map_err(refuse)?;
+    Ok(file.bytes)
+}
+
+/// The bytes of a file while they come, their memory held.
+struct Growing<'a> {
+    bytes: Vec<u8>,
+    held: Vec<Held>,
+    budget: &'a Budget,
+}
+
+impl Write for Growing<'_> {
+    fn write(&mut self, data: &[u8]) -> io::Result<usize> {
+        if self.bytes.capacity() - self.bytes.len() < data.len() {
+            let more = self.bytes.len().max(data.len()).max(GROWTH);
+            let held = self.budget.hold("bytes of the picture", more).map_err(io::Error::other)?;
+            self.held.push(held);
+            self.bytes.try_reserve_exact(more).map_err(io::Error::other)?;
+        }
+        self.bytes.extend_from_slice(data);
+        Ok(data.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Why the encoder stopped: what the budget said, or something of its own.
+fn refused(error: &io::Error) -> Error {
+    match error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+        Some(Error::Limit { what, found, limit, advice }) => {
+            Error::Limit { what: what.clone(), found: found.clone(), limit: limit.clone(), advice: advice.clone() }
+        }
+        _ => Error::input("writing the picture", error.to_string(), "write it as SVG instead"),
+    }
 }
 
 /// The recipe in a picture that [`write_png`] wrote.
 pub fn recipe_of(bytes: &[u8]) -> Option<String> {
-    let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
-    let chunk = reader.info().utf8_text.iter().find(|c| c.keyword == RECIPE_KEYWORD)?;
+    let mut decoder = png::Decoder::new(io::Cursor::new(bytes));
+    decoder.set_ignore_iccp_chunk(true);
+    let reader = decoder.read_info().ok()?;
+    let mut chunk = reader.info().utf8_text.iter().find(|c| c.keyword == RECIPE_KEYWORD)?.clone();
+    // Ours are not compressed; what is, may not be larger than a text could be.
+    chunk.decompress_text_with_limit(RECIPE).ok()?;
     chunk.get_text().ok()
 }
 

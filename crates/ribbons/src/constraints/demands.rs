@@ -1,12 +1,12 @@
 //! Which part of which exemplar each piece may show: ends of the curve, transitions, a fixed first piece.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Budget, Error, Result};
 use rayon::prelude::*;
 
 use crate::{
-    constraints::valid::{Demands, Grade, Offset, positions},
+    constraints::valid::{Demands, Grade, Offset, Site},
     exemplar::strip::Strip,
     geometry::cage::Cage,
     params::{RibbonParams, WANDER},
@@ -27,11 +27,12 @@ pub(crate) struct Plan<'a, const D: usize> {
     pub(crate) params: &'a RibbonParams,
     pub(crate) request: &'a RibbonRequest<D>,
     pub(crate) cage: &'a Cage<D>,
+    pub(crate) budget: &'a Budget,
 }
 
 impl<const D: usize> Plan<'_, D> {
     /// What is asked of each piece, beside the pixels that must stay `free`.
-    pub(crate) fn demands(&self, free: Vec<Vec<Offset>>) -> Result<Vec<Demands>> {
+    pub(crate) fn demands(&self, free: Vec<Arc<Vec<Offset>>>) -> Result<Vec<Demands>> {
         let changes = self.changes()?;
         let mut demands: Vec<Demands> = free
             .into_iter()
@@ -42,7 +43,7 @@ impl<const D: usize> Plan<'_, D> {
             self.start(&mut demands);
             self.end(&mut demands);
         }
-        for (k, wander) in self.wander(&demands).into_iter().enumerate() {
+        for (k, wander) in self.wander(&demands)?.into_iter().enumerate() {
             demands[k].rows = Some(self.rows(k, wander));
         }
         self.first(&mut demands)?;
@@ -56,14 +57,15 @@ impl<const D: usize> Plan<'_, D> {
 
     /// How far each piece may leave the middle, in pixels of the search: no farther than it must to have a valid position, and on the
     /// way there and back.
-    fn wander(&self, demands: &[Demands]) -> Vec<f64> {
+    fn wander(&self, demands: &[Demands]) -> Result<Vec<f64>> {
         let height = self.strip.height as f64;
         let limit = (self.params.wander.unwrap_or(WANDER) * height).max(1.0);
         let n = demands.len();
         if self.params.wander.is_some() {
-            return vec![limit; n];
+            return Ok(vec![limit; n]);
         }
-        let needed: Vec<f64> = (0..n).into_par_iter().map(|k| self.needed(k, &demands[k], limit)).collect();
+        let needed =
+            (0..n).into_par_iter().map(|k| self.needed(k, &demands[k], limit)).collect::<Result<Vec<f64>>>()?;
         let reserve = |j: usize| if needed[j] > limit { needed[j] + RESERVE * height } else { limit };
         let away = |j: usize, k: usize| {
             let there = j.abs_diff(k);
@@ -71,19 +73,25 @@ impl<const D: usize> Plan<'_, D> {
             reserve(j) - SLOPE * pieces as f64 * self.step()
         };
         let detours: Vec<usize> = (0..n).filter(|&j| needed[j] > limit).collect();
-        (0..n).map(|k| detours.iter().map(|&j| away(j, k)).fold(limit, f64::max)).collect()
+        let farthest = |k: usize| {
+            self.budget.spend(detours.len() as u64 + 1)?;
+            Ok(detours.iter().map(|&j| away(j, k)).fold(limit, f64::max))
+        };
+        (0..n).map(farthest).collect()
     }
 
     /// The least distance from the middle, among those tried, within which piece `k` has a valid position; all of the ribbon where it
     /// has none.
-    fn needed(&self, k: usize, demands: &Demands, limit: f64) -> f64 {
+    fn needed(&self, k: usize, demands: &Demands, limit: f64) -> Result<f64> {
         let most = self.strip.height as f64 + self.cage.forms[k].left();
         let tried = std::iter::successors(Some(limit), |w| Some(w * 1.5)).take_while(|w| *w < most);
-        let fits = |wander: &f64| {
-            let demands = Demands { rows: Some(self.rows(k, *wander)), ..demands.clone() };
-            !positions(self.strip, &self.cage.forms[k], &demands, Grade::Whole).is_empty()
-        };
-        tried.into_iter().find(fits).unwrap_or(most)
+        let site = Site { strip: self.strip, form: &self.cage.forms[k], demands, budget: self.budget };
+        for wander in tried {
+            if site.has_any(Some(&self.rows(k, wander)), Grade::Whole)? {
+                return Ok(wander);
+            }
+        }
+        Ok(most)
     }
 
     /// The rows of the top left corner of piece `k` within `wander` of the middle.

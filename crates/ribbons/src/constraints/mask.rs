@@ -1,12 +1,20 @@
 //! Where the pattern must not be: regions to avoid, folds of the ribbon and overlaps [Zhou 2013 §3.1].
 
-use arabesque_core::{Bounds, Vector};
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Budget, Held, Meter, Result, Vector};
 use rayon::prelude::*;
 
 use crate::{constraints::valid::Offset, geometry::cage::Cage};
 
 /// Depth in pixels from which a point counts as inside another piece: neighbours share their edges.
 const INSIDE: f64 = 0.5;
+
+/// Work of one pixel of a piece, of comparing it with one other piece, of one blocked point, and of one box among others.
+const PIXEL: u64 = 30;
+const RIVAL: u64 = 15;
+const POINT: u64 = 60;
+const BOX: u64 = 2;
 
 /// Cells over the canvas in which no ink may fall.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,8 +44,17 @@ impl Mask {
         inside && self.blocked[y as usize * self.width + x as usize]
     }
 
-    /// Points in the blocked cells of `around`, at most `spacing` apart.
-    pub(crate) fn points(&self, around: Bounds<2>, spacing: f64) -> impl Iterator<Item = Vector<2>> + '_ {
+    /// Shows points in the blocked cells of `around` to `visit`, at most `spacing` apart, until it answers that it has seen enough.
+    ///
+    /// # Errors
+    /// Those of `meter` and of `visit`.
+    pub(crate) fn points(
+        &self,
+        around: Bounds<2>,
+        spacing: f64,
+        meter: &mut Meter<'_>,
+        mut visit: impl FnMut(Vector<2>) -> Result<bool>,
+    ) -> Result<()> {
         let cell = self.cell();
         let range = |k: usize, n: usize| {
             let from = ((around.min[k] - self.bounds.min[k]) / cell[k]).floor().clamp(0.0, n as f64) as usize;
@@ -45,38 +62,101 @@ impl Mask {
         };
         let columns = range(0, self.width);
         let parts = cell.map(|c| (c / spacing).ceil().max(1.0));
-        let cells = range(1, self.height).flat_map(move |y| columns.clone().map(move |x| (x, y)));
-        cells.filter(|&(x, y)| self.blocked[y * self.width + x]).flat_map(move |(x, y)| {
-            let grid = (0..parts[1] as usize).flat_map(move |j| (0..parts[0] as usize).map(move |i| (i, j)));
-            grid.map(move |(i, j)| {
-                let at = |k: usize, n: usize, part: usize| {
-                    self.bounds.min[k] + cell[k] * (n as f64 + (part as f64 + 0.5) / parts[k])
-                };
-                Vector::xy(at(0, x, i), at(1, y, j))
-            })
-        })
+        let at = |k: usize, n: usize, part: usize| {
+            self.bounds.min[k] + cell[k] * (n as f64 + (part as f64 + 0.5) / parts[k])
+        };
+        for y in range(1, self.height) {
+            meter.spend(columns.len() as u64 + 1)?;
+            for x in columns.clone().filter(|&x| self.blocked[y * self.width + x]) {
+                for j in 0..parts[1] as usize {
+                    for i in 0..parts[0] as usize {
+                        meter.spend(POINT)?;
+                        if visit(Vector::xy(at(0, x, i), at(1, y, j)))? {
+                            return Ok(());
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 }
 
-/// For each piece of each cage the pixels that must stay free.
-pub(crate) fn forbidden(cages: &[Cage<2>], mask: Option<&Mask>) -> Vec<Vec<Vec<Offset>>> {
-    let all: Vec<PieceId> =
-        cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
-    let bounds: Vec<Bounds<2>> = all.iter().map(|&(c, k)| cages[c].bounds(k)).collect();
-    let near = Near::new(&bounds);
-    let found: Vec<Vec<Offset>> = (0..all.len())
-        .into_par_iter()
-        .map(|id| {
-            let rivals: Vec<PieceId> = near.of(id, &bounds).into_iter().map(|j| all[j]).collect();
-            let mut offsets = overlaps(cages, all[id], &rivals);
-            offsets.extend(mask.into_iter().flat_map(|mask| blocked(&cages[all[id].0], all[id].1, mask)));
-            offsets.sort_unstable();
-            offsets.dedup();
-            offsets
-        })
-        .collect();
-    let mut rest = found.into_iter();
-    cages.iter().map(|cage| rest.by_ref().take(cage.len()).collect()).collect()
+/// The pixels that must stay free, for each piece of each cage.
+#[derive(Debug)]
+pub(crate) struct Forbidden {
+    pub(crate) cages: Vec<Vec<Arc<Vec<Offset>>>>,
+    /// The memory of the offsets.
+    _held: Vec<Option<Held>>,
+}
+
+/// The pixels of one piece, while they are found.
+struct Offsets<'a> {
+    list: Vec<Offset>,
+    /// The memory of as many as the list has room for.
+    held: Option<Held>,
+    budget: &'a Budget,
+}
+
+impl Offsets<'_> {
+    fn push(&mut self, offset: Offset) -> Result<()> {
+        if self.list.len() == self.list.capacity() {
+            // The same pixel may be found again and again.
+            self.tidy();
+            if 2 * self.list.len() >= self.list.capacity() {
+                let room = (2 * self.list.len()).max(64);
+                self.held = None;
+                self.held = Some(self.budget.hold("pixels to avoid", room * size_of::<Offset>())?);
+                self.list.reserve_exact(room - self.list.len());
+            }
+        }
+        self.list.push(offset);
+        Ok(())
+    }
+
+    fn tidy(&mut self) {
+        self.list.sort_unstable();
+        self.list.dedup();
+    }
+}
+
+impl Forbidden {
+    /// Nothing.
+    pub(crate) fn none<const D: usize>(cages: &[Cage<D>]) -> Self {
+        let nothing = Arc::new(Vec::new());
+        let cages = cages.iter().map(|cage| vec![Arc::clone(&nothing); cage.len()]).collect();
+        Self { cages, _held: Vec::new() }
+    }
+
+    /// What `mask` and other pieces leave free. Pieces longer than `longest` pixels have no position anyway, and are not looked at.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
+    pub(crate) fn of(cages: &[Cage<2>], mask: Option<&Mask>, longest: f64, budget: &Budget) -> Result<Self> {
+        let all: Vec<PieceId> =
+            cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
+        let bounds: Vec<Bounds<2>> = all.iter().map(|&(c, k)| cages[c].bounds(k)).collect();
+        let near = Near::new(&bounds);
+        let one = |id: usize| {
+            let (c, k) = all[id];
+            if cages[c].forms[k].bounds().size()[0] > longest {
+                return Ok((Vec::new(), None));
+            }
+            let rivals: Vec<PieceId> = near.of(id, &bounds, budget)?.into_iter().map(|j| all[j]).collect();
+            let mut offsets = Offsets { list: Vec::new(), held: None, budget };
+            overlaps(cages, all[id], &rivals, &mut offsets)?;
+            if let Some(mask) = mask {
+                blocked(&cages[c], k, mask, &mut offsets)?;
+            }
+            offsets.tidy();
+            Ok((offsets.list, offsets.held))
+        };
+        let found = (0..all.len()).into_par_iter().map(one).collect::<Result<Vec<(Vec<Offset>, Option<Held>)>>>()?;
+        let (offsets, held): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let mut rest = offsets.into_iter().map(Arc::new);
+        let cages = cages.iter().map(|cage| rest.by_ref().take(cage.len()).collect()).collect();
+        Ok(Self { cages, _held: held })
+    }
 }
 
 /// Which boxes meet, by their left sides.
@@ -95,13 +175,15 @@ impl Near {
     }
 
     /// The boxes that meet box `id`, in rising order.
-    fn of(&self, id: usize, bounds: &[Bounds<2>]) -> Vec<usize> {
+    fn of(&self, id: usize, bounds: &[Bounds<2>], budget: &Budget) -> Result<Vec<usize>> {
         let own = &bounds[id];
         let from = self.order.partition_point(|&k| bounds[k].min[0] < own.min[0] - self.widest);
-        let near = self.order[from..].iter().copied().take_while(|&k| bounds[k].min[0] <= own.max[0]);
+        let end = self.order.partition_point(|&k| bounds[k].min[0] <= own.max[0]).max(from);
+        budget.spend(BOX * (end - from) as u64)?;
+        let near = self.order[from..end].iter().copied();
         let mut near: Vec<usize> = near.filter(|&k| k != id && bounds[k].intersects(own)).collect();
         near.sort_unstable();
-        near
+        Ok(near)
     }
 }
 
@@ -109,38 +191,47 @@ impl Near {
 type PieceId = (usize, usize);
 
 /// Pixels of a piece that lie in another piece as well, and nearer to the curve there: each place of an overlap belongs to one piece.
-fn overlaps(cages: &[Cage<2>], id: PieceId, rivals: &[PieceId]) -> Vec<Offset> {
+fn overlaps(cages: &[Cage<2>], id: PieceId, rivals: &[PieceId], offsets: &mut Offsets<'_>) -> Result<()> {
     let (c, k) = id;
     let (cage, form) = (&cages[c], &cages[c].forms[k]);
     let bounds = form.bounds();
-    let mut offsets = Vec::new();
+    let budget = offsets.budget;
+    let mut meter = budget.meter();
     for y in bounds.min[1].floor() as i32..=bounds.max[1].ceil() as i32 {
         for x in bounds.min[0].floor() as i32..=bounds.max[0].ceil() as i32 {
+            meter.spend(PIXEL)?;
             let q = Vector::xy(f64::from(x), f64::from(y) + 0.5);
             if form.depth(q) <= 0.0 {
                 continue;
             }
             let p = cage.canvas(k, q);
             let own = (cage.distance(k, p), id);
+            meter.spend(RIVAL * rivals.len() as u64)?;
             let taken = rivals.iter().any(|&(d, j)| {
                 let rival = &cages[d];
                 rival.forms[j].depth(rival.local(j, p)) > INSIDE && nearer((rival.distance(j, p), (d, j)), own)
             });
             if taken {
-                offsets.push((x, y));
+                offsets.push((x, y))?;
             }
         }
     }
-    offsets
+    Ok(())
 }
 
 fn nearer(a: (f64, PieceId), b: (f64, PieceId)) -> bool {
     a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).is_lt()
 }
 
-/// Pixels of a piece on which the mask lies.
-fn blocked<'a>(cage: &'a Cage<2>, k: usize, mask: &'a Mask) -> impl Iterator<Item = Offset> + 'a {
+/// Adds the pixels of a piece on which the mask lies.
+fn blocked(cage: &Cage<2>, k: usize, mask: &Mask, offsets: &mut Offsets<'_>) -> Result<()> {
     let around = cage.bounds(k).grown(2.0 * cage.scale);
-    let local = mask.points(around, cage.scale).map(move |p| cage.local(k, p));
-    local.filter(move |q| cage.forms[k].depth(*q) > -1.5).map(|q| ((q[0] + 0.5).floor() as i32, q[1].floor() as i32))
+    let budget = offsets.budget;
+    mask.points(around, cage.scale, &mut budget.meter(), |p| {
+        let q = cage.local(k, p);
+        if cage.forms[k].depth(q) > -1.5 {
+            offsets.push(((q[0] + 0.5).floor() as i32, q[1].floor() as i32))?;
+        }
+        Ok(false)
+    })
 }

@@ -1,8 +1,8 @@
 //! Which positions a piece may take [Zhou 2013 §1.3, §2 `findValidPositions`].
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
-use arabesque_core::Vector;
+use arabesque_core::{Budget, Meter, Result, Vector};
 
 use crate::{
     exemplar::bits::{Bits, ones},
@@ -27,6 +27,9 @@ impl Position {
 /// Offset of a pixel from a [`Position`].
 pub(crate) type Offset = (i32, i32);
 
+/// Offsets that are looked at before their work is counted.
+const OFFSETS: usize = 64;
+
 /// What is asked of a piece beside its form.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Demands {
@@ -35,7 +38,7 @@ pub(crate) struct Demands {
     /// Rows that its top left corner may lie in, when they are limited.
     pub(crate) rows: Option<Range<i64>>,
     /// Pixels on which no ink may fall, in rising order.
-    pub(crate) forbidden: Vec<Offset>,
+    pub(crate) forbidden: Arc<Vec<Offset>>,
     /// Whether the left edge may be empty: the beginning of a curve that is drawn with its end.
     pub(crate) loose_left: bool,
     /// The same of the right edge.
@@ -66,42 +69,91 @@ struct Lines {
     right: Vec<Offset>,
 }
 
-/// Valid positions of a piece of form `form`, in rising order of x, then y.
-pub(crate) fn positions(strip: &Strip, form: &Form, demands: &Demands, grade: Grade) -> Vec<Position> {
-    let Some(lines) = lines(form) else { return Vec::new() };
-    let rows = form.rows() as i64;
-    let all = -rows..strip.height as i64;
-    let heights = demands.rows.as_ref().map_or(all.clone(), |r| r.start.max(all.start)..r.end.min(all.end));
-    let room = room(strip, form, &demands.columns);
-    let mut found = Vec::new();
-    let mut line = vec![0; strip.ink.words()];
-    for y in heights {
-        line.copy_from_slice(&room);
-        if grade < Grade::Any && !demands.loose_left {
-            keep(&mut line, &any(&strip.ink, &lines.left, y));
-        }
-        if grade < Grade::Any && !demands.loose_right {
-            keep(&mut line, &any(&strip.ink, &lines.right, y));
-        }
-        if grade < Grade::Cut {
-            remove(&mut line, &any(&strip.ink, &lines.touch, y));
-        }
-        if grade < Grade::Forbidden && line.iter().any(|&w| w != 0) {
-            remove(&mut line, &any(&strip.trace, &demands.forbidden, y));
-        }
-        found.extend(ones(&line).map(|x| Position { x: x as u16, y: y as i16 }));
+/// A piece for which positions are looked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Site<'a> {
+    pub(crate) strip: &'a Strip,
+    pub(crate) form: &'a Form,
+    pub(crate) demands: &'a Demands,
+    pub(crate) budget: &'a Budget,
+}
+
+impl Site<'_> {
+    /// Valid positions, in rising order of x, then y.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when there are too many, or the work is used up; [`arabesque_core::Error::Stopped`].
+    pub(crate) fn positions(&self, grade: Grade) -> Result<Vec<Position>> {
+        let (mut found, most) = (Vec::new(), self.budget.limits().candidates);
+        self.each_row(self.demands.rows.as_ref(), grade, |y, line| {
+            found.extend(ones(line).map(|x| Position { x: x as u16, y: y as i16 }));
+            self.budget.within("places in the exemplar for one piece", found.len(), ("candidates", most))?;
+            Ok(true)
+        })?;
+        found.sort_unstable();
+        Ok(found)
     }
-    found.sort_unstable();
-    found
+
+    /// Whether there is a valid position with the top left corner in `rows`.
+    ///
+    /// # Errors
+    /// As [`Site::positions`].
+    pub(crate) fn has_any(&self, rows: Option<&Range<i64>>, grade: Grade) -> Result<bool> {
+        let mut any = false;
+        self.each_row(rows, grade, |_, line| {
+            any = line.iter().any(|&word| word != 0);
+            Ok(!any)
+        })?;
+        Ok(any)
+    }
+
+    /// Shows the valid columns of each row to `visit`, which answers whether to go on.
+    fn each_row(
+        &self,
+        rows: Option<&Range<i64>>,
+        grade: Grade,
+        mut visit: impl FnMut(i64, &[u64]) -> Result<bool>,
+    ) -> Result<()> {
+        let Self { strip, form, demands, budget } = *self;
+        let mut meter = budget.meter();
+        let room = room(strip, form, &demands.columns);
+        // Without room the edges may be of any length, and need not be looked at.
+        let (true, Some(lines)) = (room.iter().any(|&word| word != 0), lines(form)) else { return Ok(()) };
+        let all = -(form.rows() as i64)..strip.height as i64;
+        let heights = rows.map_or(all.clone(), |r| r.start.max(all.start)..r.end.min(all.end));
+        let mut line = vec![0; strip.ink.words()];
+        for y in heights {
+            line.copy_from_slice(&room);
+            if grade < Grade::Any && !demands.loose_left {
+                keep(&mut line, &any(&strip.ink, &lines.left, y, &mut meter)?);
+            }
+            if grade < Grade::Any && !demands.loose_right {
+                keep(&mut line, &any(&strip.ink, &lines.right, y, &mut meter)?);
+            }
+            if grade < Grade::Cut {
+                remove(&mut line, &any(&strip.ink, &lines.touch, y, &mut meter)?);
+            }
+            if grade < Grade::Forbidden && line.iter().any(|&w| w != 0) {
+                remove(&mut line, &any(&strip.trace, &demands.forbidden, y, &mut meter)?);
+            }
+            if !visit(y, &line)? {
+                break;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Where any of `offsets` meets a pixel of `ink`, for all x of the row `y`.
-fn any(ink: &Bits, offsets: &[Offset], y: i64) -> Vec<u64> {
+fn any(ink: &Bits, offsets: &[Offset], y: i64, meter: &mut Meter<'_>) -> Result<Vec<u64>> {
     let mut line = vec![0; ink.words()];
-    for &(dx, dy) in offsets {
-        ink.add_row(y + i64::from(dy), i64::from(dx), &mut line);
+    for part in offsets.chunks(OFFSETS) {
+        meter.spend((part.len() * (ink.words() + 1)) as u64)?;
+        for &(dx, dy) in part {
+            ink.add_row(y + i64::from(dy), i64::from(dx), &mut line);
+        }
     }
-    line
+    Ok(line)
 }
 
 fn keep(line: &mut [u64], other: &[u64]) {
@@ -119,7 +171,8 @@ fn room(strip: &Strip, form: &Form, columns: &[Range<usize>]) -> Vec<u64> {
     let mut line = vec![0; strip.ink.words()];
     for x in columns.iter().cloned().flatten().filter(|&x| x < strip.width) {
         let span = &strip.spans[strip.owner(x)];
-        if x as i64 + least >= span.start as i64 && x as i64 + most < span.end as i64 {
+        let (left, right) = ((x as i64).saturating_add(least), (x as i64).saturating_add(most));
+        if left >= span.start as i64 && right < span.end as i64 {
             line[x / 64] |= 1 << (x % 64);
         }
     }
@@ -164,7 +217,7 @@ fn pixels(from: Vector<2>, to: Vector<2>, lower: f64) -> Vec<Offset> {
 mod tests {
     use super::*;
     use crate::exemplar::strip::StripExemplar;
-    use arabesque_core::Image;
+    use arabesque_core::{Image, Limits};
 
     /// A bar of ink in rows 8 to 11 of 20, 40 columns.
     fn bar() -> Strip {
@@ -174,7 +227,14 @@ mod tests {
                 *pixel = [200, 10, 10, 255];
             }
         }
-        Strip::new(&[StripExemplar::new(image)], 1)
+        Strip::new(&[StripExemplar::new(image)], 1, &Budget::default()).unwrap()
+    }
+
+    fn positions(strip: &Strip, form: &Form, demands: &Demands, grade: Grade) -> Vec<Position> {
+        let site = Site { strip, form, demands, budget: &Budget::default() };
+        let found = site.positions(grade).unwrap();
+        assert_eq!(site.has_any(demands.rows.as_ref(), grade).unwrap(), !found.is_empty());
+        found
     }
 
     fn rectangle(width: f64, height: f64) -> Form {
@@ -198,7 +258,7 @@ mod tests {
     fn forbidden_pixels_stay_free() {
         let mut demands = everywhere();
         // With the two pixels around ink, rows 6 to 13 are taken.
-        demands.forbidden = (0..10).map(|x| (x, 2)).collect();
+        demands.forbidden = Arc::new((0..10).map(|x| (x, 2)).collect());
         let found = positions(&bar(), &rectangle(10.0, 10.0), &demands, Grade::Whole);
         assert!(found.len() == 30 && found.iter().all(|p| p.y == 3));
         assert_eq!(positions(&bar(), &rectangle(10.0, 10.0), &demands, Grade::Forbidden).len(), 150);
@@ -208,5 +268,22 @@ mod tests {
     fn a_ribbon_narrower_than_the_pattern_has_no_valid_position() {
         assert!(positions(&bar(), &rectangle(10.0, 3.0), &everywhere(), Grade::Whole).is_empty());
         assert!(!positions(&bar(), &rectangle(10.0, 3.0), &everywhere(), Grade::Cut).is_empty());
+    }
+
+    #[test]
+    fn places_and_work_are_counted() {
+        let (strip, form, demands) = (bar(), rectangle(10.0, 10.0), everywhere());
+        let find =
+            |budget: &Budget| Site { strip: &strip, form: &form, demands: &demands, budget }.positions(Grade::Whole);
+        let few = Budget::new(Limits { candidates: 100, ..Limits::default() });
+        assert!(find(&few).unwrap_err().to_string().contains("--limit candidates="));
+        // A piece of any length without room is looked at no further.
+        let endless = Form::new(10.0, Vector::xy(1e15, 0.0), Vector::xy(1e15, 10.0));
+        assert!(
+            super::Site { form: &endless, strip: &strip, demands: &demands, budget: &Budget::default() }
+                .positions(Grade::Any)
+                .unwrap()
+                .is_empty()
+        );
     }
 }

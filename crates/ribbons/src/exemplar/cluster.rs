@@ -1,6 +1,11 @@
 //! Columns in boxes of similar ones, so that a whole box can be ruled out at once.
 
+use arabesque_core::{Budget, Meter, Result};
+
 use crate::exemplar::columns::{BLOCKS, CHANNELS, SUMMARY, Summary};
+
+/// Work of taking one column into account for one box.
+const MEMBER: u64 = 30;
 
 /// A box of columns in the space of summaries.
 #[derive(Clone, Debug)]
@@ -41,13 +46,16 @@ pub(crate) struct Tree {
 
 impl Tree {
     /// Halves the columns along their widest number, or by the costs of the paths to them, until a box holds at most `most`.
-    pub(crate) fn new(summaries: &[Summary], costs: Option<&[f64]>, most: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when the work is used up, [`arabesque_core::Error::Stopped`].
+    pub(crate) fn new(summaries: &[Summary], costs: Option<&[f64]>, most: usize, budget: &Budget) -> Result<Self> {
         let order = (0..summaries.len() as u32).collect();
         let mut tree = Self { order, nodes: Vec::new() };
         if !summaries.is_empty() {
-            tree.split(summaries, costs, 0..summaries.len(), most);
+            tree.split((summaries, costs), 0..summaries.len(), most, &mut budget.meter())?;
         }
-        tree
+        Ok(tree)
     }
 
     /// The boxes that are not split.
@@ -57,11 +65,12 @@ impl Tree {
 
     fn split(
         &mut self,
-        summaries: &[Summary],
-        costs: Option<&[f64]>,
+        (summaries, costs): (&[Summary], Option<&[f64]>),
         range: std::ops::Range<usize>,
         most: usize,
-    ) -> usize {
+        meter: &mut Meter<'_>,
+    ) -> Result<usize> {
+        meter.spend(MEMBER * range.len() as u64)?;
         let members = &mut self.order[range.clone()];
         let (mut low, mut high) = ([f32::INFINITY; SUMMARY], [f32::NEG_INFINITY; SUMMARY]);
         let (mut cost, mut most_cost) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -86,10 +95,10 @@ impl Tree {
                 _ => summaries[*m as usize].sums[widest],
             };
             members.select_nth_unstable_by(half - 1, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
-            let first = self.split(summaries, costs, range.start..range.start + half, most);
-            let second = self.split(summaries, costs, range.start + half..range.end, most);
+            let first = self.split((summaries, costs), range.start..range.start + half, most, meter)?;
+            let second = self.split((summaries, costs), range.start + half..range.end, most, meter)?;
             self.nodes[place].halves = Some([first, second]);
         }
-        place
+        Ok(place)
     }
 }

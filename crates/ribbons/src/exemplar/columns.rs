@@ -1,6 +1,6 @@
 //! Columns of pixels along the edges of pieces, and what it costs to put two of them side by side [Zhou 2013 §1.3, `extractColumns`].
 
-use arabesque_core::Vector;
+use arabesque_core::{Budget, Held, Result, Vector};
 use rayon::prelude::*;
 
 use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form};
@@ -21,6 +21,12 @@ pub(crate) const CHANNELS: usize = 6;
 pub(crate) const SUMMARY: usize = CHANNELS * BLOCKS;
 /// Rows of pixels that are compared at once.
 const WIDE: usize = 4;
+
+/// Work of sampling one pixel of a column, and of adding it to the sums of its block.
+const SAMPLE: u64 = 12;
+const SUM: u64 = 1;
+/// Columns that are summed up before their work is counted.
+const SUMMED: usize = 256;
 
 /// One number for each of [`LANES`] columns.
 pub(crate) type Lanes = [f32; LANES];
@@ -55,37 +61,55 @@ fn add_costs(sum: &mut [f32; WIDE], p: &Chunk, q: &Chunk) {
 type Chunk = [[f32; WIDE]; CHANNELS];
 
 /// The pixels along one edge for every position of a piece. Columns are filled up with transparent pixels to whole blocks.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Columns {
     rows: usize,
     /// Chunks of a block.
     block: usize,
     chunks: Vec<Chunk>,
+    /// Their memory.
+    _held: Held,
 }
 
 impl Columns {
     /// Left edges: L + u.
-    pub(crate) fn left(strip: &Strip, form: &Form, context: f64, positions: &[Position]) -> Self {
-        Self::extract(strip, positions, &taps([Vector::ZERO, form.foot], form.rows(), context))
+    pub(crate) fn left(
+        strip: &Strip,
+        form: &Form,
+        context: f64,
+        positions: &[Position],
+        budget: &Budget,
+    ) -> Result<Self> {
+        Self::extract(strip, positions, &taps([Vector::ZERO, form.foot], form.rows(), context), budget)
     }
 
     /// Right edges: R + v, sampled at as many `rows` as the left edge that follows.
-    pub(crate) fn right(strip: &Strip, form: &Form, rows: usize, context: f64, positions: &[Position]) -> Self {
-        Self::extract(strip, positions, &taps([form.top, form.bottom], rows, context))
+    pub(crate) fn right(
+        strip: &Strip,
+        (form, rows): (&Form, usize),
+        context: f64,
+        positions: &[Position],
+        budget: &Budget,
+    ) -> Result<Self> {
+        Self::extract(strip, positions, &taps([form.top, form.bottom], rows, context), budget)
     }
 
-    fn extract(strip: &Strip, positions: &[Position], taps: &[Tap]) -> Self {
+    fn extract(strip: &Strip, positions: &[Position], taps: &[Tap], budget: &Budget) -> Result<Self> {
         let rows = taps.len();
         let block = rows.div_ceil(BLOCKS).div_ceil(WIDE);
-        let mut chunks = vec![[[0.0; WIDE]; CHANNELS]; block * BLOCKS * positions.len()];
-        chunks.par_chunks_mut(block * BLOCKS).zip(positions).with_min_len(64).for_each(|(column, p)| {
+        let count = (block * BLOCKS).saturating_mul(positions.len());
+        let (mut chunks, held) = budget.list::<Chunk>("edges of one piece at all its places in the exemplar", count)?;
+        chunks.resize(count, [[0.0; WIDE]; CHANNELS]);
+        chunks.par_chunks_mut(block * BLOCKS).zip(positions).with_min_len(64).try_for_each(|(column, p)| {
+            budget.spend(SAMPLE * rows as u64)?;
             for (k, tap) in taps.iter().enumerate() {
                 for (channel, value) in tap.sample(strip, *p).into_iter().enumerate() {
                     column[k / WIDE][channel][k % WIDE] = value;
                 }
             }
-        });
-        Self { rows, block, chunks }
+            Ok(())
+        })?;
+        Ok(Self { rows, block, chunks, _held: held })
     }
 
     /// Column `k`, block by block.
@@ -100,9 +124,20 @@ impl Columns {
     }
 
     /// Sums over the blocks of every column.
-    pub(crate) fn summaries(&self) -> Vec<Summary> {
+    pub(crate) fn summaries(&self, budget: &Budget) -> Result<Vec<Summary>> {
         let n = self.chunks.len().checked_div(self.block * BLOCKS).unwrap_or(0);
-        (0..n).into_par_iter().with_min_len(256).map(|k| self.summary(k)).collect()
+        let part = |part: usize| {
+            let columns = part * SUMMED..((part + 1) * SUMMED).min(n);
+            budget.spend(SUM * (self.rows * columns.len()) as u64)?;
+            Ok(columns.map(|k| self.summary(k)).collect())
+        };
+        let parts = (0..n.div_ceil(SUMMED)).into_par_iter().map(part).collect::<Result<Vec<Vec<Summary>>>>()?;
+        Ok(parts.concat())
+    }
+
+    /// Work of comparing two columns in full.
+    pub(crate) fn work(&self) -> u64 {
+        2 * self.rows as u64
     }
 
     fn summary(&self, k: usize) -> Summary {

@@ -1,10 +1,10 @@
 //! Exemplars as the search sees them: premultiplied pixels of all exemplars side by side.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
-use arabesque_core::{Error, Image, Result, Vector};
+use arabesque_core::{Budget, Error, Held, Image, Result, Vector};
 
-use crate::exemplar::bits::Bits;
+use crate::{exemplar::bits::Bits, geometry::cage::ROWS};
 
 /// Alpha in [0, 255] from which a pixel counts as ink that must not be cut.
 const CUT_INK: f32 = 26.0;
@@ -16,6 +16,13 @@ const SLOPE: f64 = 0.06;
 
 /// Most pixels of all exemplars together that are searched: rows take time with the square of it.
 pub const PIXELS: usize = 250_000;
+
+/// Most columns of all exemplars together: places of pieces are counted in 16 bits.
+const COLUMNS: usize = u16::MAX as usize - 1;
+
+/// Work of one pixel of an exemplar, and of one pixel of the search.
+const PIXEL: u64 = 4;
+const SEARCHED: u64 = 60;
 
 /// One exemplar: a picture whose pattern runs from left to right, and the parts of it that are kept for the ends of the curve.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -55,15 +62,23 @@ pub(crate) struct Strip {
     pub(crate) ink: Bits,
     /// Any ink at all, and two pixels around it.
     pub(crate) trace: Bits,
+    /// The memory of all this.
+    _held: Arc<Held>,
 }
 
 impl Strip {
     /// Joins `exemplars`, each averaged over squares of `coarse` pixels.
-    pub(crate) fn new(exemplars: &[StripExemplar], coarse: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when the work or the memory is used up.
+    pub(crate) fn new(exemplars: &[StripExemplar], coarse: usize, budget: &Budget) -> Result<Self> {
         let small: Vec<(usize, usize)> =
             exemplars.iter().map(|e| (e.image.width.div_ceil(coarse), e.image.height.div_ceil(coarse))).collect();
-        let width = small.iter().map(|s| s.0).sum();
+        let width: usize = small.iter().map(|s| s.0).sum();
         let height = small.iter().map(|s| s.1).max().unwrap_or(0);
+        let all: usize = width * height;
+        let held = Arc::new(budget.hold("pixels of the exemplars", all.saturating_mul(2 * size_of::<[f32; 4]>() + 1))?);
+        budget.spend(SEARCHED.saturating_mul(all as u64))?;
         let mut pixels = vec![[0.0; 4]; width * height];
         let (mut spans, mut above) = (Vec::new(), Vec::new());
         let mut left = 0;
@@ -72,6 +87,7 @@ impl Strip {
             let offset = (height - h) / 2;
             above.push(offset);
             for y in 0..h {
+                budget.spend(PIXEL * (w * coarse * coarse) as u64)?;
                 for x in 0..w {
                     pixels[(y + offset) * width + left + x] = average(&exemplar.image, x * coarse, y * coarse, coarse);
                 }
@@ -90,12 +106,7 @@ impl Strip {
         // Grown by what a sample reaches beside its place, and half a pixel of the canvas.
         let (ink, trace) = (bits(CUT_INK), bits(ANY_INK).grown(2));
         let slopes = slopes(&pixels, &spans, height);
-        Self { width, height, above, spans, starts, ends, ink, trace, pixels, slopes }
-    }
-
-    /// Pixel in column `x` of row `y`; transparent above and below.
-    pub(crate) fn pixel(&self, x: usize, y: i64) -> [f32; 4] {
-        if y < 0 || y >= self.height as i64 { [0.0; 4] } else { self.pixels[y as usize * self.width + x] }
+        Ok(Self { width, height, above, spans, starts, ends, ink, trace, pixels, slopes, _held: held })
     }
 
     /// Pixel in column `x` of row `y`, and the slopes there; transparent outside.
@@ -107,25 +118,41 @@ impl Strip {
         (self.pixels[k], self.slopes[k])
     }
 
-    /// Bilinear sample at `p`, pixel centres at half-integers, within the columns of `span`.
-    pub(crate) fn sample(&self, p: Vector<2>, span: &Range<usize>) -> [f32; 4] {
-        let (x, y) = (p[0] - 0.5, p[1] - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let (fx, fy) = ((x - column) as f32, (y - row) as f32);
-        let clamp = |c: f64| (c.max(span.start as f64) as usize).min(span.end - 1);
-        let (x0, x1, y0) = (clamp(column), clamp(column + 1.0), row as i64);
-        let (a, b) = (self.pixel(x0, y0), self.pixel(x1, y0));
-        let (c, d) = (self.pixel(x0, y0 + 1), self.pixel(x1, y0 + 1));
-        std::array::from_fn(|k| {
-            let (above, below) = (a[k] + (b[k] - a[k]) * fx, c[k] + (d[k] - c[k]) * fx);
-            above + (below - above) * fy
-        })
+    /// Columns of the longest exemplar.
+    pub(crate) fn longest(&self) -> usize {
+        self.spans.iter().map(ExactSizeIterator::len).max().unwrap_or(0)
     }
 
     /// Which exemplar column `x` belongs to.
     pub(crate) fn owner(&self, x: usize) -> usize {
         self.spans.partition_point(|span| span.end <= x).min(self.spans.len() - 1)
     }
+}
+
+/// Bilinear sample of a picture at `p`, pixel centres at half-integers: premultiplied, in [0, 255]; transparent above and below.
+pub(crate) fn sample(image: &Image, p: Vector<2>) -> [f32; 4] {
+    let (x, y) = (p[0] - 0.5, p[1] - 0.5);
+    let (column, row) = (x.floor(), y.floor());
+    let (fx, fy) = ((x - column) as f32, (y - row) as f32);
+    let clamp = |c: f64| (c.max(0.0) as usize).min(image.width - 1);
+    let (x0, x1, y0) = (clamp(column), clamp(column + 1.0), row as i64);
+    let pixel = |x: usize, y: i64| match usize::try_from(y) {
+        Ok(y) if y < image.height => premultiplied(image.pixel(x, y)),
+        _ => [0.0; 4],
+    };
+    let (a, b) = (pixel(x0, y0), pixel(x1, y0));
+    let (c, d) = (pixel(x0, y0.saturating_add(1)), pixel(x1, y0.saturating_add(1)));
+    std::array::from_fn(|k| {
+        let (above, below) = (a[k] + (b[k] - a[k]) * fx, c[k] + (d[k] - c[k]) * fx);
+        above + (below - above) * fy
+    })
+}
+
+/// Red, green and blue times alpha, and alpha, in [0, 255].
+fn premultiplied(pixel: [u8; 4]) -> [f32; 4] {
+    let [r, g, b, a] = pixel.map(f32::from);
+    let share = a / 255.0;
+    [r * share, g * share, b * share, a]
 }
 
 /// Differences over [`SLOPE`] heights of the strip, within each exemplar.
@@ -155,18 +182,15 @@ fn average(image: &Image, x: usize, y: usize, side: usize) -> [f32; 4] {
     let mut sum = [0.0; 4];
     for row in y..(y + side).min(image.height) {
         for column in x..(x + side).min(image.width) {
-            let [r, g, b, a] = image.pixel(column, row).map(f32::from);
-            let share = a / 255.0;
-            for (total, value) in sum.iter_mut().zip([r * share, g * share, b * share, a]) {
-                *total += value;
-            }
+            let pixel = premultiplied(image.pixel(column, row));
+            sum.iter_mut().zip(pixel).for_each(|(total, value)| *total += value);
         }
     }
     sum.map(|total| total / (side * side) as f32)
 }
 
 /// Refuses exemplars that no pattern can be read from.
-pub(crate) fn check(exemplars: &[StripExemplar], coarse: usize, relax: bool) -> Result<()> {
+pub(crate) fn check(exemplars: &[StripExemplar], coarse: usize, relax: bool, budget: &Budget) -> Result<()> {
     if exemplars.is_empty() {
         return Err(Error::input(
             "exemplar",
@@ -174,11 +198,30 @@ pub(crate) fn check(exemplars: &[StripExemplar], coarse: usize, relax: bool) -> 
             "name a picture",
         ));
     }
+    let pixels = exemplars.iter().map(|e| e.image.width.saturating_mul(e.image.height));
     for (k, exemplar) in exemplars.iter().enumerate() {
         let place = if exemplars.len() == 1 { "exemplar".to_owned() } else { format!("exemplar {}", k + 1) };
+        budget.spend(exemplar.image.pixels.len() as u64)?;
         check_one(exemplar, &place, relax)?;
     }
-    let pixels: usize = exemplars.iter().map(|e| e.image.width * e.image.height).sum();
+    check_pixels(pixels.fold(0, usize::saturating_add), coarse)?;
+    let columns: usize = exemplars.iter().map(|e| e.image.width.div_ceil(coarse)).sum();
+    let rows = exemplars.iter().map(|e| e.image.height.div_ceil(coarse)).max().unwrap_or(0);
+    for (what, found, limit) in [("columns", columns, COLUMNS), ("rows", rows, ROWS)] {
+        if found > limit {
+            let what = format!("{what} of the exemplar");
+            let advice = "cut the picture, scale it down, or search at a lower resolution with --coarse".to_owned();
+            return Err(Error::Limit { what, found: found.to_string(), limit: limit.to_string(), advice });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses exemplars of more than [`PIXELS`] pixels together once `coarse` by `coarse` of them are averaged to one.
+///
+/// # Errors
+/// [`Error::Limit`] for more.
+pub fn check_pixels(pixels: usize, coarse: usize) -> Result<()> {
     let limit = PIXELS * coarse * coarse;
     if pixels <= limit {
         return Ok(());

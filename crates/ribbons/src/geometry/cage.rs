@@ -1,11 +1,21 @@
 //! The ribbon around a curve, cut into pieces [Zhou 2013 §1.1, §1.3].
 
-use arabesque_core::{Bounds, Error, Measured, Path, Result, Vector};
+use arabesque_core::{Bounds, Budget, Error, Held, Measured, Path, Result, Vector};
 
-use crate::params::{RibbonParams, STEP};
+use crate::params::{RibbonParams, STEP, Width};
 
 /// Most pieces of one curve.
 pub const PIECES: usize = 20_000;
+
+/// Widest that a ribbon may be, and highest that an exemplar may be, in pixels of the search.
+pub const ROWS: usize = 10_000;
+/// Narrowest that a ribbon may be, in pixels of the search.
+const NARROWEST: f64 = 0.01;
+/// Work of measuring one point of a curve, and of one piece of a cage.
+const POINT: u64 = 20;
+/// Bytes of a point of a measured curve, with its place.
+const POINT_BYTES: usize = 48;
+const PIECE: u64 = 500;
 
 /// Coordinates of forms are multiples of this many exemplar pixels, so that equal pieces are found equal.
 const GRAIN: f64 = 1.0 / 1024.0;
@@ -132,9 +142,10 @@ impl<const D: usize> Cage<D> {
 }
 
 impl Cage<2> {
-    /// Cuts the ribbon around `path` for an exemplar that is `height` pixels high. `scale` is in user units per pixel.
-    pub(crate) fn along(path: &Path<2>, params: &RibbonParams, height: f64, scale: f64, place: &str) -> Result<Self> {
-        let line = Line::new(path, params, height * params.scale, place)?;
+    /// Cuts the ribbon around `path`.
+    pub(crate) fn along(path: &Path<2>, plan: &CagePlan<'_>) -> Result<Self> {
+        let line = Line::new(path, plan)?;
+        let scale = plan.scale();
         let mut down = Vector::xy(0.0, 1.0);
         let rungs: Vec<_> = (0..=line.pieces)
             .map(|k| {
@@ -183,6 +194,53 @@ impl Cage<2> {
     }
 }
 
+/// What all cages of one run have in common.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CagePlan<'a> {
+    pub(crate) params: &'a RibbonParams,
+    /// Height of the exemplar, in pixels.
+    pub(crate) height: f64,
+    /// What messages call the curve.
+    pub(crate) place: &'a str,
+    pub(crate) budget: &'a Budget,
+}
+
+impl CagePlan<'_> {
+    /// User units per pixel of the search.
+    pub(crate) fn scale(&self) -> f64 {
+        self.params.scale * self.params.coarse as f64
+    }
+
+    /// Refuses ribbons that are too wide or too narrow for the search.
+    pub(crate) fn check_width(&self) -> Result<()> {
+        let stations = match &self.params.width {
+            Width::Exemplar => return Ok(()),
+            Width::Constant(width) => &[(0.0, *width)][..],
+            Width::Profile(stations) => stations,
+        };
+        let widths = || stations.iter().map(|s| s.1);
+        let (least, most) = (widths().fold(f64::INFINITY, f64::min), widths().fold(0.0, f64::max));
+        if most / self.scale() > ROWS as f64 {
+            return Err(Error::Limit {
+                what: "width of the ribbon".into(),
+                found: format!("{} pixels of the exemplar", most / self.scale()),
+                limit: ROWS.to_string(),
+                advice: "use a smaller --width or a larger --scale".into(),
+            });
+        }
+        if least / self.scale() < NARROWEST {
+            let expected = format!("at least {}, a hundredth of a pixel of the exemplar", NARROWEST * self.scale());
+            return Err(Error::parameter("width", least, expected));
+        }
+        Ok(())
+    }
+
+    /// Length of a piece in user units, before it is rounded.
+    fn step(&self) -> f64 {
+        self.params.step.unwrap_or(STEP * self.height * self.params.scale)
+    }
+}
+
 /// A curve by arc length, divided into pieces of equal length, except for the last, which takes what is left: a change of the curve leaves
 /// the pieces before it as they are.
 pub(crate) struct Line<'a, const D: usize> {
@@ -192,18 +250,25 @@ pub(crate) struct Line<'a, const D: usize> {
     height: f64,
     pub(crate) pieces: usize,
     pub(crate) step: f64,
+    /// The memory of its points.
+    _held: Held,
 }
 
 impl<'a, const D: usize> Line<'a, D> {
-    pub(crate) fn new(path: &Path<D>, params: &'a RibbonParams, height: f64, place: &str) -> Result<Self> {
+    pub(crate) fn new(path: &Path<D>, plan: &CagePlan<'a>) -> Result<Self> {
+        let CagePlan { params, height, place, budget } = *plan;
         if path.cubics.iter().flatten().any(|p| !p.is_finite()) {
             let advice = "give every point of the curve as a number";
             return Err(Error::input(place, "a coordinate that is not a finite number", advice));
         }
-        let step = params.step.unwrap_or(STEP * height);
-        let line = Measured::new(path.clone(), 0.01 * step);
+        let (step, fine) = (plan.step(), 0.01 * plan.step());
+        let points = Measured::count(path, fine);
+        budget.spend(POINT * points as u64)?;
+        let bytes = points.saturating_mul(POINT_BYTES).saturating_add(size_of_val(path.cubics.as_slice()));
+        let held = budget.hold(&format!("{place}: points along the curve"), bytes)?;
+        let line = Measured::new(path.clone(), fine);
         let length = line.length();
-        if length < 1e-3 * step {
+        if length < 1e-3 * step || length.is_nan() {
             let problem = format!("a curve of length {length:.3}, where a pattern is to be laid along it");
             return Err(Error::input(place, problem, "draw a longer curve"));
         }
@@ -216,7 +281,9 @@ impl<'a, const D: usize> Line<'a, D> {
                 advice: "use longer pieces (--step) or a larger --scale".into(),
             });
         }
-        Ok(Self { step: step.min(length / (n - 0.5)), pieces: n as usize, line, params, height })
+        budget.spend(PIECE * n as u64)?;
+        let (step, height) = (step.min(length / (n - 0.5)), height * params.scale);
+        Ok(Self { step, pieces: n as usize, line, params, height, _held: held })
     }
 
     pub(crate) fn closed(&self) -> bool {
@@ -268,9 +335,14 @@ mod tests {
     use super::*;
     use arabesque_core::straight;
 
+    fn along(path: &Path<2>, params: &RibbonParams) -> Result<Cage<2>> {
+        let plan = CagePlan { params, height: 20.0, place: "c.svg#a", budget: &Budget::default() };
+        plan.check_width()?;
+        Cage::along(path, &plan)
+    }
+
     fn cage(path: &Path<2>, step: f64) -> Cage<2> {
-        let params = RibbonParams { step: Some(step), ..RibbonParams::default() };
-        Cage::along(path, &params, 20.0, 1.0, "curve").unwrap()
+        along(path, &RibbonParams { step: Some(step), ..RibbonParams::default() }).unwrap()
     }
 
     #[test]
@@ -308,7 +380,28 @@ mod tests {
     #[test]
     fn curves_without_length_are_refused() {
         let dot = Path { cubics: vec![straight(Vector::ZERO, Vector::ZERO)], closed: false };
-        let error = Cage::along(&dot, &RibbonParams::default(), 20.0, 1.0, "c.svg#a").unwrap_err();
+        let error = along(&dot, &RibbonParams::default()).unwrap_err();
         assert!(error.to_string().starts_with("c.svg#a: a curve of length 0"), "{error}");
+    }
+
+    #[test]
+    fn widths_and_lengths_that_cannot_be_laid_are_refused_at_once() {
+        let line = Path::polyline(&[Vector::ZERO, Vector::xy(1e9, 0.0)]);
+        let short = Path::polyline(&[Vector::ZERO, Vector::xy(50.0, 0.0)]);
+        let wide = |width, scale| RibbonParams { width: Width::Constant(width), scale, ..RibbonParams::default() };
+        let profile = Width::Profile(vec![(0.0, 20.0), (1.0, 1e300)]);
+        for (path, params, word) in [
+            (&short, wide(1e9, 1.0), "width of the ribbon: 1000000000 pixels"),
+            (&short, wide(20.0, 1e-300), "width of the ribbon"),
+            (&short, RibbonParams { width: profile, ..RibbonParams::default() }, "width of the ribbon"),
+            (&short, wide(1e-300, 1.0), "hundredth of a pixel"),
+            (&short, wide(20.0, 1e6), "hundredth of a pixel"),
+            (&short, RibbonParams { step: Some(1e-300), ..RibbonParams::default() }, "pieces along the curve"),
+            (&line, RibbonParams::default(), "pieces along the curve: 500000000 is over"),
+            (&short, RibbonParams { scale: 1e300, ..RibbonParams::default() }, "a curve of length 50"),
+        ] {
+            let error = along(path, &params).unwrap_err().to_string();
+            assert!(error.contains(word), "{word}: {error}");
+        }
     }
 }

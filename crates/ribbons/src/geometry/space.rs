@@ -2,24 +2,16 @@
 
 use arabesque_core::{Path, Result, Vector};
 
-use crate::{
-    geometry::cage::{Cage, Form, Line, Rung},
-    params::RibbonParams,
-};
+use crate::geometry::cage::{Cage, CagePlan, Form, Line, Rung};
 
 /// Vectors no longer than this have no direction.
 const LEAST: f64 = 1e-12;
 
 impl Cage<3> {
     /// Cuts the ribbon around `path`. It lies flat on the ground as far as the curve allows and turns as little as it can on the way.
-    pub(crate) fn in_space(
-        path: &Path<3>,
-        params: &RibbonParams,
-        height: f64,
-        scale: f64,
-        place: &str,
-    ) -> Result<Self> {
-        let line = Line::new(path, params, height * params.scale, place)?;
+    pub(crate) fn in_space(path: &Path<3>, plan: &CagePlan<'_>) -> Result<Self> {
+        let line = Line::new(path, plan)?;
+        let scale = plan.scale();
         let tangents: Vec<Vector<3>> = (0..=line.pieces).map(|k| line.direction(k)).collect();
         let downs = downs(&tangents, line.closed());
         let rungs: Vec<_> = downs.into_iter().enumerate().map(|(k, down)| line.rung(k, down)).collect();

@@ -1,6 +1,6 @@
 //! Pieces as facets: polygons through which the picture of the exemplar is seen under an affine map each.
 
-use arabesque_core::{Bounds, Image, Vector};
+use arabesque_core::{Bounds, Budget, Image, Result, Vector};
 
 use crate::{
     pieces::piece::Piece,
@@ -14,6 +14,10 @@ const MARGIN: f64 = 2.0;
 /// A facet is shown with its own map when that stretches no more than this many times as much as the rigid one.
 const STRETCH: f64 = 3.0;
 
+/// Work of looking at one pixel for ink, and of one facet.
+const PIXEL: u64 = 1;
+const FACET: u64 = 300;
+
 /// A polygon through which the picture of an exemplar is seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facet {
@@ -26,24 +30,36 @@ pub struct Facet {
 }
 
 /// The facets of a piece of an exemplar with this `image` in which there is anything to see.
-pub fn facets(piece: &Piece<2>, image: &Image) -> Vec<Facet> {
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work is used up, [`arabesque_core::Error::Stopped`] when somebody asked to stop.
+pub fn facets(piece: &Piece<2>, image: &Image, budget: &Budget) -> Result<Vec<Facet>> {
     let rigid = rigid(piece);
-    rungs(piece, image.height as f64)
-        .windows(2)
-        .filter(|pair| has_ink(image, pair.iter().flat_map(|rung| rung.texture)))
-        .flat_map(|pair| between(piece.patch.source, &rigid, &pair[0], &pair[1]))
-        .collect()
+    let mut all = Vec::new();
+    for pair in rungs(piece, image.height as f64).windows(2) {
+        budget.spend(FACET)?;
+        if has_ink(image, pair.iter().flat_map(|rung| rung.texture), budget)? {
+            all.extend(between(piece.patch.source, &rigid, &pair[0], &pair[1]));
+        }
+    }
+    Ok(all)
 }
 
 /// Whether anything can be seen in the box around `corners`, and a little beyond.
-fn has_ink(image: &Image, corners: impl IntoIterator<Item = Vector<2>>) -> bool {
+fn has_ink(image: &Image, corners: impl IntoIterator<Item = Vector<2>>, budget: &Budget) -> Result<bool> {
     let bounds = Bounds::around(corners).grown(MARGIN);
     let range = |k: usize, n: usize| {
         let clamp = |v: f64| v.clamp(0.0, n as f64) as usize;
         clamp(bounds.min[k].floor())..clamp(bounds.max[k].ceil())
     };
     let columns = range(0, image.width);
-    range(1, image.height).any(|y| columns.clone().any(|x| image.pixel(x, y)[3] > 0))
+    for y in range(1, image.height) {
+        budget.spend(PIXEL * columns.len() as u64)?;
+        if columns.clone().any(|x| image.pixel(x, y)[3] > 0) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// What lies between two lines across a piece: one facet where that is flat enough, else two triangles. `rigid` is the map of the piece
@@ -131,9 +147,9 @@ mod tests {
         let mut image = Image::transparent(20, 20);
         let corners = [(3.0, 3.0), (8.0, 6.0)].map(|(x, y)| Vector::xy(x, y));
         image.pixels[15 * 20 + 15] = [1, 2, 3, 4];
-        assert!(!has_ink(&image, corners));
+        assert!(!has_ink(&image, corners, &Budget::default()).unwrap());
         image.pixels[5 * 20 + 5] = [1, 2, 3, 4];
-        assert!(has_ink(&image, corners));
+        assert!(has_ink(&image, corners, &Budget::default()).unwrap());
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Bending the right side of a piece so that it meets the next one [Zhou 2013 §3.2].
 
+use arabesque_core::{Budget, Result};
+
 use crate::exemplar::columns::{Columns, column_norm};
 
 /// P: cost of an opaque sample that is skipped, in 8-bit colour steps [Zhou 2013 eq. 3].
@@ -9,10 +11,22 @@ const SEEN: f32 = 0.3;
 /// Farthest that a sample is moved, as a share of the edge.
 const FARTHEST: f64 = 0.06;
 
+/// Work of one pair of samples.
+const PAIR: u64 = 8;
+/// Bytes of one pair of samples.
+const BYTES: usize = size_of::<(f64, Move)>();
+
+/// Work and bytes of aligning two edges of `rows` samples.
+pub(crate) fn demand(rows: usize) -> (u64, usize) {
+    let pairs = rows.saturating_mul(rows);
+    (PAIR.saturating_mul(pairs as u64), BYTES.saturating_mul(pairs))
+}
+
 /// For each sample of the edge, how many samples farther down its colour is taken from: T\[i\] - i. Empty where the edges meet as they are.
-pub(crate) fn alignment(right: &[[f32; 4]], left: &[[f32; 4]]) -> Vec<f32> {
+fn alignment(right: &[[f32; 4]], left: &[[f32; 4]], budget: &Budget) -> Result<Vec<f32>> {
     let n = left.len().min(right.len());
-    let table = table(right, left, n);
+    let _held = budget.hold("the stitches of two edges", demand(n).1)?;
+    let table = table(right, left, n, budget)?;
     let (mut s, mut t) = (n - 1, n - 1);
     let mut matched = vec![(0.0_f32, 0.0_f32); n];
     loop {
@@ -28,7 +42,7 @@ pub(crate) fn alignment(right: &[[f32; 4]], left: &[[f32; 4]]) -> Vec<f32> {
     let most = (FARTHEST * n as f64) as f32;
     let shifts: Vec<f32> = matched.iter().enumerate().map(|(s, m)| (m.0 / m.1 - s as f32).clamp(-most, most)).collect();
     let shifts = smoothed(&shifts);
-    if shifts.iter().all(|s| s.abs() < SEEN) { Vec::new() } else { shifts }
+    Ok(if shifts.iter().all(|s| s.abs() < SEEN) { Vec::new() } else { shifts })
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +54,11 @@ enum Move {
 }
 
 /// M\[s, t\] and the move that led there [Zhou 2013 eq. 2].
-fn table(right: &[[f32; 4]], left: &[[f32; 4]], n: usize) -> Vec<(f64, Move)> {
+fn table(right: &[[f32; 4]], left: &[[f32; 4]], n: usize, budget: &Budget) -> Result<Vec<(f64, Move)>> {
     let mut table: Vec<(f64, Move)> = Vec::with_capacity(n * n);
+    let mut meter = budget.meter();
     for s in 0..n {
+        meter.spend(PAIR * n as u64)?;
         for t in 0..n {
             let skip = if left[s][3] > 0.0 || right[t][3] > 0.0 { SKIPPED } else { 0.0 };
             let here = f64::from(column_norm(left[s], right[t]));
@@ -65,7 +81,7 @@ fn table(right: &[[f32; 4]], left: &[[f32; 4]], n: usize) -> Vec<(f64, Move)> {
             table.push((cost + here, step));
         }
     }
-    table
+    Ok(table)
 }
 
 /// Steps of whole samples, smoothed over five.
@@ -78,8 +94,11 @@ fn smoothed(shifts: &[f32]) -> Vec<f32> {
 }
 
 /// The alignment of the single columns `right` and `left`.
-pub(crate) fn align(right: &Columns, left: &Columns) -> Vec<f32> {
-    alignment(&right.pixels(0), &left.pixels(0))
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
+pub(crate) fn align(right: &Columns, left: &Columns, budget: &Budget) -> Result<Vec<f32>> {
+    alignment(&right.pixels(0), &left.pixels(0), budget)
 }
 
 #[cfg(test)]
@@ -92,12 +111,12 @@ mod tests {
 
     #[test]
     fn equal_edges_are_left_alone() {
-        assert!(alignment(&edge(10..20), &edge(10..20)).is_empty());
+        assert!(alignment(&edge(10..20), &edge(10..20), &Budget::default()).unwrap().is_empty());
     }
 
     #[test]
     fn a_bar_is_moved_to_where_it_goes_on() {
-        let shifts = alignment(&edge(13..23), &edge(10..20));
+        let shifts = alignment(&edge(13..23), &edge(10..20), &Budget::default()).unwrap();
         assert!((shifts[15] - 3.0).abs() < 0.6, "{shifts:?}");
         assert!(shifts[39] == 0.0, "{shifts:?}");
     }

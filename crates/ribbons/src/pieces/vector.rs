@@ -1,6 +1,6 @@
 //! Ribbons of drawings: the areas of the exemplar cut by pieces, bent, and joined again.
 
-use arabesque_core::{FillRule, Outline, Ring, Vector};
+use arabesque_core::{Bounds, Budget, FillRule, Outline, Result, Ring, Vector};
 
 use crate::pieces::piece::{Piece, Ribbon};
 
@@ -10,6 +10,13 @@ const REACH: f64 = 0.3;
 const BEND: f64 = 2.0;
 /// How far a written border may lie from the true one, in exemplar pixels.
 const DEVIATION: f64 = 0.05;
+
+/// Work of comparing the boxes of a piece and of an area, of one corner of an area that is cut, and of one that is joined.
+const BOXES: u64 = 10;
+const CUT: u64 = 400;
+const JOINED: u64 = 600;
+/// Bytes of one corner on its way.
+const CORNER: usize = 64;
 
 /// What a ribbon shows of one area of an exemplar that is a drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,29 +33,44 @@ pub struct ShownArea {
 
 /// What a ribbon shows of the areas of each exemplar, in the order of `drawings`: outlines in exemplar pixels, the lowest first. Areas
 /// that are not seen are left out.
-pub fn shown_areas(ribbon: &Ribbon<2>, drawings: &[Vec<&Outline<2>>]) -> Vec<ShownArea> {
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`] when somebody asked to
+/// stop.
+pub fn shown_areas(ribbon: &Ribbon<2>, drawings: &[Vec<&Outline<2>>], budget: &Budget) -> Result<Vec<ShownArea>> {
     let mut all = Vec::new();
     for (source, areas) in drawings.iter().enumerate() {
         let pieces: Vec<&Piece<2>> = ribbon.pieces.iter().filter(|p| p.patch.source == source).collect();
         let Some(scale) = pieces.first().map(|p| p.scale()) else { continue };
+        let windows: Vec<(Outline<2>, Bounds<2>)> =
+            pieces.iter().map(|piece| window(piece)).map(|window| (window.clone(), window.bounds())).collect();
         for (area, &outline) in areas.iter().enumerate() {
-            let rings: Vec<Ring<2>> = pieces.iter().flat_map(|piece| shown(piece, outline)).collect();
+            let (bounds, corners) = (outline.bounds(), outline.points().count());
+            let (mut rings, mut count, mut held) = (Vec::new(), 0, Vec::new());
+            for (piece, (window, around)) in pieces.iter().zip(&windows) {
+                budget.spend(BOXES)?;
+                if around.intersects(&bounds) {
+                    budget.spend(CUT * corners as u64)?;
+                    let shown = shown(piece, outline, window);
+                    let more = shown.iter().map(Vec::len).sum::<usize>();
+                    held.push(budget.hold("areas of the drawing, cut by pieces", more * CORNER)?);
+                    count += more;
+                    rings.extend(shown);
+                }
+            }
+            budget.spend(JOINED * count as u64)?;
             let outline = Outline::union(&rings, FillRule::NonZero);
             if !outline.rings.is_empty() {
                 all.push(ShownArea { source, area, outline, tolerance: DEVIATION * scale });
             }
         }
     }
-    all
+    Ok(all)
 }
 
-/// What a piece shows of an area, on the canvas.
-fn shown(piece: &Piece<2>, area: &Outline<2>) -> Vec<Ring<2>> {
-    let window = window(piece);
-    if !window.bounds().intersects(&area.bounds()) {
-        return Vec::new();
-    }
-    let cut = area.intersection(&window);
+/// What a piece shows of an area through its window, on the canvas.
+fn shown(piece: &Piece<2>, area: &Outline<2>, window: &Outline<2>) -> Vec<Ring<2>> {
+    let cut = area.intersection(window);
     cut.rings.iter().map(|ring| placed(piece, ring)).filter(|ring| ring.len() > 2).collect()
 }
 
@@ -101,7 +123,7 @@ mod tests {
     #[test]
     fn what_pieces_cut_is_joined_and_the_order_stays() {
         let areas = [area([0.0, 8.0, 30.0, 4.0]), area([40.0, 0.0, 2.0, 2.0]), area([12.0, 9.0, 2.0, 2.0])];
-        let shown = shown_areas(&strip(), &[areas.iter().collect()]);
+        let shown = shown_areas(&strip(), &[areas.iter().collect()], &Budget::default()).unwrap();
         assert_eq!(shown.iter().map(|s| s.area).collect::<Vec<_>>(), [0, 2]);
         // One bar, not three.
         assert_eq!(shown[0].outline.rings.len(), 1);
@@ -115,7 +137,7 @@ mod tests {
         let mut ribbon = strip();
         ribbon.pieces.truncate(1);
         ribbon.pieces[0].shift = vec![2.0; 20];
-        let rings = shown(&ribbon.pieces[0], &area([0.0, 9.0, 10.0, 1.0]));
+        let rings = shown(&ribbon.pieces[0], &area([0.0, 9.0, 10.0, 1.0]), &window(&ribbon.pieces[0]));
         let at = |x: f64| rings[0].iter().filter(|p| (p[0] - x).abs() < 1.0).map(|p| p[1]).fold(f64::MAX, f64::min);
         // What lies two pixels further down comes up.
         assert!((at(20.0) - 14.0).abs() < 0.3 && (at(0.0) - 18.0).abs() < 0.3, "{rings:?}");

@@ -4,7 +4,9 @@
 //! position that shows one of them again costs more. The preference is a random cost for each piece and part of the exemplar, so that the
 //! pattern does not run through the exemplar from left to right again and again.
 
-use arabesque_core::{Stage, Stream};
+use std::sync::Arc;
+
+use arabesque_core::{Budget, Held, Result, Stage, Stream};
 
 use crate::{constraints::valid::Position, exemplar::strip::Strip, geometry::cage::Form, params::RibbonParams};
 
@@ -13,6 +15,9 @@ const PREFERENCE: Stage = Stage::new(1);
 
 /// Most pieces that a path remembers.
 const MEMORY: usize = 64;
+
+/// Work of one random cost.
+const DRAWN: u64 = 10;
 
 /// Cost of one row of pixels that is shown again at full strength, in 8-bit colour steps.
 const REPEATED: f64 = 24.0;
@@ -52,7 +57,9 @@ pub(crate) struct Reuse {
     /// Cost of a piece that is shown again.
     repeated: f64,
     /// Random costs: for each piece, one for each part of the strip.
-    preference: Vec<f32>,
+    preference: Arc<Vec<f32>>,
+    /// Their memory.
+    _held: Option<Arc<Held>>,
     parts: usize,
     part: f64,
     /// Cost of a pixel off the middle, and the middle of the strip.
@@ -62,8 +69,17 @@ pub(crate) struct Reuse {
 
 impl Reuse {
     /// For a curve of `pieces` pieces like `form`.
-    pub(crate) fn new(params: &RibbonParams, seed: u64, pieces: usize, form: &Form, strip: &Strip) -> Self {
-        let length = strip.spans.iter().map(ExactSizeIterator::len).max().unwrap_or(1);
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
+    pub(crate) fn new(
+        params: &RibbonParams,
+        seed: u64,
+        (pieces, form): (usize, &Form),
+        strip: &Strip,
+        budget: &Budget,
+    ) -> Result<Self> {
+        let length = strip.longest();
         let step = (form.exit() - form.foot * 0.5).norm().max(1.0);
         let rows = form.rows() as f64;
         let window = ((params.window * length as f64 / step).ceil() as usize).min(MEMORY);
@@ -71,16 +87,21 @@ impl Reuse {
         let part = 4.0 * step;
         let parts = (strip.width as f64 / part).ceil() as usize + 1;
         let most = (params.variety * PREFERRED * rows) as f32;
-        let mut preference = Vec::new();
+        let (mut preference, mut held) = (Vec::new(), None);
         if most > 0.0 {
-            for piece in 0..pieces.div_ceil(4) + 1 {
+            let groups = pieces.div_ceil(4) + 1;
+            let (list, memory) = budget.list("preferences of pieces", groups * parts)?;
+            (preference, held) = (list, Some(Arc::new(memory)));
+            for piece in 0..groups {
+                budget.spend(DRAWN * parts as u64)?;
                 let mut stream = Stream::new(seed, PREFERENCE, piece as u64);
                 preference.extend((0..parts).map(|_| most * stream.unit() as f32));
             }
         }
         let drift = params.centring * OFF_CENTRE * rows / strip.height as f64;
         let middle = 0.5 * strip.height as f64;
-        Self { step, window, repeated: params.repetition * REPEATED * rows, preference, parts, part, drift, middle }
+        let (repeated, preference) = (params.repetition * REPEATED * rows, Arc::new(preference));
+        Ok(Self { step, window, repeated, preference, _held: held, parts, part, drift, middle })
     }
 
     /// What column `x` costs after `trail`.

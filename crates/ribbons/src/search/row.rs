@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use arabesque_core::{Budget, Held, Meter, Result};
 use rayon::prelude::*;
 
 use crate::{
@@ -23,6 +24,17 @@ const SEEDED: usize = 256;
 /// Right columns in the smallest boxes.
 const LEAF: usize = 4;
 
+/// What the memory of rows is called.
+const TABLE: &str = "places of the pieces laid so far";
+/// Work of bounding one box, and of comparing one column with all lanes by their summaries.
+const BOX: u64 = 40;
+const COMPARED: u64 = 60;
+/// Work of bounding one pair of columns block by block.
+const BOUNDED: u64 = 60;
+/// Bytes that a position takes in a row, and beside it for the row that follows.
+const KEPT: usize = size_of::<Position>() + size_of::<f64>() + 2 * size_of::<u32>();
+const BESIDE: usize = size_of::<Trail>() + 2 * size_of::<Summary>() + size_of::<Node>() + 2 * size_of::<Best>();
+
 /// The cheapest paths to the positions of one piece.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
@@ -33,14 +45,20 @@ pub(crate) struct Row {
     pub(crate) back: Vec<u32>,
     /// The position that the path began with, an index into the first row.
     pub(crate) start: Vec<u32>,
+    /// The memory of all this.
+    _held: Arc<Held>,
 }
 
 impl Row {
     /// The first row, which nothing goes before.
-    pub(crate) fn first(positions: Arc<Vec<Position>>, reuse: &Reuse, depth: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when the memory is used up.
+    pub(crate) fn first(positions: Arc<Vec<Position>>, reuse: &Reuse, depth: f64, budget: &Budget) -> Result<Self> {
         let n = positions.len();
+        let held = Arc::new(budget.hold(TABLE, n * KEPT)?);
         let cost = positions.iter().map(|p| reuse.preference(0, *p, depth)).collect();
-        Self { cost, back: vec![NONE; n], start: (0..n as u32).collect(), positions }
+        Ok(Self { cost, back: vec![NONE; n], start: (0..n as u32).collect(), positions, _held: held })
     }
 
     /// The position with the cheapest path; the first of equal ones.
@@ -67,6 +85,7 @@ pub(crate) struct Step<'a> {
     pub(crate) reuse: &'a Reuse,
     /// Which piece this is.
     pub(crate) piece: usize,
+    pub(crate) budget: &'a Budget,
 }
 
 /// The cheapest way to one position.
@@ -89,20 +108,28 @@ impl Best {
 
 impl Step<'_> {
     /// The next row, by bounds.
-    pub(crate) fn bounded(&self) -> Row {
-        let (right, left) = rayon::join(|| self.right.summaries(), || self.left.summaries());
-        let (boxes, groups) =
-            rayon::join(|| Tree::new(&right, Some(&self.before.cost), LEAF), || Tree::new(&left, None, LANES));
-        let seeds = self.seeds(&right, &left);
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
+    pub(crate) fn bounded(&self) -> Result<Row> {
+        let budget = self.budget;
+        let count = self.before.positions.len() + self.positions.len();
+        let _held = budget.hold("places of one piece", count * BESIDE)?;
+        let (right, left) = rayon::join(|| self.right.summaries(budget), || self.left.summaries(budget));
+        let (right, left) = (right?, left?);
+        let (boxes, groups) = rayon::join(
+            || Tree::new(&right, Some(&self.before.cost), LEAF, budget),
+            || Tree::new(&left, None, LANES, budget),
+        );
+        let (boxes, groups) = (boxes?, groups?);
+        let seeds = self.seeds(&right, &left)?;
         let leaves: Vec<&Node> = groups.leaves().collect();
-        let found: Vec<[Best; LANES]> = leaves
-            .par_iter()
-            .map(|leaf| {
-                let mut query = Query::new(self, [(&boxes, &right), (&groups, &left)], leaf, &seeds);
-                query.visit(0);
-                query.best
-            })
-            .collect();
+        let search = |leaf: &&Node| {
+            let mut query = Query::new(self, [(&boxes, &right), (&groups, &left)], leaf, &seeds);
+            query.visit(0)?;
+            Ok(query.best)
+        };
+        let found = leaves.par_iter().map(search).collect::<Result<Vec<[Best; LANES]>>>()?;
         let mut best = vec![Best::NONE; self.positions.len()];
         for (leaf, found) in leaves.iter().zip(&found) {
             for (&member, found) in groups.order[leaf.members.clone()].iter().zip(found) {
@@ -113,12 +140,13 @@ impl Step<'_> {
     }
 
     /// Good ways to begin with: what goes on in the exemplar, and what is best for the positions above and to the left, one farther.
-    fn seeds(&self, right: &[Summary], left: &[Summary]) -> Vec<Best> {
-        let index = Index::new(&self.before.positions);
-        let here = Index::new(&self.positions);
+    fn seeds(&self, right: &[Summary], left: &[Summary]) -> Result<Vec<Best>> {
+        let index = Index::new(&self.before.positions, self.budget)?;
+        let here = Index::new(&self.positions, self.budget)?;
         let mut best = vec![Best::NONE; self.positions.len()];
-        best.par_chunks_mut(SEEDED).enumerate().for_each(|(chunk, best)| {
+        best.par_chunks_mut(SEEDED).enumerate().try_for_each(|(chunk, best)| {
             let first = chunk * SEEDED;
+            let mut meter = self.budget.meter();
             for k in 0..best.len() {
                 let p = self.positions[first + k].place();
                 let beside = [(0, 1), (1, 0)].into_iter().filter_map(|(dx, dy)| {
@@ -130,11 +158,13 @@ impl Step<'_> {
                 let natural = index.find((p.0 + self.natural.0, p.1 + self.natural.1));
                 let candidates: Vec<u32> = natural.into_iter().chain(beside).collect();
                 for v in candidates {
+                    meter.spend(BOUNDED + self.left.work())?;
                     self.offer(&mut best[k], v as usize, first + k, [right, left]);
                 }
             }
-        });
-        best
+            Ok(())
+        })?;
+        Ok(best)
     }
 
     /// Takes `v` for the way to `u` if it is better.
@@ -149,18 +179,20 @@ impl Step<'_> {
     }
 
     /// The next row, every pair of columns in full.
-    pub(crate) fn exhaustive(&self) -> Row {
-        let best: Vec<Best> = (0..self.positions.len())
-            .into_par_iter()
-            .map(|u| {
-                let mut best = Best::NONE;
-                for v in 0..self.before.positions.len() {
-                    let cost = column_cost(self.right, v, self.left, u);
-                    best.offer(self.base(v, self.positions[u].x) + f64::from(cost), v as u32);
-                }
-                best
-            })
-            .collect();
+    ///
+    /// # Errors
+    /// As [`Step::bounded`].
+    pub(crate) fn exhaustive(&self) -> Result<Row> {
+        let way = |u: usize| {
+            let (mut best, mut meter) = (Best::NONE, self.budget.meter());
+            for v in 0..self.before.positions.len() {
+                meter.spend(BOUNDED + self.left.work())?;
+                let cost = column_cost(self.right, v, self.left, u);
+                best.offer(self.base(v, self.positions[u].x) + f64::from(cost), v as u32);
+            }
+            Ok(best)
+        };
+        let best = (0..self.positions.len()).into_par_iter().map(way).collect::<Result<Vec<Best>>>()?;
         self.row(&best)
     }
 
@@ -169,14 +201,16 @@ impl Step<'_> {
         self.before.cost[v] + self.reuse.repetition(&self.trails[v], x)
     }
 
-    fn row(&self, best: &[Best]) -> Row {
+    fn row(&self, best: &[Best]) -> Result<Row> {
+        let held = Arc::new(self.budget.hold(TABLE, best.len() * KEPT)?);
         let preference = |u: usize| self.reuse.preference(self.piece, self.positions[u], self.depth);
-        Row {
+        Ok(Row {
             cost: best.iter().enumerate().map(|(u, b)| b.cost + preference(u)).collect(),
             back: best.iter().map(|b| b.from).collect(),
             start: best.iter().map(|b| self.before.start[b.from as usize]).collect(),
             positions: Arc::clone(&self.positions),
-        }
+            _held: held,
+        })
     }
 }
 
@@ -185,22 +219,25 @@ struct Index {
     first: (i64, i64),
     size: (i64, i64),
     places: Vec<u32>,
+    _held: Held,
 }
 
 impl Index {
-    fn new(positions: &[Position]) -> Self {
+    fn new(positions: &[Position], budget: &Budget) -> Result<Self> {
         let range = |of: fn(&Position) -> i64| {
             let least = positions.iter().map(of).min().unwrap_or(0);
             (least, positions.iter().map(of).max().map_or(0, |most| most - least + 1))
         };
         let (x, y) = (range(|p| i64::from(p.x)), range(|p| i64::from(p.y)));
-        let mut index = Self { first: (x.0, y.0), size: (x.1, y.1), places: vec![NONE; (x.1 * y.1) as usize] };
+        let (mut places, held) = budget.list("places of one piece", (x.1 * y.1) as usize)?;
+        places.resize((x.1 * y.1) as usize, NONE);
+        let mut index = Self { first: (x.0, y.0), size: (x.1, y.1), places, _held: held };
         for (k, p) in positions.iter().enumerate() {
             if let Some(place) = index.place(p.place()) {
                 index.places[place] = k as u32;
             }
         }
-        index
+        Ok(index)
     }
 
     fn place(&self, p: (i64, i64)) -> Option<usize> {
@@ -230,6 +267,9 @@ struct Query<'a> {
     limit: f32,
     /// Cost of the cheapest path of the row before.
     least: f64,
+    /// Work that is not yet counted.
+    owed: u64,
+    meter: Meter<'a>,
 }
 
 impl<'a> Query<'a> {
@@ -238,8 +278,9 @@ impl<'a> Query<'a> {
         let members = &groups.order[leaf.members.clone()];
         let best = std::array::from_fn(|lane| seeds[members[lane.min(members.len() - 1)] as usize]);
         let (bundle, least) = (Bundle::new(left, members), tree.nodes[0].cost);
+        let (limits, meter) = ([0.0; LANES], step.budget.meter());
         let mut query =
-            Self { step, tree, right, left, bundle, members, leaf, best, limits: [0.0; LANES], limit: 0.0, least };
+            Self { step, tree, right, left, bundle, members, leaf, best, limits, limit: 0.0, least, owed: 0, meter };
         query.raise_limits();
         query
     }
@@ -259,13 +300,14 @@ impl<'a> Query<'a> {
         self.above(node.cost) + TRUST * node.gap(self.leaf)
     }
 
-    fn visit(&mut self, node: usize) {
+    fn visit(&mut self, node: usize) -> Result<()> {
+        self.meter.spend(BOX + std::mem::take(&mut self.owed))?;
         if let Some([a, b]) = self.tree.nodes[node].halves {
             let (near, far) = (self.bound(a), self.bound(b));
             let order = if near <= far { [(near, a), (far, b)] } else { [(far, b), (near, a)] };
             for (bound, half) in order {
                 if bound <= self.limit {
-                    self.visit(half);
+                    self.visit(half)?;
                 }
             }
         } else {
@@ -273,6 +315,7 @@ impl<'a> Query<'a> {
                 self.compare(self.tree.order[k]);
             }
         }
+        Ok(())
     }
 
     /// Offers `v` to the lanes that it may be better for than what they have.
@@ -281,6 +324,7 @@ impl<'a> Query<'a> {
         if base > self.limit {
             return;
         }
+        self.owed += COMPARED;
         let bounds = self.bundle.bounds(&self.right[v as usize]);
         let promising: [bool; LANES] = std::array::from_fn(|lane| base + TRUST * bounds[lane] <= self.limits[lane]);
         if !promising.iter().any(|&p| p) {
@@ -288,6 +332,7 @@ impl<'a> Query<'a> {
         }
         for lane in (0..self.members.len()).filter(|&lane| promising[lane]) {
             let u = self.members[lane] as usize;
+            self.owed += BOUNDED + self.step.left.work();
             self.step.offer(&mut self.best[lane], v as usize, u, [self.right, self.left]);
         }
         self.raise_limits();

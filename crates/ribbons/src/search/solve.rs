@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Budget, Error, Held, Result};
 
 use crate::{
-    constraints::valid::{Demands, Grade, Position, positions},
+    constraints::valid::{Demands, Grade, Position, Site},
     exemplar::columns::Columns,
     exemplar::strip::Strip,
     geometry::cage::Form,
@@ -28,6 +28,7 @@ pub(crate) struct Course<'a> {
     /// What errors call the curve, and where on the canvas each piece is.
     pub(crate) name: &'a str,
     pub(crate) places: &'a [String],
+    pub(crate) budget: &'a Budget,
 }
 
 /// A row, with what it was computed from, so that a later run can tell whether it still holds.
@@ -40,7 +41,7 @@ pub(crate) struct Kept {
 }
 
 /// The best way along a curve, or along as much of it as was reached.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Solution {
     /// A position for each piece.
     pub(crate) positions: Vec<Position>,
@@ -52,8 +53,27 @@ pub(crate) struct Solution {
     pub(crate) kept: Vec<Kept>,
     /// Rows that were taken over from the run before.
     pub(crate) resumed: usize,
-    /// Whether it was stopped early.
-    pub(crate) stopped: bool,
+    /// Why it ended early, if it did.
+    pub(crate) ended: Option<Ended>,
+}
+
+/// Why a run ended before it was done.
+#[derive(Debug)]
+pub(crate) enum Ended {
+    /// Whoever watched it had enough.
+    Watch,
+    /// The budget is used up, or somebody asked to stop.
+    Budget(Error),
+}
+
+impl Ended {
+    /// That of an error after which what was done so far is still good; other errors stay errors.
+    pub(crate) fn of(error: Error) -> Result<Self> {
+        match error {
+            Error::Limit { .. } | Error::Stopped { .. } => Ok(Self::Budget(error)),
+            other => Err(other),
+        }
+    }
 }
 
 /// Told after each row: the number of rows done and, on demand, the best positions so far. Answers whether to go on.
@@ -72,20 +92,30 @@ impl Course<'_> {
 
     /// Valid positions of a piece by the strictest grade that has any.
     fn valid(&self, piece: usize) -> Result<(Grade, Vec<Position>)> {
+        let site = self.site(piece);
         let grades = if self.params.relax { &Grade::ALL[..] } else { &Grade::ALL[..1] };
         for &grade in grades {
-            let found = positions(self.strip, &self.forms[piece], &self.demands[piece], grade);
+            let found = site.positions(grade)?;
             if !found.is_empty() {
                 return Ok((grade, found));
             }
         }
-        Err(self.nowhere(piece))
+        Err(self.nowhere(piece)?)
+    }
+
+    fn site(&self, piece: usize) -> Site<'_> {
+        let (form, demands) = (&self.forms[piece], &self.demands[piece]);
+        Site { strip: self.strip, form, demands, budget: self.budget }
     }
 
     /// Why no position is valid, and what to do about it.
-    fn nowhere(&self, piece: usize) -> Error {
-        let (form, demands) = (&self.forms[piece], &self.demands[piece]);
-        let fits = |grade| !positions(self.strip, form, demands, grade).is_empty();
+    fn nowhere(&self, piece: usize) -> Result<Error> {
+        let (form, demands, site) = (&self.forms[piece], &self.demands[piece], self.site(piece));
+        let mut fit = [false; Grade::ALL.len()];
+        for (fits, grade) in fit.iter_mut().zip(Grade::ALL) {
+            *fits = site.has_any(demands.rows.as_ref(), grade)?;
+        }
+        let fits = |grade: Grade| fit[grade as usize];
         let reason = if form.unfolded().is_none() {
             "the curve turns back on itself within one piece"
         } else if fits(Grade::Forbidden) {
@@ -111,35 +141,53 @@ impl Course<'_> {
             () if fits(Grade::Cut) => "change --width or --scale, or let the pattern be cut there with --relax",
             () => "use shorter pieces (--step), bend the curve less, or let the pattern be cut there with --relax",
         };
-        Error::no_result(problem, advice)
+        Ok(Error::no_result(problem, advice))
     }
 
     /// The best way. Rows of `before` that would come out the same are taken over.
     pub(crate) fn solve(&self, before: &[Kept], watch: &mut Watch<'_>) -> Result<Solution> {
-        let mut table = Table { course: self, kept: Vec::new(), trails: Vec::new(), resumed: 0 };
-        let mut stopped = false;
+        let mut table = Table::new(self);
+        let mut ended = None;
         for k in 0..self.rows() {
-            table.advance(before.get(k))?;
+            match table.advance(before.get(k)) {
+                Ok(()) => {}
+                // Without a single piece there is nothing to show.
+                Err(error) if k == 0 => return Err(error),
+                Err(error) => {
+                    ended = Some(Ended::of(error)?);
+                    break;
+                }
+            }
             let row = &table.kept[k].row;
             let energy = row.cost[row.best()] / (k + 1) as f64;
             if !watch((k + 1).min(self.forms.len()), energy, &|| table.path(table.kept[k].row.best())) {
-                stopped = k + 1 < self.rows();
+                ended = (k + 1 < self.rows()).then_some(Ended::Watch);
                 break;
             }
         }
-        if stopped || !self.closed {
-            return Ok(table.finish(stopped));
+        if ended.is_some() || !self.closed || table.kept.len() < self.rows() {
+            return Ok(table.finish(ended));
         }
         self.close(table)
     }
 
     /// The best cycle [Zhou 2013 §1.5].
     fn close(&self, table: Table<'_>) -> Result<Solution> {
-        let Some(last) = table.kept.last().map(|k| Arc::clone(&k.row)) else { return Ok(table.finish(false)) };
+        let Some(last) = table.kept.last().map(|k| Arc::clone(&k.row)) else { return Ok(table.finish(None)) };
         let cycle = (0..last.cost.len()).filter(|&u| last.start[u] == u as u32);
         let mut best =
             cycle.min_by(|&a, &b| last.cost[a].total_cmp(&last.cost[b])).map(|u| (last.cost[u], table.path(u)));
-        let bounds = self.bounds_of_cycles(&last)?;
+        let ended = self.cycles(&table, &last, &mut best).err().map(Ended::of).transpose()?;
+        let Some((cost, mut path)) = best else { return Ok(table.finish(ended)) };
+        path.truncate(self.forms.len());
+        let mut solution = table.finish(ended);
+        (solution.cost, solution.positions) = (cost, path);
+        Ok(solution)
+    }
+
+    /// Looks for cycles that are better than `best`, from the most promising start on.
+    fn cycles(&self, table: &Table<'_>, last: &Row, best: &mut Option<(f64, Vec<Position>)>) -> Result<()> {
+        let bounds = self.bounds_of_cycles(last)?;
         let mut starts: Vec<usize> = (0..last.cost.len()).collect();
         starts.sort_by(|&a, &b| bounds[a].total_cmp(&bounds[b]).then(a.cmp(&b)));
         for start in starts {
@@ -147,16 +195,12 @@ impl Course<'_> {
             if hopeless || (self.params.closing == Closing::Quick && best.is_some()) {
                 break;
             }
-            let (cost, path) = self.cycle_through(&table, start)?;
+            let (cost, path) = self.cycle_through(table, start)?;
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                best = Some((cost, path));
+                *best = Some((cost, path));
             }
         }
-        let Some((cost, mut path)) = best else { return Ok(table.finish(false)) };
-        path.truncate(self.forms.len());
-        let mut solution = table.finish(false);
-        (solution.cost, solution.positions) = (cost, path);
-        Ok(solution)
+        Ok(())
     }
 
     /// For each position of the terminal piece, a cost that no cycle through it falls below.
@@ -173,7 +217,7 @@ impl Course<'_> {
             demands: self.demands,
             ..*self
         };
-        let mut table = Table { course: &free, kept: Vec::new(), trails: Vec::new(), resumed: 0 };
+        let mut table = Table::new(&free);
         for _ in 0..self.rows() {
             table.advance(None)?;
         }
@@ -184,10 +228,10 @@ impl Course<'_> {
     fn cycle_through(&self, table: &Table<'_>, start: usize) -> Result<(f64, Vec<Position>)> {
         let first = &table.kept[0];
         let only = Arc::new(vec![first.row.positions[start]]);
-        let row = Row::first(only, &self.reuse, first.form.foot[1]);
+        let row = Row::first(only, &self.reuse, first.form.foot[1], self.budget)?;
         let trails = row.positions.iter().map(|p| Trail::default().followed_by(p.x)).collect();
         let kept = Kept { row: Arc::new(row), demands: first.demands.clone(), ..*first };
-        let mut again = Table { course: self, kept: vec![kept], trails, resumed: 0 };
+        let mut again = Table { kept: vec![kept], trails, ..Table::new(self) };
         for _ in 1..self.rows() {
             again.advance(None)?;
         }
@@ -202,10 +246,15 @@ struct Table<'a> {
     kept: Vec<Kept>,
     /// What the paths into the last row have shown.
     trails: Vec<Trail>,
+    /// The memory of the trails.
+    held: Option<Held>,
     resumed: usize,
 }
 
-impl Table<'_> {
+impl<'a> Table<'a> {
+    fn new(course: &'a Course<'a>) -> Self {
+        Self { course, kept: Vec::new(), trails: Vec::new(), held: None, resumed: 0 }
+    }
     /// One row more; `before` is that row of an earlier run.
     fn advance(&mut self, before: Option<&Kept>) -> Result<()> {
         let course = self.course;
@@ -214,7 +263,7 @@ impl Table<'_> {
         let (form, demands) = (course.forms[piece], &course.demands[piece]);
         let unchanged = self.resumed == k;
         if let Some(kept) = before.filter(|b| unchanged && b.form == form && b.demands == *demands) {
-            self.follow(&kept.row);
+            self.follow(&kept.row)?;
             self.kept.push(kept.clone());
             self.resumed += 1;
             return Ok(());
@@ -222,21 +271,22 @@ impl Table<'_> {
         let (grade, valid) = course.valid(piece)?;
         let positions = Arc::new(valid);
         let row = match self.kept.last() {
-            None => Row::first(positions, &course.reuse, form.foot[1]),
-            Some(last) => self.next(last, piece, positions),
+            None => Row::first(positions, &course.reuse, form.foot[1], course.budget)?,
+            Some(last) => self.next(last, piece, positions)?,
         };
-        self.follow(&row);
+        self.follow(&row)?;
         self.kept.push(Kept { form, demands: demands.clone(), grade, row: Arc::new(row) });
         Ok(())
     }
 
-    fn next(&self, last: &Kept, piece: usize, positions: Arc<Vec<Position>>) -> Row {
-        let (strip, form) = (self.course.strip, &self.course.forms[piece]);
+    fn next(&self, last: &Kept, piece: usize, positions: Arc<Vec<Position>>) -> Result<Row> {
+        let (strip, form, budget) = (self.course.strip, &self.course.forms[piece], self.course.budget);
         let context = self.course.params.context;
         let (right, left) = rayon::join(
-            || Columns::right(strip, &last.form, form.rows(), context, &last.row.positions),
-            || Columns::left(strip, form, context, &positions),
+            || Columns::right(strip, (&last.form, form.rows()), context, &last.row.positions, budget),
+            || Columns::left(strip, form, context, &positions, budget),
         );
+        let (right, left) = (right?, left?);
         let natural = form.foot * 0.5 - last.form.exit();
         let natural = (natural[0].round() as i64, natural[1].round() as i64);
         // The terminal piece is the first one, whose preference is counted there.
@@ -253,6 +303,7 @@ impl Table<'_> {
             natural,
             reuse,
             piece,
+            budget,
         };
         match self.course.params.search {
             Search::Bounded => step.bounded(),
@@ -261,11 +312,15 @@ impl Table<'_> {
     }
 
     /// Brings the trails to `row`.
-    fn follow(&mut self, row: &Row) {
+    fn follow(&mut self, row: &Row) -> Result<()> {
+        let bytes = row.positions.len() * size_of::<Trail>();
+        let held = self.course.budget.hold("what the paths so far have shown", bytes)?;
         let trail = |(p, &from): (&Position, &u32)| {
             if from == NONE { Trail::default().followed_by(p.x) } else { self.trails[from as usize].followed_by(p.x) }
         };
         self.trails = row.positions.iter().zip(&row.back).map(trail).collect();
+        self.held = Some(held);
+        Ok(())
     }
 
     /// The path that ends at position `end` of the last row.
@@ -285,13 +340,13 @@ impl Table<'_> {
         path
     }
 
-    fn finish(self, stopped: bool) -> Solution {
+    fn finish(self, ended: Option<Ended>) -> Solution {
         let end = self.kept.last().map_or(0, |k| k.row.best());
         let cost = self.kept.last().map_or(0.0, |k| k.row.cost[end]);
         let mut positions = self.path(end);
         positions.truncate(self.course.forms.len());
         let forced = self.kept.iter().take(self.course.forms.len()).enumerate();
         let forced = forced.filter(|(_, k)| k.grade != Grade::Whole).map(|(k, kept)| (k, kept.grade)).collect();
-        Solution { positions, cost, forced, resumed: self.resumed, kept: self.kept, stopped }
+        Solution { positions, cost, forced, resumed: self.resumed, kept: self.kept, ended }
     }
 }

@@ -2,9 +2,13 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Decimals, Outline, Path, Vector};
+use arabesque_core::{Budget, Decimals, Outline, Path, Result, Vector};
 
 use crate::{svg::shape::simplify::simplified, text::path_data::path_data};
+
+/// Work of one corner that is simplified and written, and bytes of it while that is done.
+const CORNER: u64 = 2_000;
+const BYTES: usize = 256;
 
 /// An area filled with one colour.
 #[derive(Clone, Debug)]
@@ -20,9 +24,20 @@ pub struct Filled<'a> {
 }
 
 /// One `<path>` a line for each area of which anything can be seen, in the same order.
-pub fn areas_markup<'a>(areas: impl IntoIterator<Item = Filled<'a>>, decimals: Decimals) -> String {
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`] when somebody asked to
+/// stop.
+pub fn areas_markup<'a>(
+    areas: impl IntoIterator<Item = Filled<'a>>,
+    decimals: Decimals,
+    budget: &Budget,
+) -> Result<String> {
     let mut out = String::new();
     for area in areas {
+        let corners = area.outline.points().count();
+        budget.spend(CORNER * corners as u64)?;
+        let _held = budget.hold("the text of the ribbon", out.len() + corners * BYTES)?;
         let border = |ring: &Vec<Vector<2>>| path_data(&simplified(&closed(ring), area.tolerance), decimals);
         let data: String = area.outline.rings.iter().map(border).collect();
         if data.is_empty() {
@@ -32,7 +47,7 @@ pub fn areas_markup<'a>(areas: impl IntoIterator<Item = Filled<'a>>, decimals: D
         let colour = area.colour;
         let _ = writeln!(out, "      <path fill=\"{colour}\"{opacity} fill-rule=\"evenodd\" d=\"{data}\"/>");
     }
-    out
+    Ok(out)
 }
 
 fn closed(ring: &[Vector<2>]) -> Path<2> {
@@ -54,7 +69,7 @@ mod tests {
         let filled = |outline, colour, opacity| Filled { outline, tolerance: 0.1, colour, opacity };
         let none = Outline::default();
         let areas = [filled(&bar, "#0000ff", 1.0), filled(&none, "green", 1.0), filled(&dot, "red", 0.5)];
-        let text = areas_markup(areas, Decimals::for_extent(100.0));
+        let text = areas_markup(areas, Decimals::for_extent(100.0), &Budget::default()).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 2);
         assert!(lines[0].contains("#0000ff") && lines[1].contains("fill=\"red\" fill-opacity=\"0.5000\""), "{text}");

@@ -4,7 +4,7 @@ pub(crate) mod areas;
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Decimals, Vector};
+use arabesque_core::{Budget, Decimals, Result, Vector};
 
 use crate::{
     svg::{
@@ -19,6 +19,10 @@ use crate::{
 const OVERLAP: f64 = 0.4;
 /// A corner is never moved by more than this many times the overlap.
 const MITRE: f64 = 3.0;
+
+/// Work and bytes of the text of one cell: its clip, and its picture seen through that.
+const CELL: u64 = 4_000;
+const CELL_BYTES: usize = 400;
 
 /// A polygon through which a picture is seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,10 +64,22 @@ pub struct RibbonSheet<'a> {
     pub ribbons: &'a [(String, Look)],
     /// The recipe, as TOML.
     pub recipe: Option<&'a str>,
+    /// What writing may use up.
+    pub budget: &'a Budget,
 }
 
 /// Writes ribbons, one group each in one layer.
-pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`] when somebody asked to
+/// stop.
+pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> Result<String> {
+    let cells = sheet.ribbons.iter().map(|(_, look)| if let Look::Cells(cells) = look { cells.len() } else { 0 });
+    let markup = sheet.ribbons.iter().map(|(_, look)| if let Look::Markup(text) = look { text.len() } else { 0 });
+    let pictures: usize = sheet.pictures.iter().map(|p| p.data.len()).sum();
+    let text = cells.sum::<usize>().saturating_mul(CELL_BYTES) + markup.sum::<usize>() + pictures;
+    // The text doubles its room as it grows.
+    let _held = sheet.budget.hold("the text of the ribbons", 2 * text)?;
     let size = sheet.page.view.size();
     let decimals = Decimals::for_extent(size[0].max(size[1]));
     let mut out = root(sheet, decimals);
@@ -71,7 +87,7 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
         let declared = format!(" xmlns:arabesque=\"{NAMESPACE}\"");
         let _ = writeln!(out, "  <metadata>{}</metadata>", recipe_element(recipe, &declared));
     }
-    definitions(&mut out, sheet, decimals);
+    definitions(&mut out, sheet, decimals)?;
     out.push_str("  <g inkscape:groupmode=\"layer\" inkscape:label=\"Arabesque output\">\n");
     let mut number = 0;
     for (name, look) in sheet.ribbons {
@@ -80,6 +96,7 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
             Look::Markup(markup) => out.push_str(markup),
             Look::Cells(cells) => {
                 for cell in cells {
+                    sheet.budget.spend(CELL)?;
                     push_cell(&mut out, number, cell, decimals);
                     number += 1;
                 }
@@ -88,11 +105,11 @@ pub fn write_ribbons(sheet: &RibbonSheet<'_>) -> String {
         out.push_str("    </g>\n");
     }
     out.push_str("  </g>\n</svg>\n");
-    out
+    Ok(out)
 }
 
 /// The pictures, and the clips of all cells, numbered through all ribbons.
-fn definitions(out: &mut String, sheet: &RibbonSheet<'_>, decimals: Decimals) {
+fn definitions(out: &mut String, sheet: &RibbonSheet<'_>, decimals: Decimals) -> Result<()> {
     out.push_str("  <defs>\n");
     for (k, picture) in sheet.pictures.iter().enumerate() {
         let [width, height] = picture.size;
@@ -108,11 +125,13 @@ fn definitions(out: &mut String, sheet: &RibbonSheet<'_>, decimals: Decimals) {
         Look::Markup(_) => &[],
     });
     for (k, cell) in cells.enumerate() {
+        sheet.budget.spend(CELL)?;
         let [a, b, c, d, ..] = cell.matrix;
         let data = ring_text(&grown(&cell.ring, OVERLAP * (a * d - b * c).abs().sqrt()), decimals);
         let _ = writeln!(out, "    <clipPath id=\"cell-{k}\"><path d=\"{data}\"/></clipPath>");
     }
     out.push_str("  </defs>\n");
+    Ok(())
 }
 
 /// A cell as its picture seen through its clip.
@@ -196,7 +215,9 @@ mod tests {
             pictures: &[Embedded { size: [2, 2], data: "AAAA".into() }],
             ribbons: &[("c.svg: path \"p\"".into(), Look::Cells(vec![cell.clone(), cell]))],
             recipe: Some("seed = 1 # <&>\n"),
-        });
+            budget: &Budget::default(),
+        })
+        .unwrap();
         assert_eq!((text.matches("AAAA").count(), text.matches("<use").count()), (1, 2));
         assert!(text.contains("width=\"30mm\"") && text.contains("viewBox=\"0 0 30 20\""));
         assert_eq!(recipe_of(&text).unwrap(), "seed = 1 # <&>\n");

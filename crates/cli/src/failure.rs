@@ -89,7 +89,7 @@ impl Failure {
                 message = format!("{message}: {text}");
             }
         }
-        message
+        shortened(message)
     }
 
     /// Tells the user and gives the exit code.
@@ -100,6 +100,19 @@ impl Failure {
         say::error(&self.message());
         ExitCode::from(self.code)
     }
+}
+
+/// Longest message, in characters.
+const LONGEST: usize = 600;
+
+/// A message that fits a few lines: names and numbers come from outside, and may be of any length.
+fn shortened(message: String) -> String {
+    let count = message.chars().count();
+    if count <= LONGEST {
+        return message;
+    }
+    let head = message.chars().take(LONGEST / 2);
+    head.chain(" ... ".chars()).chain(message.chars().skip(count - LONGEST / 2)).collect()
 }
 
 impl From<Error> for Failure {
@@ -147,5 +160,11 @@ mod tests {
         assert_eq!(Failure::summary(broken()).report(), ExitCode::from(FAILURE));
         let result = Failure::writing(Error::Io { path: "standard output".into(), source: broken() });
         assert_eq!(result.report(), ExitCode::from(FAILURE));
+    }
+
+    #[test]
+    fn messages_of_any_length_fit_a_few_lines() {
+        let message = Failure::usage("é".repeat(100_000)).message();
+        assert!(message.chars().count() <= LONGEST + 5, "{}", message.chars().count());
     }
 }

@@ -59,10 +59,10 @@ fn count(more: isize) {
     }
     let now = IN_USE.fetch_add(untold, Ordering::Relaxed) + untold;
     if untold > 0 {
-        PEAK.fetch_max(now, Ordering::Relaxed);
         if now > LIMIT.load(Ordering::Relaxed) {
             exhausted();
         }
+        PEAK.fetch_max(now, Ordering::Relaxed);
     }
 }
 

@@ -2,13 +2,14 @@
 
 use std::{io::IsTerminal, process::ExitCode};
 
-use arabesque::{Carrier, Input, Resources, carried_recipe, io::file};
+use arabesque::{Carrier, Input, Recipe, Resources, carried_recipe, io::file};
 use clap::Args;
 
 use crate::{
     failure::Failure,
     guard::RecipeFile,
     produce::{RunOptions, produce},
+    summary,
 };
 
 /// Repeat a run from a recipe, or from any result that carries one
@@ -32,6 +33,17 @@ pub(crate) struct Run {
 
 impl Run {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        let json = self.run.talk.json;
+        let (recipe, path) = self.recipe().inspect_err(|failure| {
+            if json {
+                summary::print_failure(failure);
+            }
+        })?;
+        produce(recipe, Some(RecipeFile(&self.file)), &path, &self.run)
+    }
+
+    /// The recipe, and where its result goes.
+    fn recipe(&self) -> Result<(Recipe, String), Failure> {
         let input = Input::file(&self.file);
         let bytes = Resources::default().read_as("recipe", &input)?;
         let (mut recipe, carrier) = carried_recipe(input.name(), &bytes)?;
@@ -41,8 +53,8 @@ impl Run {
         let from = RecipeFile(&self.file);
         // A result came from somebody else, perhaps; where it goes is for whoever runs it to say.
         let own = recipe.output.path.take().filter(|_| carrier == Carrier::Recipe);
-        let path = match (self.output, own) {
-            (Some(path), _) => path,
+        let path = match (&self.output, own) {
+            (Some(path), _) => path.clone(),
             (None, Some(path)) => from.output(&path, self.allow_path)?,
             (None, None) if std::io::stdout().is_terminal() => {
                 let who = if carrier == Carrier::Recipe { "the recipe does" } else { "results do" };
@@ -52,6 +64,6 @@ impl Run {
             }
             (None, None) => file::STANDARD.to_owned(),
         };
-        produce(recipe, Some(from), &path, &self.run)
+        Ok((recipe, path))
     }
 }

@@ -13,7 +13,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use arabesque::{Cause, Limits, Stopper};
+use arabesque::{Cause, Limits, Stopper, io::file};
 
 use crate::{
     failure::{BAD_INPUT, FAILURE, Failure, NO_RESULT},
@@ -177,6 +177,7 @@ impl Sentinel {
     /// Tells why, and ends the program.
     fn leave(&self, code: u8, message: &str) -> ! {
         say::last_words(message);
+        file::abandon_writing();
         if self.orders.json && !is_reader_gone() {
             summary::print_failure(&Failure::with(code, message));
         }

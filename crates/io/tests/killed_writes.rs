@@ -5,13 +5,16 @@
 use std::{
     env, fs,
     path::Path,
-    process::{Command, Stdio},
+    process::{self, Command, Stdio},
 };
 
-use arabesque_io::file::Target;
+use arabesque_io::file::{Step, Target, abandon_writing};
 
 /// Tells the process that is to die where it writes, and after which step it ends.
 const ORDER: &str = "ARABESQUE_TEST_DIES";
+
+/// The same for a process that is ended.
+const ENDED: &str = "ARABESQUE_TEST_ENDS";
 
 /// Three chunks and a bit.
 const NEW_BYTES: usize = (3 << 20) + 5;
@@ -47,6 +50,33 @@ fn dies(step: usize, path: &Path) -> bool {
         .status()
         .unwrap();
     !status.success()
+}
+
+/// Only in a process of its own: what other tests write at the same time would go too.
+#[test]
+fn who_ends_the_process_cleans_up() {
+    let Ok(path) = env::var(ENDED) else {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.svg"), "old").unwrap();
+        let status = Command::new(env::current_exe().unwrap())
+            .args(["--exact", "who_ends_the_process_cleans_up"])
+            .env(ENDED, folder.path().join("a.svg"))
+            .stdout(Stdio::null())
+            .status()
+            .unwrap();
+        assert_eq!(status.code(), Some(7));
+        assert_eq!(names(folder.path()), ["a.svg"]);
+        assert_eq!(fs::read_to_string(folder.path().join("a.svg")).unwrap(), "old");
+        return;
+    };
+    let target = Target::new(&path).unwrap();
+    let _ = target.write_watched(&new_content(), &mut |step| {
+        if step == Step::Dressed {
+            abandon_writing();
+            process::exit(7);
+        }
+        Ok(())
+    });
 }
 
 fn names(folder: &Path) -> Vec<String> {

@@ -9,7 +9,7 @@ use crate::recipe::format::Format;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputOptions {
-    /// Where to write it, when the command line does not say. Not kept in results.
+    /// Where to write it, when the command line does not say: in the folder of the recipe. Not kept in results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
     /// File format. Default: by the extension of the path, else the usual one of the job: SVG for the plane, OBJ or CSV for a

@@ -8,6 +8,7 @@ use std::{
     fs::{self, File, Metadata, TryLockError},
     io,
     path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
 };
 
 use super::system;
@@ -20,6 +21,17 @@ const TRIES: usize = 16;
 
 /// Most entries of a folder that are looked at for files that killed runs left.
 const ENTRIES: usize = 100_000;
+
+/// The temporary files that this process writes at present.
+static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// Removes the temporary files that are being written, for whoever is about to end the process; what is written to them is lost.
+pub fn abandon_writing() {
+    for path in WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+        // Whoever comes next removes it, should it not work now.
+        let _ = fs::remove_file(path);
+    }
+}
 
 /// A temporary file, removed when dropped unless it became the target.
 #[derive(Debug)]
@@ -47,6 +59,7 @@ impl Part {
             // Another run may take a file that is not locked yet for one that was left.
             let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
             if !is_taken && system::is_name_of(&path, &file) {
+                WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).insert(path.clone());
                 return Ok(Self { path, file, is_done: false });
             }
         }
@@ -67,6 +80,7 @@ impl Drop for Part {
             // Whoever comes next removes it, should it not work now.
             let _ = fs::remove_file(&self.path);
         }
+        WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.path);
     }
 }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Bounds, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Numbered, Outline, Placement, Region,
-    Request, Result, ScalarField, Shape, Similarity, Vector,
+    Border, Bounds, Budget, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Numbered, Outline, Placement,
+    Region, Request, Result, ScalarField, Shape, Similarity, Vector,
 };
 
 use crate::{dimension::Dimension, exemplar::library::Library};
@@ -53,7 +53,7 @@ impl<'a, const D: usize> Extent<'a, D> {
             request,
             exemplar,
             radius,
-            obstacles: obstacles(request),
+            obstacles: obstacles(request)?,
             drawn: drawn(request, strokes)?,
             margin,
             base,
@@ -101,14 +101,17 @@ impl<'a, const D: usize> Extent<'a, D> {
 
     /// What can be filled, as polygons: the domain without what is in the way. `None` where it has no border, and in
     /// space.
-    pub(crate) fn outline(&self) -> Option<Outline<2>>
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn outline(&self, budget: &Budget) -> Result<Option<Outline<2>>>
     where
         Vector<D>: Dimension<D>,
     {
-        let request = Vector::plane_request(self.request)?;
-        let whole = request.domain.outline()?;
+        let Some(request) = Vector::plane_request(self.request) else { return Ok(None) };
+        let Some(whole) = request.domain.outline() else { return Ok(None) };
         let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-        Some(whole.difference(&Outline::union(&rings, FillRule::NonZero)))
+        whole.try_difference(&Outline::try_union(&rings, FillRule::NonZero, budget)?, budget).map(Some)
     }
 
     /// Distance to the border, negative outside.
@@ -250,11 +253,12 @@ fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Result<Option<GridI
 }
 
 /// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
-fn obstacles<const D: usize>(request: &Request<D>) -> Option<Arc<dyn Region<D>>>
+fn obstacles<const D: usize>(request: &Request<D>) -> Result<Option<Arc<dyn Region<D>>>>
 where
     Vector<D>: Dimension<D>,
 {
-    let plane = Vector::plane_request(request)?;
+    let Some(plane) = Vector::plane_request(request) else { return Ok(None) };
     let rings: Vec<_> = plane.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-    Vector::from_plane(Arc::new(Shape::new(&rings, FillRule::NonZero)?))
+    let shape = Shape::try_new(&rings, FillRule::NonZero, &request.budget.stage("looking at what is in the way"))?;
+    Ok(shape.and_then(|shape| Vector::from_plane(Arc::new(shape))))
 }

@@ -204,6 +204,9 @@ where
         request.budget.allow_elements(self.share_of_work(&targets, used));
         let mut trace = Vec::new();
         let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
+        if cut_short.is_none() && !found.placements.is_empty() {
+            cut_short = run.mending(&found, watch).err();
+        }
         let last = &extents[extents.len() - 1];
         let budget = if cut_short.is_some() { ending::last_touches(&request.budget) } else { request.budget.clone() };
         match placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params, &budget) {

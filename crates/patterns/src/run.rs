@@ -163,6 +163,11 @@ where
             return Err(error);
         }
         state.drop_dead_links();
+        if votes.candidates.is_empty() {
+            // No step has joined samples yet.
+            state.budget = self.request.budget.fresh();
+            edges::link_sources(&mut state)?;
+        }
         let curves = match strokes::strokes(self.params, state.on(last_touches(&self.request.budget))) {
             Err(Error::Limit { .. }) => strokes::plain(self.params, &state.on(self.request.budget.fresh()), &votes)?,
             curves => curves?,
@@ -193,6 +198,14 @@ where
             placement.control.clone_from(control);
         }
         Snapshot { placements, curves: done.curves.clone(), ..Snapshot::default() }
+    }
+
+    /// What is told before overlaps are mended.
+    pub(crate) fn mending(&self, snapshot: &Snapshot<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<()> {
+        let count = snapshot.placements.len();
+        let stage = "mending overlaps".into();
+        let progress = Progress { stage, done: 0, total: 1, fraction: 1.0, energy: None, count };
+        heard(watch.step(&progress, &|| snapshot.clone()), &progress)
     }
 
     fn laid_out(&self, elements: usize, share: f64) -> Progress {

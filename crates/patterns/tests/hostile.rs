@@ -69,7 +69,7 @@ fn elements_at_one_place_are_refused() {
 fn heaps_are_refused() {
     let at = |k: usize| if k.is_multiple_of(2) { Vector::xy(20.0, 20.0) } else { Vector::xy(90.0, 70.0) };
     let told = refused(analysed(drawing((0..20_000).map(|k| square(0, at(k), 1.0)).collect(), Vec::new(), 120.0)));
-    assert!(told.contains("10000 elements lie in one heap, around [20.0000, 20.0000]"), "{told}");
+    assert!(told.contains("10000 elements lie in one heap, around ["), "{told}");
 }
 
 #[test]

@@ -60,27 +60,32 @@ pub(crate) enum Ending {
 
 impl BorderTurn {
     /// For a state whose strokes turn at the border, if there is one.
-    pub(crate) fn of<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Option<Self>
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn of<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Result<Option<Self>>
     where
         Vector<D>: Dimension<D>,
     {
         if state.extent.rule() != arabesque_core::Border::Turn {
-            return None;
+            return Ok(None);
         }
-        let last = net.skeleton.lines.iter().map(|l| l.curve).max()?;
+        let budget = state.budget.stage("turning strokes at the border");
+        let Some(last) = net.skeleton.lines.iter().map(|l| l.curve).max() else { return Ok(None) };
+        let Some(outline) = state.extent.outline(&budget)? else { return Ok(None) };
         let thickness = |c: u32| {
             let (style, is_closed) = state.extent.style(c as usize);
             Thickness { width: state.width(c), style, is_closed }
         };
         let meetings = (0..net.nodes.len() as u32).filter(|&n| net.degree(n) > 2).count();
         let is_net = meetings as f64 > MEETINGS * net.nodes.len() as f64;
-        Some(Self {
-            budget: state.budget.stage("turning strokes at the border"),
-            outline: state.extent.outline()?,
+        Ok(Some(Self {
+            budget,
+            outline,
             curves: (0..=last).map(thickness).collect(),
             unit: net.spacing * state.extent.smallest_spacing_scale,
             ending: if is_net { Ending::BorderStroke } else { Ending::IntoNeighbour },
-        })
+        }))
     }
 
     /// For strokes of width 1; whether each curve is closed.
@@ -108,7 +113,9 @@ impl BorderTurn {
     fn turned(&self, strokes: Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>> {
         let widest = strokes.iter().map(|d| self.width(d)).fold(0.0, f64::max);
         self.budget.check()?;
-        let Some(rings) = OffsetRings::new(&self.outline, widest, self.unit) else { return Ok(Vec::new()) };
+        let Some(rings) = OffsetRings::new(&self.outline, widest, self.unit, &self.budget)? else {
+            return Ok(Vec::new());
+        };
         let corners = rings.corners() as u64;
         let mut meter = self.budget.meter();
         let mut clipped: Vec<ClippedStroke> = Vec::new();

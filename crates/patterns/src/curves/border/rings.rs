@@ -1,6 +1,6 @@
 //! The rings on which strokes end or turn: the border of the domain, moved inside.
 
-use arabesque_core::{Drawn, Measured, Outline, Path, Region, Shape, Vector, segment};
+use arabesque_core::{Budget, Drawn, Measured, Outline, Path, Region, Result, Shape, Vector, segment};
 
 use crate::curves::border::fit::fit;
 
@@ -51,17 +51,21 @@ pub(crate) struct OffsetRings {
 
 impl OffsetRings {
     /// The rings for strokes of the given width in an outline, or `None` where there is no room for them.
-    pub(crate) fn new(outline: &Outline<2>, width: f64, unit: f64) -> Option<Self> {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(outline: &Outline<2>, width: f64, unit: f64, budget: &Budget) -> Result<Option<Self>> {
         let radius = (TURN * unit).max(MIN_TURN * width);
         let tolerance = (TOLERANCE * width).max(1e-3 * unit);
         // A little more than half the width, so that fitted lines stay inside as well.
         let margin = 0.5 * width + tolerance;
-        let shape = Shape::from_outline(outline.grown(-margin - radius).grown(radius))?;
+        let rounded = outline.try_grown(-margin - radius, budget)?.try_grown(radius, budget)?;
+        let Some(shape) = Shape::try_from_outline(rounded, budget)? else { return Ok(None) };
         let all = shape.outline().rings.iter().map(|ring| {
             let around: Vec<_> = ring.iter().chain(ring.first()).copied().collect();
             Measured::new(Path { closed: true, ..Path::polyline(&around) }, tolerance)
         });
-        Some(Self { all: all.collect(), shape, radius, tolerance })
+        Ok(Some(Self { all: all.collect(), shape, radius, tolerance }))
     }
 
     /// Number of points of all rings.

@@ -75,7 +75,7 @@ where
         Ok(Drawn { path, source: curve as usize, scale, frozen: None })
     };
     let free: Vec<_> = chains.par_iter().map(one).collect::<Result<_>>()?;
-    if let Some(turn) = BorderTurn::of(state, net) {
+    if let Some(turn) = BorderTurn::of(state, net)? {
         return Ok(frozen.chain(turn.finish(free)?).collect());
     }
     let cut: Vec<Vec<Drawn<D>>> =

@@ -10,11 +10,11 @@ const CONTACT: f64 = 1e-11;
 /// Nanoseconds for a corner that is moved or sorted, and for two edges that are compared.
 const PRICE: (u64, u64) = (10, 5);
 
-/// The same for a corner, and for a crossing, of two outlines whose common part is found.
-const OVERLAY: (u64, u64) = (300, 1000);
+/// The same for a corner of two outlines whose common part is found.
+const OVERLAY: u64 = 300;
 
-/// Outlines with more pairs of edges than this are looked at before their common part is found: if they cross all over, it has as many
-/// corners as there are pairs.
+/// Of outlines with more pairs of edges than this, crossings are counted before their common part is found: if they cross all over, it
+/// has as many corners as there are pairs.
 const MANY_PAIRS: usize = 1 << 20;
 
 /// The ink of an element with what is looked up about it.
@@ -113,29 +113,17 @@ impl Figure {
             return Ok(None);
         }
         let (mine, others) = (self.corners(), other.corners());
-        meter.spend(OVERLAY.0 * (mine + others) as u64)?;
-        if mine.saturating_mul(others) > MANY_PAIRS {
-            let crossings = self.crossings(other, place, meter)?;
-            budget.within("crossings of two elements", crossings, ("crossings", budget.limits().crossings))?;
-            budget.spend(OVERLAY.1 * crossings as u64)?;
-        }
-        let common = self.outline.intersection(&other.outline.transformed(place));
+        meter.spend(OVERLAY * (mine + others) as u64)?;
+        let moved = other.outline.transformed(place);
+        let common = match mine.saturating_mul(others) > MANY_PAIRS {
+            true => self.outline.try_intersection(&moved, budget)?,
+            false => self.outline.intersection(&moved),
+        };
         Ok((!common.rings.is_empty()).then_some(common))
     }
 
     fn corners(&self) -> usize {
         self.outline.rings.iter().map(Vec::len).sum()
-    }
-
-    /// At how many places, at most, edges of the two cross.
-    fn crossings(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<usize> {
-        let mut count = 0;
-        for edge in other.placed_edges(place).filter(|edge| touches(&self.bounds, edge)) {
-            let near = self.edges.between(edge.0[1].min(edge.1[1]), edge.0[1].max(edge.1[1]));
-            meter.spend(PRICE.1 * near.len() as u64)?;
-            count += near.iter().filter(|mine| crossing(edge, **mine, 0.0) != Meeting::Apart).count();
-        }
-        Ok(count)
     }
 
     /// Smallest distance between two inks that do not overlap.

@@ -7,6 +7,13 @@ use arabesque_core::{Error, Result};
 /// # Errors
 /// [`Error::Input`] naming `place` when it is none of these.
 pub fn decode_text(place: &str, bytes: &[u8]) -> Result<String> {
+    if bytes.starts_with(&[0x1F, 0x8B]) {
+        return Err(Error::input(
+            place,
+            "a compressed file (svgz, gzip), where plain text was expected",
+            "unpack it first, or save it as plain SVG",
+        ));
+    }
     let units = |from: fn([u8; 2]) -> u16| bytes[2..].chunks_exact(2).map(|c| from([c[0], c[1]])).collect::<Vec<_>>();
     let wide = match bytes {
         [0xFF, 0xFE, ..] => Some(units(u16::from_le_bytes)),
@@ -49,5 +56,11 @@ mod tests {
         assert_eq!(decode_text("t", &[0xFF, 0xFE, b'a', 0, b'b', 0]).unwrap(), "ab");
         assert_eq!(decode_text("t", &[0xEF, 0xBB, 0xBF, b'a']).unwrap(), "a");
         assert!(decode_text("t", &[b'a', 0xE9, b'b']).unwrap_err().to_string().contains("byte 2"));
+    }
+
+    #[test]
+    fn compressed_files_are_called_so() {
+        let told = decode_text("leaves.svgz", &[0x1F, 0x8B, 8, 0, 0]).unwrap_err().to_string();
+        assert!(told.starts_with("leaves.svgz: a compressed file (svgz, gzip)"), "{told}");
     }
 }

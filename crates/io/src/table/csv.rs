@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Bounds, Budget, Decimals, Error, Exemplar, Placement, Result, Vector};
 
+use crate::text::short::{list, short};
+
 /// Points of a file, by dimension.
 #[derive(Clone, Debug)]
 pub enum Points {
@@ -24,6 +26,9 @@ const ALIASES: [(&str, &[&str]); 4] = [
     ("class", &["class", "label", "type", "kind", "category", "cls", "species", "group", "id", "name"]),
 ];
 
+/// Work for each byte.
+const PER_BYTE: u64 = 10;
+
 /// The class of every point of a file without a class column.
 const ONLY_CLASS: &str = "point";
 
@@ -33,21 +38,12 @@ const ONLY_CLASS: &str = "point";
 /// [`Error::Input`] with the line when a value is not a finite number within the limits, a column is missing or a line
 /// has the wrong number of fields; [`Error::Limit`] for too many points.
 pub fn read_points(name: &str, text: &str, budget: &Budget) -> Result<Points> {
-    let table = Table::new(name, text)?;
-    let count = table.rows.len();
-    if count > budget.limits().elements {
-        return Err(Error::Limit {
-            what: format!("{name}: number of points"),
-            found: count.to_string(),
-            limit: budget.limits().elements.to_string(),
-            advice: "keep a smaller part of the pattern as the exemplar".into(),
-        });
-    }
+    let table = Table::new(name, text, budget)?;
     let (class_of, names) = table.classes();
     let missing = |axis: &str| {
         Error::input(
             format!("{name}: line {}", table.header_line),
-            format!("no column {axis} among {}", table.header.join(", ")),
+            format!("no column {axis} among {}", list(&table.header)),
             "name the columns x, y and, if wanted, z and class",
         )
     };
@@ -85,8 +81,12 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    fn new(name: &'a str, text: &str) -> Result<Self> {
-        let mut records = records(text).into_iter();
+    fn new(name: &'a str, text: &str, budget: &Budget) -> Result<Self> {
+        let limit = budget.limits().elements;
+        let most = limit.saturating_add(2);
+        let records = records(name, text, budget, most)?;
+        let count = records.len();
+        let mut records = records.into_iter();
         let Some((first_line, first)) = records.next() else {
             return Err(Error::input(name, "no point found", "give one point per line, as x,y or x,y,class"));
         };
@@ -101,11 +101,21 @@ impl<'a> Table<'a> {
             if fields.len() != header.len() {
                 return Err(Error::input(
                     format!("{name}: line {line}"),
-                    format!("{} fields where {} were expected ({})", fields.len(), header.len(), header.join(", ")),
+                    format!("{} fields where {} were expected ({})", fields.len(), header.len(), list(&header)),
                     "give every line the same fields",
                 ));
             }
             rows.push((line, fields));
+        }
+        if rows.len() > limit {
+            return Err(Error::Limit {
+                what: format!("{name}: number of points"),
+                found: if count < most { rows.len().to_string() } else { format!("more than {limit}") },
+                limit: limit.to_string(),
+                advice:
+                    "keep a smaller part of the pattern as the exemplar, or raise the limit with --limit elements=N"
+                        .into(),
+            });
         }
         if rows.is_empty() {
             return Err(Error::input(name, "a header but no point", "give one point per line below the header"));
@@ -138,13 +148,20 @@ impl<'a> Table<'a> {
             let text = &fields[columns[k]];
             let place = || format!("{}: line {line}, column {}", self.name, self.header[columns[k]]);
             let v: f64 = text.parse().map_err(|_| {
-                Error::input(place(), format!("\"{text}\" is not a number"), "write numbers like 12.5 or 1.25e1")
+                Error::input(
+                    place(),
+                    format!("\"{}\" is not a number", short(text)),
+                    "write numbers like 12.5 or 1.25e1",
+                )
             })?;
             if v.is_finite() && v.abs() <= budget.limits().coordinate {
                 return Ok(v);
             }
-            let expected =
-                format!("{text} where a coordinate between -{0} and {0} was expected", budget.limits().coordinate);
+            let expected = format!(
+                "{} where a coordinate between -{1} and {1} was expected",
+                short(text),
+                budget.limits().coordinate
+            );
             Err(Error::input(place(), expected, "correct or remove the line"))
         };
         self.rows
@@ -171,7 +188,7 @@ fn is_known(field: &str) -> bool {
 fn made_up_header(name: &str, line: usize, first: &[String]) -> Result<Vec<String>> {
     let place = format!("{name}: line {line}");
     if let Some(field) = first.iter().take(2).find(|f| f.parse::<f64>().is_err()) {
-        let problem = format!("\"{field}\" is neither a number nor the name of a column");
+        let problem = format!("\"{}\" is neither a number nor the name of a column", short(field));
         return Err(Error::input(place, problem, "start with a header such as x,y,class"));
     }
     let names: &[&str] = match first.len() {
@@ -191,37 +208,40 @@ fn separator_of(line: &str) -> Option<char> {
 }
 
 /// The fields of every line that holds data, with its number. A line that ends inside quotes goes on in the lines after
-/// it, where one of these closes them; else it ends there.
+/// it, until one of these closes them. No more than `most` are read.
 ///
 /// The crate `csv` is not used for this: it tells the line of a record only as the line after the last record, comments
 /// included, and a quote after a blank is not a quote to it.
-fn records(text: &str) -> Vec<(usize, Vec<String>)> {
+fn records(name: &str, text: &str, budget: &Budget, most: usize) -> Result<Vec<(usize, Vec<String>)>> {
+    budget.spend(PER_BYTE * text.len() as u64)?;
+    let count = text.lines().count();
+    budget.within(&format!("{name}: lines"), count, ("nodes", budget.limits().nodes))?;
     let lines: Vec<&str> = text.lines().collect();
     let first = lines.iter().map(|line| line.trim()).find(|line| is_data(line));
     let separator = first.and_then(separator_of);
     let mut records = Vec::new();
-    let (mut at, mut is_unclosed) = (0, false);
-    while let Some(line) = lines.get(at) {
+    let mut at = 0;
+    while let Some(line) = lines.get(at).filter(|_| records.len() < most) {
         at += 1;
         if !is_data(line.trim()) {
             continue;
         }
         let number = at;
-        let after = if is_unclosed { &[] } else { &lines[at..] };
-        let (fields, more) = fields(line, after, separator);
-        // No line after a quote that nothing closes is searched again.
-        is_unclosed |= more.is_none();
-        at += more.unwrap_or(0);
+        let Some((fields, more)) = fields(line, &lines[at..], separator) else {
+            let problem = "a quote that nothing closes, expected one more on this line or after it";
+            return Err(Error::input(format!("{name}: line {number}"), problem, "close the quote, or remove it"));
+        };
+        at += more;
         records.push((number, fields));
     }
-    records
+    Ok(records)
 }
 
 /// The trimmed fields of a line, and how many of the lines `after` it belong to it; `None` where it ends inside quotes
 /// that none of them closes.
-fn fields(line: &str, after: &[&str], separator: Option<char>) -> (Vec<String>, Option<usize>) {
+fn fields(line: &str, after: &[&str], separator: Option<char>) -> Option<(Vec<String>, usize)> {
     let Some(separator) = separator else {
-        return (line.split_whitespace().map(str::to_owned).collect(), Some(0));
+        return Some((line.split_whitespace().map(str::to_owned).collect(), 0));
     };
     let mut whole = Splitter { separator, ..Splitter::default() };
     whole.feed(line.trim());
@@ -231,12 +251,7 @@ fn fields(line: &str, after: &[&str], separator: Option<char>) -> (Vec<String>, 
         whole.feed(after[more]);
         more += 1;
     }
-    if !whole.quoted {
-        return (whole.finish(), Some(more));
-    }
-    let mut alone = Splitter { separator, ..Splitter::default() };
-    alone.feed(line.trim());
-    (alone.finish(), None)
+    (!whole.quoted).then(|| (whole.finish(), more))
 }
 
 /// Cuts text into fields; double quotes protect separators, and a doubled quote inside them is a quote.
@@ -375,15 +390,34 @@ mod tests {
         assert_eq!(e.classes.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(), ["a\n# b \"c\"", "d,e"]);
         let message = read("x,y,class\n0,0,\"a\nb\"\n1,no,c\n").unwrap_err().to_string();
         assert!(message.contains("line 4, column y"), "{message}");
-        // A quote that is never closed ends with its line.
-        assert_eq!(plane("x,y,class\n0,0,\"a\n1,0,b\n").classes[0].name, "a");
+        let message = read("x,y,class\n0,0,a\n0,1,\"a\n1,0,b\n").unwrap_err().to_string();
+        assert!(message.starts_with("t.csv: line 3: a quote that nothing closes"), "{message}");
+    }
+
+    #[test]
+    fn what_a_message_shows_of_a_file_is_short() {
+        let long = "z".repeat(100_000);
+        for text in [
+            format!("x,y\n0,{long}\n"),
+            format!("0,{long}\n"),
+            format!("{},z\n0,0\n", vec!["q"; 50_000].join(",")),
+            format!("x,y,class{}\n0,0\n", ",q".repeat(50_000)),
+            format!("x,y\n0,1{}\n", "0".repeat(400)),
+        ] {
+            let message = read(&text).unwrap_err().to_string();
+            assert!(message.len() < 300, "{message}");
+        }
     }
 
     #[test]
     fn too_many_points_are_a_limit() {
         let budget = Budget::new(arabesque_core::Limits { elements: 2, ..Default::default() });
         let err = read_points("t", "0,0\n1,0\n1,1\n", &budget).unwrap_err();
-        assert!(matches!(err, Error::Limit { .. }));
+        assert!(matches!(&err, Error::Limit { found, .. } if found == "3"), "{err}");
+        let many = "0,0\n".repeat(100_000);
+        assert!(read_points("t", &many, &budget).unwrap_err().to_string().contains("more than 2"));
+        let lines = Budget::new(arabesque_core::Limits { nodes: 1000, ..Default::default() });
+        assert!(read_points("t", &"\n".repeat(2000), &lines).unwrap_err().to_string().contains("lines"));
     }
 
     #[test]

@@ -4,29 +4,35 @@
 
 use arabesque_core::{Budget, Error, Result, Vector};
 
-use crate::table::csv;
+use crate::{table::csv, text::short::short};
 
 /// Lines without comments, joined where a backslash continues them, with the number of their first line. Box comments
 /// stay.
-pub(crate) fn logical_lines(text: &str) -> Vec<(usize, String)> {
-    let mut lines: Vec<(usize, String)> = Vec::new();
-    let mut continues = false;
+pub(crate) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)> {
     // The recipe of a result has a box of its own.
-    let own = text.lines().take_while(|line| *line != csv::RECIPE_MARK);
-    for (k, raw) in own.enumerate() {
-        let content = match raw.split_once('#') {
-            Some((before, comment)) if before.trim().is_empty() && is_box(comment) => raw.trim(),
-            Some((before, _)) => before.trim(),
-            None => raw.trim(),
-        };
-        let (content, more) = content.strip_suffix('\\').map_or((content, false), |c| (c, true));
-        match lines.last_mut().filter(|_| continues) {
-            Some((_, before)) => *before = format!("{before} {content}"),
-            None => lines.push((k + 1, content.to_owned())),
+    let mut own = text.lines().take_while(|line| *line != csv::RECIPE_MARK).enumerate();
+    std::iter::from_fn(move || {
+        let (first, raw) = own.next()?;
+        let (content, mut more) = content_of(raw);
+        let mut line = content.to_owned();
+        while more && let Some((_, raw)) = own.next() {
+            let (content, goes_on) = content_of(raw);
+            line.push(' ');
+            line.push_str(content);
+            more = goes_on;
         }
-        continues = more;
-    }
-    lines
+        Some((first + 1, line))
+    })
+}
+
+/// A line without its comment, and whether the next one belongs to it.
+fn content_of(raw: &str) -> (&str, bool) {
+    let content = match raw.split_once('#') {
+        Some((before, comment)) if before.trim().is_empty() && is_box(comment) => raw.trim(),
+        Some((before, _)) => before.trim(),
+        None => raw.trim(),
+    };
+    content.strip_suffix('\\').map_or((content, false), |content| (content, true))
 }
 
 fn is_box(comment: &str) -> bool {
@@ -55,10 +61,12 @@ impl Lexer<'_> {
         match word.parse::<f64>() {
             Ok(v) if v.is_finite() && v.abs() <= most => Ok(v),
             Ok(_) => {
-                let problem = format!("{word} where a coordinate between -{most} and {most} was expected");
+                let problem = format!("{} where a coordinate between -{most} and {most} was expected", short(word));
                 self.fail(line, problem, "correct or remove the vertex")
             }
-            Err(_) => self.fail(line, format!("\"{word}\" is not a number"), "write numbers like 12.5 or 1.25e1"),
+            Err(_) => {
+                self.fail(line, format!("\"{}\" is not a number", short(word)), "write numbers like 12.5 or 1.25e1")
+            }
         }
     }
 
@@ -86,8 +94,12 @@ impl Lexer<'_> {
             Some(n) if n < 0 => usize::try_from(n.unsigned_abs()).ok().and_then(|n| so_far.checked_sub(n)),
             _ => None,
         };
-        let problem =
-            || format!("\"{word}\" is not a vertex: expected 1, 2, ... or -1 to -{so_far} for the last ones so far");
+        let problem = || {
+            format!(
+                "\"{}\" is not a vertex: expected 1, 2, ... or -1 to -{so_far} for the last ones so far",
+                short(word)
+            )
+        };
         index.map_or_else(|| self.fail(line, problem(), "correct the number of the vertex"), Ok)
     }
 

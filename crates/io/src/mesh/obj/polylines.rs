@@ -8,7 +8,13 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Bounds, Budget, Class, Contents, Curve, Error, Exemplar, Path, Result, Vector, Warning};
 
-use crate::mesh::obj::lexer::{Lexer, logical_lines};
+use crate::{
+    mesh::obj::lexer::{Lexer, logical_lines},
+    text::short::{list, short},
+};
+
+/// Work for each byte.
+const PER_BYTE: u64 = 10;
 
 /// The style of polylines that no `o` or `g` precedes.
 const ONLY_STYLE: &str = "curve";
@@ -73,6 +79,7 @@ struct Reader<'a> {
     lines: Vec<(usize, Polyline)>,
     references: usize,
     styles: Vec<String>,
+    style_of: BTreeMap<String, usize>,
     style: Option<String>,
     frame: Option<Bounds<3>>,
     ignored: BTreeMap<String, usize>,
@@ -86,6 +93,7 @@ impl<'a> Reader<'a> {
             lines: Vec::new(),
             references: 0,
             styles: Vec::new(),
+            style_of: BTreeMap::new(),
             style: None,
             frame: None,
             ignored: BTreeMap::new(),
@@ -95,6 +103,13 @@ impl<'a> Reader<'a> {
     fn statement(&mut self, line: usize, content: &str) -> Result<()> {
         let mut words = content.split_whitespace();
         let Some(keyword) = words.next() else { return Ok(()) };
+        self.lexer.budget.spend(PER_BYTE * content.len() as u64)?;
+        if !matches!(keyword, "v" | "l" | "o" | "g") && !keyword.starts_with('#') {
+            *self.ignored.entry(short(keyword)).or_insert(0) += 1;
+            return Ok(());
+        }
+        // Words are counted before a list of them is made.
+        self.lexer.check_limit("line segments", words.clone().count(), self.lexer.budget.limits().segments)?;
         let words: Vec<&str> = words.collect();
         match keyword {
             "v" => self.vertex(line, &words),
@@ -103,11 +118,7 @@ impl<'a> Reader<'a> {
                 self.style = Some(words.join(" ")).filter(|name| !name.is_empty());
                 Ok(())
             }
-            _ if keyword.starts_with('#') => self.frame(line, content),
-            _ => {
-                *self.ignored.entry(keyword.to_owned()).or_insert(0) += 1;
-                Ok(())
-            }
+            _ => self.frame(line, content),
         }
     }
 
@@ -129,10 +140,14 @@ impl<'a> Reader<'a> {
         let vertices =
             words.iter().map(|word| self.lexer.index(line, word, self.vertices.len())).collect::<Result<Vec<_>>>()?;
         let name = self.style.as_deref().unwrap_or(ONLY_STYLE);
-        let style = self.styles.iter().position(|s| s == name).unwrap_or_else(|| {
-            self.styles.push(name.to_owned());
-            self.styles.len() - 1
-        });
+        let style = match self.style_of.get(name) {
+            Some(known) => *known,
+            None => {
+                self.style_of.insert(name.to_owned(), self.styles.len());
+                self.styles.push(name.to_owned());
+                self.styles.len() - 1
+            }
+        };
         self.lines.push((line, Polyline { style, vertices }));
         Ok(())
     }
@@ -216,9 +231,8 @@ impl<'a> Reader<'a> {
             warnings.push(Warning::new(message, "remove them, or move their vertices apart"));
         }
         if !self.ignored.is_empty() {
-            let list: Vec<String> = self.ignored.iter().map(|(word, n)| format!("{word} ({n})")).collect();
-            let message =
-                format!("{}: statements other than v, l, o and g are ignored: {}", self.lexer.name, list.join(", "));
+            let words = list(self.ignored.iter().map(|(word, n)| format!("{word} ({n})")));
+            let message = format!("{}: statements other than v, l, o and g are ignored: {words}", self.lexer.name);
             warnings.push(Warning::new(message, "draw what should be repeated as lines"));
         }
         warnings
@@ -345,5 +359,27 @@ mod tests {
         assert_eq!(back.curves[0].path.start(), back.curves[1].path.end());
         let length = |path: &Path<3>| Measured::new(path.clone(), 1e-4).length();
         assert!((length(&back.curves[1].path) - length(&curves[0].path)).abs() < 0.02);
+    }
+
+    #[test]
+    fn long_lines_long_words_and_many_statements_take_little() {
+        let count = 50_000;
+        let vertices: String = (0..count).map(|k| format!("v {} {} {}\n", k % 37, k % 41, k % 43)).collect();
+        let indices: String = (1..=count).map(|k| format!(" {k}")).collect();
+        let budget = Budget::default();
+        let net = read_curves("t.obj", &format!("{vertices}l{indices}\n"), &budget).unwrap();
+        assert_eq!(net.exemplar.curves[0].path.cubics.len(), count - 1);
+        let continued: String = (1..=count).map(|k| format!(" {k} \\\n")).collect();
+        assert_eq!(read_curves("t.obj", &format!("{vertices}l{continued}\n"), &budget).unwrap().exemplar, net.exemplar);
+        let styles: String = (1..count).map(|k| format!("o s{k}\nl {k} {}\n", k + 1)).collect();
+        assert!(read_curves("t.obj", &format!("{vertices}{styles}"), &budget).unwrap().exemplar.styles.len() > 40_000);
+        assert!(budget.work() < 200_000_000, "{}", budget.work());
+        let words: String = (0..count).map(|k| format!("w{k} 1\n")).collect();
+        let warnings = read(&format!("{words}v 0 0 0\nv 1 1 1\nl 1 2\n")).unwrap().warnings;
+        assert!(warnings.iter().all(|w| w.message.len() < 200), "{warnings:?}");
+        let few = Budget::new(Limits { segments: 1000, ..Limits::default() });
+        assert!(matches!(read_curves("t", &format!("l{indices}"), &few), Err(Error::Limit { .. })));
+        let message = read(&format!("v 0 0 {}\n", "9".repeat(5000))).unwrap_err().to_string();
+        assert!(message.len() < 200, "{message}");
     }
 }

@@ -26,15 +26,23 @@ fn of_gradient(source: &Source<'_>, id: &str) -> Option<[f64; 3]> {
     let mut node = source.by_id(id)?;
     // Gradients share stops through references; a ring of references ends after a few.
     for _ in 0..16 {
-        let stops: Vec<_> = node.children().filter(|c| c.tag_name().name() == "stop").filter_map(stop_colour).collect();
-        if !stops.is_empty() {
-            let n = stops.len() as f64;
-            return Some(std::array::from_fn(|k| stops.iter().map(|c| c[k]).sum::<f64>() / n));
+        let known = source.colours.borrow().get(&node.id().get()).copied();
+        let mean = known.unwrap_or_else(|| mean_of_stops(node));
+        source.colours.borrow_mut().insert(node.id().get(), mean);
+        if mean.is_some() {
+            return mean;
         }
         href(node)?;
         node = source.target(node)?;
     }
     None
+}
+
+/// The mean colour of the stops that a gradient has itself.
+fn mean_of_stops(node: Xml<'_, '_>) -> Option<[f64; 3]> {
+    let stops: Vec<_> = node.children().filter(|c| c.tag_name().name() == "stop").filter_map(stop_colour).collect();
+    let n = stops.len() as f64;
+    (!stops.is_empty()).then(|| std::array::from_fn(|k| stops.iter().map(|c| c[k]).sum::<f64>() / n))
 }
 
 fn stop_colour(stop: Xml<'_, '_>) -> Option<[f64; 3]> {

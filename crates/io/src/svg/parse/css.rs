@@ -5,8 +5,15 @@ use std::{cell::Cell, collections::BTreeSet, rc::Rc};
 use roxmltree::Node as Xml;
 use simplecss::{AttributeOperator, Declaration, PseudoClass, Rule, StyleSheet};
 
-/// Steps that selectors may take up the tree for a whole file; beyond it descendant rules no longer match.
-const STEPS: u64 = 200_000_000;
+/// Steps of matching selectors in a whole file: parts of a selector compared, and moves in the tree.
+pub(crate) const STEPS: u64 = 1_000_000_000;
+
+/// Bytes of a selector beyond which its rule is skipped: each part of it may be one level deeper.
+const SELECTOR: usize = 2000;
+/// Comments in a row beyond which they are put together, for the same reason.
+const COMMENTS: usize = 500;
+/// Length of a style sheet beyond which it is parsed in parts: whatever is not understood is looked up from the start.
+const PART: usize = 1 << 16;
 
 /// The rules of a file, weakest first. A clone shares the rules, and counts its own steps from there.
 #[derive(Clone)]
@@ -20,10 +27,15 @@ pub(crate) struct StyleRules<'a> {
 impl<'a> StyleRules<'a> {
     /// Parses style sheet text. Rules that are not understood are skipped, as CSS demands.
     pub(crate) fn new(css: &'a str) -> Self {
-        let mut rules = StyleSheet::parse(css).rules;
+        let mut rules = Vec::new();
+        for part in parts(css) {
+            rules.extend(StyleSheet::parse(part).rules);
+        }
+        rules.sort_by_cached_key(|rule| rule.selector.specificity());
         // A selector that starts with a combinator is an error in CSS; the parser lets it through.
         rules.retain(|rule| {
-            rule.selector.to_string().starts_with(|c: char| c.is_alphanumeric() || ".#[*:_".contains(c))
+            let selector = rule.selector.to_string();
+            selector.starts_with(|c: char| c.is_alphanumeric() || ".#[*:_".contains(c)) && selector.len() <= SELECTOR
         });
         let styled: BTreeSet<String> = rules.iter().flat_map(|rule| class_names(&rule.selector.to_string())).collect();
         Self { rules: rules.into(), styled: Rc::new(styled), steps: Cell::new(0) }
@@ -32,7 +44,10 @@ impl<'a> StyleRules<'a> {
     /// Declarations that apply to `node`, weakest first.
     pub(crate) fn declarations<'s>(&'s self, node: Xml<'s, 's>) -> impl Iterator<Item = Declaration<'a>> + 's {
         let element = Element { node, steps: &self.steps };
-        let matching = self.rules.iter().filter(move |rule| rule.selector.matches(&element));
+        let matching = self.rules.iter().filter(move |rule| {
+            element.count(1);
+            !self.is_exhausted() && rule.selector.matches(&element)
+        });
         matching.flat_map(|rule| rule.declarations.iter().copied())
     }
 
@@ -41,10 +56,63 @@ impl<'a> StyleRules<'a> {
         self.styled.contains(class)
     }
 
+    /// Steps of matching so far.
+    pub(crate) fn steps(&self) -> u64 {
+        self.steps.get()
+    }
+
     /// Whether matching was cut short.
     pub(crate) fn is_exhausted(&self) -> bool {
         self.steps.get() > STEPS
     }
+}
+
+/// A long style sheet in parts that end with rules.
+fn parts(css: &str) -> Vec<&str> {
+    if css.len() <= PART {
+        return vec![css];
+    }
+    let (mut parts, mut from, mut depth) = (Vec::new(), 0, 0_usize);
+    for (k, b) in css.bytes().enumerate() {
+        match b {
+            b'{' => depth += 1,
+            b'}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if b == b'}' && depth == 0 && k + 1 - from >= PART / 16 {
+            parts.push(&css[from..=k]);
+            from = k + 1;
+        }
+    }
+    parts.push(&css[from..]);
+    parts
+}
+
+/// Style sheet text as the parser may have it, which takes every comment in a row one level deeper: these are one.
+pub(crate) fn sparing_comments(css: String) -> String {
+    if css.matches("/*").count() <= COMMENTS {
+        return css;
+    }
+    let (mut out, mut rest) = (String::with_capacity(css.len()), css.as_str());
+    let mut in_row = false;
+    while let Some(start) = rest.find("/*") {
+        let before = &rest[..start];
+        let is_blank = before.bytes().all(|b| b.is_ascii_whitespace());
+        if in_row && is_blank {
+            // The blank is kept once: it may tell two names apart.
+            if !before.is_empty() && !out.ends_with(' ') {
+                out.push(' ');
+            }
+        } else {
+            out.push_str(before);
+            out.push_str("/**/");
+        }
+        let Some(end) = rest[start + 2..].find("*/") else { return out };
+        rest = &rest[start + 2 + end + 2..];
+        in_row = true;
+    }
+    out.push_str(rest);
+    out
 }
 
 /// Names after a dot, or in a class attribute test, in a selector.
@@ -61,9 +129,19 @@ struct Element<'a> {
 }
 
 impl<'a> Element<'a> {
+    fn count(&self, steps: u64) {
+        self.steps.set(self.steps.get() + steps);
+    }
+
     fn step(&self, to: Option<Xml<'a, 'a>>) -> Option<Self> {
-        self.steps.set(self.steps.get() + 1);
+        self.count(1);
         to.filter(|_| self.steps.get() <= STEPS).map(|node| Self { node, steps: self.steps })
+    }
+
+    /// The element before this one; texts and comments between them are steps too.
+    fn previous(&self) -> Option<Xml<'a, 'a>> {
+        let before = self.node.prev_siblings().skip(1).inspect(|_| self.count(1));
+        before.take_while(|_| self.steps.get() <= STEPS).find(Xml::is_element)
     }
 }
 
@@ -73,7 +151,7 @@ impl simplecss::Element for Element<'_> {
     }
 
     fn prev_sibling_element(&self) -> Option<Self> {
-        self.step(self.node.prev_sibling_element())
+        self.step(self.previous())
     }
 
     fn has_local_name(&self, name: &str) -> bool {
@@ -81,11 +159,15 @@ impl simplecss::Element for Element<'_> {
     }
 
     fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.node.attribute(local_name).is_some_and(|value| operator.matches(value))
+        self.count(self.node.attributes().len() as u64);
+        self.node.attribute(local_name).is_some_and(|value| {
+            self.count(value.len() as u64 / 32);
+            operator.matches(value)
+        })
     }
 
     fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
-        matches!(class, PseudoClass::FirstChild) && self.node.prev_sibling_element().is_none()
+        matches!(class, PseudoClass::FirstChild) && self.previous().is_none()
     }
 }
 
@@ -111,6 +193,28 @@ mod tests {
         let svg = "<svg><path class='b'/></svg>";
         assert_eq!(fills("> path{fill:red} @media x{path{fill:blue}} .b{fill:lime}", svg), ["lime"]);
         assert!(fills("}}}{{{,,,", svg).is_empty());
+    }
+
+    #[test]
+    fn long_sheets_long_selectors_and_comments_in_a_row_are_no_trouble() {
+        let svg = "<svg><path class='b'/></svg>";
+        let long = format!("{} .b{{fill:lime}}", "a{b:}".repeat(100_000));
+        assert_eq!(fills(&long, svg), ["lime"]);
+        let sheet = format!(".b{{fill:red}} {}{{fill:lime}}", vec!["path"; 50_000].join("+"));
+        assert_eq!(fills(&sheet, svg), ["red"]);
+        for run in ["/**/", "/* x */ ", "\n/**/"] {
+            let css = sparing_comments(format!("svg >{}.b{{fill:{}lime}}", run.repeat(50_000), run.repeat(900)));
+            assert_eq!(fills(&css, svg), ["lime"], "{run}");
+        }
+    }
+
+    #[test]
+    fn steps_are_counted_for_every_rule_and_every_move() {
+        let svg = format!("<svg>{}<path a='x'/></svg>", "<!-- -->".repeat(1000));
+        let xml = roxmltree::Document::parse(&svg).unwrap();
+        let sheet = StyleRules::new("path:first-child{fill:red} [a]{fill:lime} g{x:y}");
+        assert_eq!(sheet.declarations(xml.descendants().rfind(Xml::is_element).unwrap()).count(), 2);
+        assert!(sheet.steps() > 1000, "{}", sheet.steps());
     }
 
     #[test]

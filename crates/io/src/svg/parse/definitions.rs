@@ -6,6 +6,7 @@ use std::{
     rc::Rc,
 };
 
+use arabesque_core::{Error, Result};
 use kurbo::Rect;
 use roxmltree::{Node as Xml, NodeId};
 use svgtypes::Length;
@@ -13,6 +14,7 @@ use svgtypes::Length;
 use crate::{
     svg::parse::{
         geometry::{self, Geometry},
+        guard,
         length::{Axis, Viewport},
         notes::Note,
         paint::reference,
@@ -28,8 +30,17 @@ pub(crate) struct Definitions<'a, 's> {
     prefix: String,
     names: BTreeMap<String, String>,
     queue: VecDeque<(NodeId, String, Viewport)>,
-    rectangles: Vec<(String, String)>,
+    /// Clips by rectangles: their markup, and which of them it is.
+    rectangles: BTreeMap<String, usize>,
+    /// What drawing each definition takes, in nodes.
+    weights: BTreeMap<u32, usize>,
+    /// What went wrong with one of them.
+    failed: Option<Error>,
 }
+
+/// Work for writing one byte, and for weighing one node.
+const PER_BYTE: u64 = 10;
+const NODE: u64 = 200;
 
 /// Tags that may be copied into definitions.
 const COPIED: [&str; 10] =
@@ -41,7 +52,15 @@ impl<'a, 's> Definitions<'a, 's> {
         let numbered = (2..).map(|n| format!("{prefix}{n}"));
         let mut prefixes = std::iter::once(prefix.to_owned()).chain(numbered);
         let prefix = prefixes.find(|p| !source.has_ids_in(p)).unwrap_or_else(|| prefix.to_owned());
-        Self { source, prefix, names: BTreeMap::new(), queue: VecDeque::new(), rectangles: Vec::new() }
+        Self {
+            source,
+            prefix,
+            names: BTreeMap::new(),
+            queue: VecDeque::new(),
+            rectangles: BTreeMap::new(),
+            weights: BTreeMap::new(),
+            failed: None,
+        }
     }
 
     /// The new id of a definition with one of the given tags (any where none is given), which is queued to be copied;
@@ -59,8 +78,40 @@ impl<'a, 's> Definitions<'a, 's> {
         // A number can follow the prefix only where the id is not plain: plain ids keep their own name after `-`.
         let name = if plain { format!("{}-{id}", self.prefix) } else { format!("{}{}", self.prefix, self.names.len()) };
         self.names.insert(id.to_owned(), name.clone());
+        if let Err(error) = self.weigh(node, 0) {
+            self.failed.get_or_insert(error);
+        }
         self.queue.push_back((node.id(), name.clone(), viewport));
         Some(name)
+    }
+
+    /// How many nodes drawing a definition takes, what it refers to counted each time; a cycle counts once.
+    fn weigh(&mut self, node: Xml<'a, 'a>, depth: usize) -> Result<usize> {
+        if let Some(&known) = self.weights.get(&node.id().get()) {
+            return Ok(known);
+        }
+        let limits = self.source.limits;
+        if depth > limits.depth {
+            let what = format!("{}: definitions that refer to each other in a chain", self.source.name);
+            return Err(guard::too_much(what, depth, limits.depth as u64));
+        }
+        self.weights.insert(node.id().get(), 0);
+        let mut weight = 0_usize;
+        for inner in node.descendants().filter(Xml::is_element) {
+            self.source.budget.spend(NODE)?;
+            weight = weight.saturating_add(1);
+            for target in inner.attributes().flat_map(|attribute| targets(attribute.value())) {
+                if let Some(target) = self.source.by_id(target) {
+                    weight = weight.saturating_add(self.weigh(target, depth + 1)?);
+                }
+            }
+        }
+        if weight > limits.nodes {
+            let what = format!("{}: nodes of a definition, references resolved", self.source.name);
+            return Err(guard::too_much(what, weight, limits.nodes as u64));
+        }
+        self.weights.insert(node.id().get(), weight);
+        Ok(weight)
     }
 
     fn checked<'v>(&self, value: &'v str) -> Option<(&'v str, &'v str)> {
@@ -94,20 +145,22 @@ impl<'a, 's> Definitions<'a, 's> {
     pub(crate) fn rectangle(&mut self, clip: &Rect) -> String {
         let [x, y, w, h] = [clip.x0, clip.y0, clip.width(), clip.height()].map(number);
         let shape = format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
-        let known = self.rectangles.iter().find(|(_, s)| *s == shape).map(|(name, _)| name.clone());
-        let name = known.unwrap_or_else(|| {
-            let name = format!("{}-viewport_{}", self.prefix, self.rectangles.len());
-            self.rectangles.push((name.clone(), shape));
-            name
-        });
-        format!("url(#{name})")
+        let number = self.rectangles.len();
+        let number = *self.rectangles.entry(shape).or_insert(number);
+        format!("url(#{}-viewport_{number})", self.prefix)
     }
 
     /// The markup of everything referred to, and of what that refers to in turn.
-    pub(crate) fn finish(mut self) -> String {
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when it is too long, or when drawing it would take too many nodes.
+    pub(crate) fn finish(mut self) -> Result<String> {
         let mut out = String::new();
         while let Some((id, name, viewport)) = self.queue.pop_front() {
             let before = out.len();
+            if let Some(error) = self.failed.take() {
+                return Err(error);
+            }
             if let Some(node) = self.source.xml.get_node(id) {
                 self.copy_root(&mut out, node, &name, viewport);
             }
@@ -115,11 +168,15 @@ impl<'a, 's> Definitions<'a, 's> {
                 // What is referred to draws nothing; the reference must not dangle.
                 let _ = write!(out, "<g id=\"{name}\"/>");
             }
+            self.source.count_bytes(out.len() - before)?;
+            self.source.budget.spend(PER_BYTE * (out.len() - before) as u64)?;
         }
-        for (name, shape) in &self.rectangles {
-            let _ = write!(out, "<clipPath id=\"{name}\">{shape}</clipPath>");
+        let mut rectangles: Vec<_> = self.rectangles.iter().map(|(shape, number)| (number, shape)).collect();
+        rectangles.sort();
+        for (number, shape) in rectangles {
+            let _ = write!(out, "<clipPath id=\"{}-viewport_{number}\">{shape}</clipPath>", self.prefix);
         }
-        out
+        self.failed.map_or(Ok(out), Err)
     }
 
     fn copy_root(&mut self, out: &mut String, node: Xml<'a, 'a>, name: &str, viewport: Viewport) {
@@ -181,7 +238,11 @@ impl<'a, 's> Definitions<'a, 's> {
     fn chain(&self, node: Xml<'a, 'a>) -> Vec<Xml<'a, 'a>> {
         let mut chain = vec![node];
         while let Some(next) = chain.last().filter(|n| href(**n).is_some()).and_then(|n| self.source.target(*n)) {
-            if chain.iter().any(|n| n.id() == next.id()) || chain.len() > 32 {
+            if chain.iter().any(|n| n.id() == next.id()) {
+                self.source.notes.add(Note::Cycle, || self.source.place(next));
+                break;
+            }
+            if chain.len() > 32 {
                 break;
             }
             chain.push(next);
@@ -305,6 +366,15 @@ const RADIAL: [Coordinate; 6] = [
     coordinate("fy", Axis::Y, None),
     coordinate("fr", Axis::Both, None),
 ];
+
+/// The ids that an attribute refers to.
+fn targets(value: &str) -> impl Iterator<Item = &str> {
+    let by_url = value.split("url(").skip(1).filter_map(|rest| {
+        let (inside, _) = rest.split_once(')')?;
+        inside.trim().trim_matches(['"', '\'']).trim().strip_prefix('#')
+    });
+    value.trim().strip_prefix('#').into_iter().chain(by_url)
+}
 
 struct Inherited {
     style: Rc<ComputedStyle>,

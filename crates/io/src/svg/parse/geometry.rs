@@ -9,6 +9,7 @@ use svgtypes::{Length, PointsParser, SimplePathSegment, SimplifyingPathParser};
 
 use crate::{
     svg::parse::{
+        guard,
         length::{Axis, Viewport},
         notes::Note,
         source::{Source, clip_text, href},
@@ -48,8 +49,12 @@ impl Geometry {
     }
 }
 
-/// Largest coordinate of a shape before any transform: beyond it, squares run out of numbers.
-const LARGEST: f64 = 1e30;
+/// Largest coordinate or length of a shape before any transform: far beyond anything drawn, and its square is a number that can be
+/// reckoned with.
+pub(crate) const LARGEST: f64 = 1e15;
+
+/// Bytes that a segment of a path takes.
+const SEGMENT_BYTES: usize = 56;
 
 /// Whether an element of this name is a shape that [`read`] knows.
 pub(crate) fn is_shape(name: &str) -> bool {
@@ -71,9 +76,12 @@ pub(crate) fn read(source: &Source<'_>, node: Xml<'_, '_>, viewport: Viewport) -
     };
     let Some(geometry) = geometry else { return Ok(None) };
     source.count_segments(geometry.path.elements().len())?;
+    source.count_bytes(geometry.markup.len() + SEGMENT_BYTES * geometry.path.elements().len())?;
     let extent = geometry.path.control_box();
-    if ![extent.x0, extent.y0, extent.x1, extent.y1].iter().all(|v| v.abs() <= LARGEST) {
-        return Err(reader.wrong("a coordinate is not a sensible number"));
+    if let Some(v) = [extent.x0, extent.y0, extent.x1, extent.y1].iter().find(|v| !(v.abs() <= LARGEST)) {
+        return Err(
+            reader.wrong(format!("a coordinate is {v:e}, expected a number between -{LARGEST:e} and {LARGEST:e}"))
+        );
     }
     Ok(Some(geometry))
 }
@@ -102,8 +110,10 @@ impl Reader<'_, '_> {
             .parse::<Length>()
             .map_err(|_| self.wrong(format!("{name}=\"{}\" is not a length", clip_text(text, 40))))?;
         let value = self.viewport.resolve(length, axis, 16.0);
-        if !value.is_finite() {
-            return Err(self.wrong(format!("{name}=\"{}\" is not finite", clip_text(text, 40))));
+        if !(value.abs() <= LARGEST) {
+            let shown = clip_text(text, 40);
+            let problem = format!("{name}=\"{shown}\", expected a number between -{LARGEST:e} and {LARGEST:e}");
+            return Err(self.wrong(problem));
         }
         Ok(Some(value))
     }
@@ -114,6 +124,7 @@ impl Reader<'_, '_> {
 
     fn path(&self) -> Result<Option<Geometry>> {
         let Some(data) = self.node.attribute("d") else { return Ok(None) };
+        let data = &*guard::path_data(data, LARGEST).map_err(|problem| self.wrong(problem))?;
         let mut path = BezPath::new();
         for segment in SimplifyingPathParser::from(data) {
             match segment {

@@ -1,8 +1,9 @@
-//! Checks on the raw text, before an XML parser sees it: nesting, entities, size.
+//! Checks on the raw text, before a parser sees it: size, nesting, entities and attributes of XML; runs in path data.
 
-use std::collections::BTreeMap;
+use std::{borrow::Cow, collections::BTreeMap};
 
 use arabesque_core::{Error, Limits, Result};
+use svgtypes::{PathParser, PathSegment};
 
 /// Longest text that all entity references of a file may stand for, beyond the size of the file itself.
 const EXPANSION: usize = 16 << 20;
@@ -15,7 +16,13 @@ pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
     if text.len() > limits.file_bytes {
         return Err(too_much(format!("{name}: bytes"), text.len(), limits.file_bytes as u64));
     }
-    let deepest = depth(text);
+    let Tags { deepest, attributes, namespaces } = tags(text);
+    if attributes > ATTRIBUTES {
+        return Err(too_much(format!("{name}: attributes of one XML element"), attributes, ATTRIBUTES as u64));
+    }
+    if namespaces > NAMESPACES {
+        return Err(too_much(format!("{name}: declarations of XML namespaces"), namespaces, NAMESPACES as u64));
+    }
     // XML outside of groups adds a few levels: the root, definitions, gradients and their stops.
     let allowed = limits.depth + 16;
     if deepest > allowed {
@@ -34,10 +41,25 @@ pub(crate) fn too_much(what: String, found: impl ToString, limit: u64) -> Error 
     }
 }
 
-/// Depth of the deepest element, by counting tags.
-fn depth(text: &str) -> usize {
+/// Attributes of one element: each is compared with those before it.
+const ATTRIBUTES: usize = 5000;
+/// Declarations of namespaces in one file: each element keeps a list of those around it.
+const NAMESPACES: usize = 20_000;
+
+/// What the tags of a file add up to.
+#[derive(Debug, Default)]
+struct Tags {
+    /// Depth of the deepest element.
+    deepest: usize,
+    /// Most quoted values in one tag.
+    attributes: usize,
+    /// Declarations of namespaces.
+    namespaces: usize,
+}
+
+fn tags(text: &str) -> Tags {
     let bytes = text.as_bytes();
-    let (mut now, mut deepest, mut at) = (0_usize, 0, 0);
+    let (mut now, mut deepest, mut attributes, mut at) = (0_usize, 0, 0, 0);
     while let Some(open) = find(text, at, "<") {
         let rest = &bytes[open..];
         if rest.starts_with(b"<!--") {
@@ -49,7 +71,8 @@ fn depth(text: &str) -> usize {
         } else if rest.starts_with(b"<!") {
             at = doctype_end(bytes, open + 2);
         } else {
-            let end = tag_end(bytes, open + 1);
+            let (end, values) = tag_end(bytes, open + 1);
+            attributes = attributes.max(values);
             let closing = rest.get(1) == Some(&b'/');
             let empty = end >= 2 && bytes.get(end - 2) == Some(&b'/');
             match (closing, empty) {
@@ -61,7 +84,7 @@ fn depth(text: &str) -> usize {
             at = end;
         }
     }
-    deepest
+    Tags { deepest, attributes, namespaces: text.matches("xmlns").count() }
 }
 
 fn find(text: &str, from: usize, needle: &str) -> Option<usize> {
@@ -72,18 +95,18 @@ fn after(text: &str, from: usize, needle: &str) -> usize {
     find(text, from, needle).map_or(text.len(), |k| k + needle.len())
 }
 
-/// Position after the `>` that ends a tag; quoted values may hold one.
-fn tag_end(bytes: &[u8], from: usize) -> usize {
-    let mut quote = None;
+/// Position after the `>` that ends a tag, and how many quoted values it has; these may hold one.
+fn tag_end(bytes: &[u8], from: usize) -> (usize, usize) {
+    let (mut quote, mut values) = (None, 0);
     for (k, &b) in bytes.iter().enumerate().skip(from) {
         match (quote, b) {
-            (None, b'"' | b'\'') => quote = Some(b),
-            (None, b'>') => return k + 1,
+            (None, b'"' | b'\'') => (quote, values) = (Some(b), values + 1),
+            (None, b'>') => return (k + 1, values),
             (Some(q), _) if q == b => quote = None,
             _ => {}
         }
     }
-    bytes.len()
+    (bytes.len(), values)
 }
 
 /// Position after a document type declaration, its internal subset included.
@@ -121,7 +144,8 @@ fn entities(text: &str) -> BTreeMap<&str, &str> {
 /// Names referred to as `&name;`, in order.
 fn references(text: &str) -> impl Iterator<Item = &str> {
     text.split('&').skip(1).filter_map(|rest| {
-        let (name, _) = rest.split_at(rest.find(';').filter(|&end| end <= 256)?);
+        let end = rest.bytes().take(257).position(|b| b == b';')?;
+        let name = rest.get(..end)?;
         (!name.is_empty() && !name.starts_with('#')).then_some(name)
     })
 }
@@ -170,6 +194,106 @@ fn expanded<'a>(
     size
 }
 
+/// Closes in a row from which on they are put together.
+const CLOSES: usize = 100;
+/// Arcs in a row that may end where they start.
+const NO_ARCS: usize = 500;
+/// Radius of an arc in chords from which on it is no arc to a computer.
+const FLAT: f64 = 1e12;
+/// Radius up to which that is rounding: of an arc that was to end where it starts.
+const ROUNDING: f64 = 1e6;
+
+/// Path data as the parser may have it, which takes every segment that draws nothing one level deeper: closes in a row are one.
+/// The error is what is wrong with it: an arc with a radius beyond `largest`, or that is no arc.
+pub(crate) fn path_data(data: &str, largest: f64) -> std::result::Result<Cow<'_, str>, String> {
+    let data = if most_closes(data) > CLOSES { Cow::Owned(closed_once(data)) } else { Cow::Borrowed(data) };
+    if data.contains(['a', 'A']) {
+        check_arcs(&data, largest)?;
+    }
+    Ok(data)
+}
+
+fn most_closes(data: &str) -> usize {
+    let (mut run, mut most) = (0, 0);
+    for b in data.bytes() {
+        match b {
+            b'z' | b'Z' => run += 1,
+            b' ' | b'\t' | b'\n' | b'\r' => {}
+            _ => run = 0,
+        }
+        most = most.max(run);
+    }
+    most
+}
+
+fn closed_once(data: &str) -> String {
+    let mut out = String::with_capacity(data.len());
+    let mut is_closed = false;
+    for c in data.chars() {
+        let closes = matches!(c, 'z' | 'Z');
+        if is_closed && (closes || c.is_ascii_whitespace()) {
+            continue;
+        }
+        if is_closed {
+            out.push(' ');
+        }
+        is_closed = closes;
+        out.push(c);
+    }
+    out
+}
+
+/// Refuses arcs with a radius that is no sensible number, and those that are no arcs to a computer.
+fn check_arcs(data: &str, largest: f64) -> std::result::Result<(), String> {
+    let (mut at, mut start, mut run) = ([0.0; 2], [0.0; 2], 0);
+    // What cannot be read is told by whoever reads it in earnest.
+    for segment in PathParser::from(data).map_while(std::result::Result::ok) {
+        let (from, to) = (at, end_of(&segment, at, start));
+        at = to;
+        if let PathSegment::MoveTo { .. } = segment {
+            start = to;
+        }
+        let PathSegment::EllipticalArc { rx, ry, .. } = segment else {
+            run = 0;
+            continue;
+        };
+        let radius = rx.abs().max(ry.abs());
+        if !(radius <= largest) {
+            return Err(format!("an arc has a radius of {radius:e}, expected at most {largest:e}"));
+        }
+        let chord = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let is_flat = radius > FLAT * chord;
+        if is_flat && chord > 0.0 && radius > ROUNDING {
+            return Err(format!(
+                "an arc has a radius of {radius:e} for ends {chord:e} apart, expected a line or an arc"
+            ));
+        }
+        run = if is_flat { run + 1 } else { 0 };
+        if run > NO_ARCS {
+            let all = PathParser::from(data).filter(|s| matches!(s, Ok(PathSegment::EllipticalArc { .. }))).count();
+            return Err(format!("many of its {all} arcs end where they start, expected arcs with two ends"));
+        }
+    }
+    Ok(())
+}
+
+/// Where a segment that starts at `at` ends.
+fn end_of(segment: &PathSegment, at: [f64; 2], start: [f64; 2]) -> [f64; 2] {
+    let to = |abs: bool, x: f64, y: f64| if abs { [x, y] } else { [at[0] + x, at[1] + y] };
+    match *segment {
+        PathSegment::MoveTo { abs, x, y }
+        | PathSegment::LineTo { abs, x, y }
+        | PathSegment::CurveTo { abs, x, y, .. }
+        | PathSegment::SmoothCurveTo { abs, x, y, .. }
+        | PathSegment::Quadratic { abs, x, y, .. }
+        | PathSegment::SmoothQuadratic { abs, x, y }
+        | PathSegment::EllipticalArc { abs, x, y, .. } => to(abs, x, y),
+        PathSegment::HorizontalLineTo { abs, x } => [to(abs, x, 0.0)[0], at[1]],
+        PathSegment::VerticalLineTo { abs, y } => [at[0], to(abs, 0.0, y)[1]],
+        PathSegment::ClosePath { .. } => start,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,9 +303,40 @@ mod tests {
     }
 
     #[test]
+    fn attributes_and_namespaces_are_counted() {
+        let many = |n: usize, what: &str| (0..n).map(|k| format!(" {what}{k}='x'")).collect::<String>();
+        assert_eq!(message(&format!("<svg{}/>", many(4000, "a"))), "fine");
+        assert!(message(&format!("<svg{}/>", many(50_000, "a"))).contains("attributes of one XML element"));
+        let spread: String = (0..50_000).map(|k| format!("<g xmlns:a{k}='x'/>")).collect();
+        assert!(message(&format!("<svg>{spread}</svg>")).contains("namespaces"));
+    }
+
+    #[test]
+    fn entities_that_are_not_closed_take_no_time() {
+        let text = format!("<!DOCTYPE s [<!ENTITY a 'x'>]><s>{}</s>", "&".repeat(2_000_000));
+        assert_eq!(message(&text), "fine", "the XML parser refuses it");
+    }
+
+    #[test]
+    fn closes_in_a_row_are_one() {
+        let data = |text: &str| path_data(text, 1e15).map(Cow::into_owned);
+        assert_eq!(data("M0 0h1v1zzz z").unwrap(), "M0 0h1v1zzz z", "a few are left as they are");
+        assert_eq!(data(&format!("M0 0h1v1{}M5 5h1v1z", "z Z\n".repeat(5000))).unwrap(), "M0 0h1v1z M5 5h1v1z");
+    }
+
+    #[test]
+    fn arcs_without_end_are_refused() {
+        let problem = |text: &str| path_data(text, 1e15).unwrap_err();
+        assert!(problem("M0 0A1e155 5 0 0 1 3 3").contains("1e155"));
+        assert!(problem("M0 0A1e14 1e14 0 0 1 1e-9 0").contains("1e14"));
+        assert!(problem(&format!("M0 0L1 1{}", "A5 5 0 0 1 1 1.0000000000001e0".repeat(3000))).contains("3000 arcs"));
+        assert!(path_data(&format!("M0 0{}", "a5 5 0 0 1 1 1".repeat(3000)), 1e15).is_ok());
+    }
+
+    #[test]
     fn depth_counts_tags_not_comments_or_quotes() {
-        assert_eq!(depth("<a><!-- <b><b> --><c d='<x>' /><e></e></a>"), 2);
-        assert_eq!(depth("<?xml?><!DOCTYPE a [<!ENTITY b 'c'>]><a><b><c/></b></a>"), 3);
+        assert_eq!(tags("<a><!-- <b><b> --><c d='<x>' /><e></e></a>").deepest, 2);
+        assert_eq!(tags("<?xml?><!DOCTYPE a [<!ENTITY b 'c'>]><a><b><c/></b></a>").deepest, 3);
     }
 
     #[test]

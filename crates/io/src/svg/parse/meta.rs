@@ -48,6 +48,13 @@ pub(crate) struct Meta {
     pub(crate) mark: Option<Mark>,
 }
 
+impl Meta {
+    /// Bytes of its names.
+    pub(crate) fn bytes(&self) -> usize {
+        [&self.id, &self.label, &self.class, &self.kind, &self.shows].into_iter().flatten().map(String::len).sum()
+    }
+}
+
 /// Reads the names and marks of a node.
 pub(crate) fn meta(source: &Source<'_>, xml: Xml<'_, '_>, tag: &'static str) -> Meta {
     let text = |name: &str| xml.attribute(name).map(str::trim).filter(|t| !t.is_empty()).map(str::to_owned);

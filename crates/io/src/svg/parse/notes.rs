@@ -15,6 +15,8 @@ pub(crate) enum Note {
     Text,
     /// Markers on lines.
     Marker,
+    /// A reference that leads back to itself.
+    Cycle,
     /// Embedded foreign content.
     Foreign,
     /// A mask, filter or blend mode on a container of elements.
@@ -74,6 +76,9 @@ impl Note {
             Self::Missing => ("reference to an id that does not exist", "remove it, or restore what it refers to"),
             Self::Text => ("text ignored", "convert it to paths (Inkscape: Path > Object to Path)"),
             Self::Marker => ("line marker ignored", "convert it to paths (Inkscape: Path > Stroke to Path)"),
+            Self::Cycle => {
+                ("reference in a cycle ignored", "remove one of the references that lead back to each other")
+            }
             Self::Foreign => ("foreign content ignored", "draw it as SVG shapes"),
             Self::ContainerEffect => {
                 ("mask, filter or blend mode on a group of many elements ignored", "put it on each element")
@@ -137,6 +142,8 @@ pub(crate) struct Notes(RefCell<BTreeMap<Note, (usize, Vec<String>)>>);
 
 /// Examples that are named for each kind.
 const NAMED: usize = 3;
+/// Occurrences that are asked for their names: finding out may take a walk through the file.
+const ASKED: usize = 200;
 
 impl Notes {
     /// Notes one occurrence; `what` names it, and is called only for the first few.
@@ -144,7 +151,7 @@ impl Notes {
         let mut all = self.0.borrow_mut();
         let (count, examples) = all.entry(note).or_default();
         *count += 1;
-        if examples.len() < NAMED {
+        if examples.len() < NAMED && *count <= ASKED {
             let what = what();
             if !examples.contains(&what) {
                 examples.push(what);

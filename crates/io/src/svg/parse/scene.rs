@@ -142,6 +142,7 @@ fn node<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>) -> Resu
         meta: Rc::new(meta(source, xml, tag)),
         content: Content::Group(Vec::new()),
     };
+    source.count_bytes(built.meta.bytes())?;
     match tag {
         "use" => reuse(source, xml, &inside, &mut built)?,
         "svg" => nested(source, xml, &inside, &mut built, [None, None])?,
@@ -202,7 +203,7 @@ fn reuse<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>, built:
     let Some(target) = source.target(xml) else { return Ok(()) };
     let inside_itself = xml.ancestors().any(|a| a.id() == target.id());
     if inside_itself || place.uses.is_some_and(|uses| uses.contains(target.id())) {
-        source.notes.add(Note::Missing, || format!("{} shows itself", source.place(xml)));
+        source.notes.add(Note::Cycle, || format!("{} shows itself", source.place(xml)));
         return Ok(());
     }
     let used = Used { id: target.id(), outer: place.uses };

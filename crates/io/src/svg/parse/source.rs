@@ -1,6 +1,10 @@
 //! A parsed SVG file with everything needed to look things up in it.
 
-use std::{cell::Cell, collections::BTreeMap, rc::Rc};
+use std::{
+    cell::{Cell, RefCell},
+    collections::BTreeMap,
+    rc::Rc,
+};
 
 use arabesque_core::{Budget, Error, Limits, Result};
 use roxmltree::{Document, Node as Xml, NodeId, ParsingOptions};
@@ -9,7 +13,7 @@ use crate::svg::{
     namespace::{SVG, XLINK},
     options::ReadOptions,
     parse::{
-        css::StyleRules,
+        css::{self, StyleRules},
         guard,
         notes::{Note, Notes},
     },
@@ -19,6 +23,10 @@ use crate::svg::{
 const SEGMENT: u64 = 100;
 /// Work units of reading one node.
 const NODE: u64 = 1000;
+/// Bytes of one node.
+const NODE_BYTES: usize = 700;
+/// Work units of comparing an element with a part of a selector.
+const STEP: u64 = 10;
 
 /// A parsed file. A clone shares what was parsed, and goes on from the notes and counts so far by itself.
 #[derive(Clone)]
@@ -35,6 +43,12 @@ pub(crate) struct Source<'a> {
     segments: Cell<usize>,
     /// Scene nodes made so far, against the limit.
     nodes: Cell<usize>,
+    /// Bytes that they take, against the limit.
+    bytes: Cell<usize>,
+    /// Steps of matching style rules that are paid.
+    matched: Cell<u64>,
+    /// Mean colours of gradients, by the node that has the stops.
+    pub(crate) colours: RefCell<BTreeMap<u32, Option<[f64; 3]>>>,
 }
 
 /// Parses `text` and hands it to `work`: what was parsed borrows the text, so it cannot outlive this call.
@@ -68,12 +82,28 @@ pub(crate) fn with_source<T>(
         ids: Rc::new(ids(&xml)),
         segments: Cell::new(0),
         nodes: Cell::new(0),
+        bytes: Cell::new(0),
+        matched: Cell::new(0),
+        colours: RefCell::default(),
     };
     source.note_outside_styles(&css);
     if xml.root_element().tag_name().namespace() != Some(SVG) {
         source.notes.add(Note::NoNamespace, String::new);
     }
-    work(&source)
+    work(&source).map_err(|error| in_file(name, error))
+}
+
+/// The same error with the name of the file, where it speaks of an outline or a stage only.
+fn in_file(file: &str, error: Error) -> Error {
+    match error {
+        Error::Limit { what, found, limit, advice } if !what.contains(file) => {
+            Error::Limit { what: format!("{file}: {what}"), found, limit, advice }
+        }
+        Error::Input { place, problem, advice } if !place.contains(file) => {
+            Error::Input { place: format!("{file}: {place}"), problem, advice }
+        }
+        error => error,
+    }
 }
 
 fn unreadable(name: &str, limits: &Limits, error: &roxmltree::Error) -> Error {
@@ -108,7 +138,7 @@ fn style_text(xml: &Document<'_>) -> String {
             css.push('\n');
         }
     }
-    css.replace("<!--", " ").replace("-->", " ")
+    css::sparing_comments(css.replace("<!--", " ").replace("-->", " "))
 }
 
 impl<'a> Source<'a> {
@@ -177,7 +207,25 @@ impl<'a> Source<'a> {
             let what = format!("{}: nodes after <use> is resolved", self.name);
             return Err(guard::too_much(what, self.nodes.get(), self.limits.nodes as u64));
         }
-        self.budget.spend(NODE)
+        self.count_bytes(NODE_BYTES)?;
+        let steps = self.sheet.steps();
+        self.budget.spend(NODE + STEP * (steps - self.matched.replace(steps)))?;
+        if self.sheet.is_exhausted() {
+            let what = format!("{}: style rules and the elements they are compared with", self.name);
+            return Err(guard::too_much(what, steps, css::STEPS));
+        }
+        Ok(())
+    }
+
+    /// Counts `more` bytes of the drawing against the limit.
+    pub(crate) fn count_bytes(&self, more: usize) -> Result<()> {
+        let total = self.bytes.get().saturating_add(more);
+        self.bytes.set(total);
+        self.budget.within(
+            &format!("{}: bytes of the drawing, <use> resolved", self.name),
+            total,
+            ("memory", self.limits.memory),
+        )
     }
 }
 

@@ -7,6 +7,7 @@ use svgtypes::{Length, LengthListParser};
 
 use crate::{
     svg::parse::{
+        geometry::LARGEST,
         length::{Axis, Viewport},
         notes::Note,
         paint::{fraction, paint},
@@ -14,6 +15,12 @@ use crate::{
     },
     text::xml::number,
 };
+
+/// Bytes of a value beyond which it is not understood: everything that inherits it would be written with it.
+const LONGEST: usize = 4096;
+
+/// Dashes and gaps beyond which a pattern is not understood, for the same reason.
+const DASHES: usize = 512;
 
 /// An inherited property: index into [`PROPERTIES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -250,6 +257,10 @@ impl Setter<'_, '_> {
                 "inherit" | "" => return,
                 _ => value,
             };
+            if value.len() > LONGEST {
+                self.source.notes.add(Note::Style, || format!("{name}: {}", clip_text(value, 40)));
+                return;
+            }
             let value: Rc<str> = value.into();
             self.own.0.retain(|(n, _)| n != name);
             self.own.0.push((name, value));
@@ -283,6 +294,7 @@ impl Setter<'_, '_> {
             number.is_finite().then_some(number)
         };
         match property {
+            P::Fill | P::Stroke if value.len() > LONGEST => None,
             P::Fill | P::Stroke => paint(value, self.style.get(P::Color)),
             P::Color => paint(value, self.parent.get(P::Color)),
             P::StrokeWidth => length(value, Axis::Both, font).filter(|w| *w >= 0.0).map(number),
@@ -296,17 +308,17 @@ impl Setter<'_, '_> {
             P::StrokeDasharray => self.dashes(value, font),
             P::StrokeMiterlimit => value.parse().ok().filter(|m: &f64| m.is_finite()).map(|m| number(m.max(1.0))),
             P::FillOpacity | P::StrokeOpacity => Some(number(fraction(value))),
-            _ => Some(value.to_owned()),
+            _ => (value.len() <= LONGEST).then(|| value.to_owned()),
         }
     }
 
     fn dashes(&self, value: &str, font: f64) -> Option<String> {
         let lengths: Option<Vec<f64>> = LengthListParser::from(value)
             .map(|length| {
-                Some(self.viewport.resolve(length.ok()?, Axis::Both, font)).filter(|n| n.is_finite() && *n >= 0.0)
+                Some(self.viewport.resolve(length.ok()?, Axis::Both, font)).filter(|n| (0.0..=LARGEST).contains(n))
             })
             .collect();
-        let lengths = lengths?;
+        let lengths = lengths.filter(|lengths| lengths.len() <= DASHES)?;
         if lengths.iter().sum::<f64>() <= 0.0 {
             return Some("none".to_owned());
         }

@@ -15,6 +15,7 @@ use crate::svg::{
         source::{Source, with_source},
     },
 };
+use crate::text::short::list;
 
 /// An SVG file, parsed once for everything that is read of it: the text is checked and parsed, styles and `<use>` are
 /// resolved, and each reader ([`Document::exemplar`], [`Document::shape`] and so on) starts from there. Every reader
@@ -94,7 +95,7 @@ pub(crate) fn by_id(source: &Source<'_>, root: &Rc<Node>, id: &str) -> Result<(A
         let advice = match (nearest(id, known.iter().map(String::as_str)), known.is_empty()) {
             (Some(near), _) => format!("did you mean \"{near}\"?"),
             (None, true) => "give the shape an id".to_owned(),
-            (None, false) => format!("use one of its ids, such as {}", known[..known.len().min(8)].join(", ")),
+            (None, false) => format!("use one of its ids, such as {}", list(known.iter().take(8))),
         };
         Error::input(source.name, format!("nothing visible has the id \"{id}\""), advice)
     })

@@ -13,7 +13,6 @@ use crate::{
             meta::Part,
             notes::Note,
             scene::{Content, Node},
-            source::clip_text,
             style::Property as P,
         },
         read::document::{Document, Opened, by_id, parts},
@@ -23,7 +22,7 @@ use crate::{
             subpath::is_closed,
         },
     },
-    text::unit::Unit,
+    text::{short::list, unit::Unit},
 };
 
 /// Reads an area from a text of which nothing else is read.
@@ -105,19 +104,9 @@ pub(crate) fn shape(
     if open.is_empty() {
         return Err(Error::input(place, "no shape with an area found", "draw a closed shape"));
     }
-    let problem = format!("the outline is open ({}), expected a closed shape", listed(&open));
+    let problem = format!("the outline is open ({}), expected a closed shape", list(&open));
     Err(Error::input(place, problem, "close the path: join its end to its start"))
 }
-
-/// The first few names of a list, and how many there are.
-fn listed(names: &[&str]) -> String {
-    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
-    let named: Vec<_> = names.iter().take(NAMED).map(|name| clip_text(name, 40)).collect();
-    format!("{}{more}", named.join(", "))
-}
-
-/// Open shapes that a message names.
-const NAMED: usize = 5;
 
 /// Drops shapes that cover the page where there are others.
 fn leave_background(painter: &Painter<'_, '_>, areas: &mut Vec<Outline<2>>, frame: Option<Bounds<2>>) {

@@ -71,7 +71,7 @@ impl Document<'_> {
         let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
         lines.iter().try_for_each(|item| gatherer.add(item))?;
         let Curves { curves, styles, strokes } = gatherer.finish();
-        let (elements, classes) = elements(source, &items, scope.window.as_ref());
+        let (elements, classes) = elements(source, &items, scope.window.as_ref())?;
         if elements.is_empty() && curves.is_empty() {
             return Err(nothing_found(source, &found));
         }
@@ -82,7 +82,7 @@ impl Document<'_> {
         )?;
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
         let background = background(&found, &mut definitions);
-        let definitions = definitions.finish();
+        let definitions = definitions.finish()?;
         let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
         let warnings = source.notes.warnings(source.name);
         Ok(Drawing {
@@ -213,12 +213,12 @@ fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
     Error::input(source.name, format!("no element and no curve found{why}"), advice)
 }
 
-fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> (Vec<Element<2>>, Classes) {
+fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> Result<(Vec<Element<2>>, Classes)> {
     let roles: Vec<Role> = items.iter().map(|item| frame::role(item, window)).collect();
     let cut = roles.iter().filter(|r| **r == Role::Context).count();
     (0..cut).for_each(|_| source.notes.add(Note::Cut, String::new));
     let is_whole: Vec<bool> = roles.iter().map(|r| *r == Role::Source).collect();
-    let classes = classes::classify(items, &is_whole, &source.sheet);
+    let classes = classes::classify(items, &is_whole, &source.sheet, source.budget)?;
     let element = |((item, role), &(class, pose)): ((&Item, Role), &(usize, _))| Element {
         class,
         centre: item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre()),
@@ -227,7 +227,7 @@ fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> 
         colour: item.painted.colour(),
         role,
     };
-    (items.iter().zip(roles).zip(&classes.members).map(element).collect(), classes)
+    Ok((items.iter().zip(roles).zip(&classes.members).map(element).collect(), classes))
 }
 
 fn background(found: &Selection, definitions: &mut Definitions<'_, '_>) -> Option<String> {

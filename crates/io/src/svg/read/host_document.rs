@@ -82,6 +82,9 @@ impl Document<'_> {
     }
 }
 
+/// Work for looking at one item.
+const PER_ITEM: u64 = 100;
+
 fn is_changed(kept: &Sorted) -> bool {
     match kept {
         Sorted::Removed => true,
@@ -97,6 +100,7 @@ fn affected(source: &Source<'_>, items: &[Item], kept: &[Sorted]) -> Result<BTre
     let mut affected: BTreeSet<u32> = changed.flat_map(|(item, _)| nodes(item)).collect();
     loop {
         let before = affected.len();
+        source.budget.spend(PER_ITEM * items.len() as u64)?;
         for item in items {
             let own = nodes(item);
             if own.iter().any(|id| affected.contains(id)) {
@@ -143,7 +147,7 @@ fn rewritten<'a, 's>(
         moved.push_str(&cut.unwrap_or_else(|| fragment(item, &mut definitions).markup));
         moved.push('\n');
     }
-    Ok((moved, definitions.finish()))
+    Ok((moved, definitions.finish()?))
 }
 
 /// The file without the affected nodes and without its recipe, as it is before and after the end of the root.

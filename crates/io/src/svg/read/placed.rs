@@ -80,7 +80,7 @@ impl Document<'_> {
                 placed.add(item, kept, &mut definitions);
             }
         }
-        placed.definitions = definitions.finish();
+        placed.definitions = definitions.finish()?;
         placed.warnings = source.notes.warnings(source.name);
         Ok(placed)
     }
@@ -181,6 +181,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         // A clip takes something away as well: then the line alone is not what the file shows.
         let (mut is_touched, mut rest) = (false, Vec::new());
         for (curve, stroke) in curves.iter().zip(&strokes) {
+            self.painter.source.budget.spend(LOOK * self.area.map_or(0, |area| area.points().count()) as u64)?;
             let parts = self.area.and_then(|area| cut(&curve.path, area, Side::Outside));
             is_touched |= parts.is_some();
             rest.extend(

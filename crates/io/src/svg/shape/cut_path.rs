@@ -17,6 +17,7 @@ const END: f64 = 1e-7;
 
 /// The parts of `path` on one side of the border of `area`; `None` where that is all of it.
 pub fn cut(path: &Path<2>, area: &Outline<2>, side: Side) -> Option<Vec<Path<2>>> {
+    let area = &area.near(&path.bounds());
     let edges: Vec<_> = area.edges().map(|e| (e, Bounds::around([e.0, e.1]))).collect();
     let mut runs: Vec<Vec<Cubic<2>>> = Vec::new();
     let (mut open, mut whole, mut from_start) = (false, true, false);

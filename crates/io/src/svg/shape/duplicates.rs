@@ -2,13 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Measured, Path, Vector, segment};
+use arabesque_core::{Bounds, Budget, Measured, Path, Result, Vector, segment};
 
 /// Strokes nearer to each other than this share of the diagonal of the window lie on top of each other.
 const NEAR: f64 = 1e-4;
 
 /// Places along a stroke at which it is compared.
 const PLACES: usize = 24;
+
+/// Work for a look at a stroke that may be the same, and for each place compared with each point.
+const LOOK: u64 = 10;
+const PER_PLACE: u64 = 4;
 
 /// A style, and a cell of the grid.
 type GridCell = (usize, [i64; 2]);
@@ -35,7 +39,10 @@ impl Seen {
     }
 
     /// Adds a stroke. Returns whether none like it was there.
-    pub(crate) fn insert(&mut self, style: usize, path: &Path<2>) -> bool {
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub(crate) fn insert(&mut self, style: usize, path: &Path<2>, budget: &Budget) -> Result<bool> {
         let measured = Measured::new(path.clone(), 0.2 * self.near);
         let bounds = Bounds::around(measured.points().iter().copied());
         let centre = bounds.centre() * (1.0 / (2.0 * self.near));
@@ -44,22 +51,32 @@ impl Seen {
             (-1..=1).flat_map(|x| (-1..=1).map(move |y| [cell[0].saturating_add(x), cell[1].saturating_add(y)]));
         let known = around.filter_map(|cell| self.cells.get(&(style, cell))).flatten();
         let new = Known { bounds, line: measured };
-        if known.into_iter().any(|other| self.is_same(other, &new)) {
-            return false;
+        for other in known {
+            budget.spend(LOOK)?;
+            if self.may_be_same(other, &new) {
+                budget
+                    .spend(PER_PLACE * PLACES as u64 * (other.line.points().len() + new.line.points().len()) as u64)?;
+                if self.is_same(other, &new) {
+                    return Ok(false);
+                }
+            }
         }
         self.cells.entry((style, cell)).or_default().push(new);
-        true
+        Ok(true)
     }
 
-    fn is_same(&self, a: &Known, b: &Known) -> bool {
+    /// Whether two strokes have the same extent and length.
+    fn may_be_same(&self, a: &Known, b: &Known) -> bool {
         let same = |p: Vector<2>, q: Vector<2>| (p - q).norm() <= self.near;
         let alike = same(a.bounds.min, b.bounds.min)
             && same(a.bounds.max, b.bounds.max)
             && a.line.is_closed() == b.line.is_closed();
         let length = a.line.length();
-        if !alike || (length - b.line.length()).abs() > self.near.max(1e-3 * length) {
-            return false;
-        }
+        alike && (length - b.line.length()).abs() <= self.near.max(1e-3 * length)
+    }
+
+    /// Whether two such strokes run along each other.
+    fn is_same(&self, a: &Known, b: &Known) -> bool {
         let places = |m: &Measured<2>| (0..=PLACES).map(|k| m.point(m.length() * k as f64 / PLACES as f64)).collect();
         let on = |places: Vec<Vector<2>>, line: &Measured<2>| places.iter().all(|p| distance(*p, line) <= self.near);
         on(places(&b.line), &a.line) && on(places(&a.line), &b.line)
@@ -75,6 +92,10 @@ fn distance(p: Vector<2>, line: &Measured<2>) -> f64 {
 mod tests {
     use super::*;
 
+    fn budget() -> Budget {
+        Budget::default()
+    }
+
     fn seen() -> Seen {
         Seen::new(&Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0)))
     }
@@ -87,11 +108,11 @@ mod tests {
     #[test]
     fn nodes_and_direction_do_not_matter() {
         let mut seen = seen();
-        assert!(seen.insert(0, &polyline(&[(0.0, 10.0), (100.0, 10.0)], false)));
-        assert!(!seen.insert(0, &polyline(&[(100.0, 10.0), (70.0, 10.0), (0.0, 10.0)], false)));
-        assert!(seen.insert(1, &polyline(&[(0.0, 10.0), (100.0, 10.0)], false)), "another style");
-        assert!(seen.insert(0, &polyline(&[(0.0, 10.1), (100.0, 10.1)], false)), "beside it");
-        assert!(seen.insert(0, &polyline(&[(20.0, 10.0), (80.0, 10.0)], false)), "a part of it");
+        assert!(seen.insert(0, &polyline(&[(0.0, 10.0), (100.0, 10.0)], false), &budget()).unwrap());
+        assert!(!seen.insert(0, &polyline(&[(100.0, 10.0), (70.0, 10.0), (0.0, 10.0)], false), &budget()).unwrap());
+        assert!(seen.insert(1, &polyline(&[(0.0, 10.0), (100.0, 10.0)], false), &budget()).unwrap(), "another style");
+        assert!(seen.insert(0, &polyline(&[(0.0, 10.1), (100.0, 10.1)], false), &budget()).unwrap(), "beside it");
+        assert!(seen.insert(0, &polyline(&[(20.0, 10.0), (80.0, 10.0)], false), &budget()).unwrap(), "a part of it");
     }
 
     #[test]
@@ -99,9 +120,9 @@ mod tests {
         let mut seen = seen();
         let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)];
         let ring = |start: usize| -> Vec<(f64, f64)> { (0..=4).map(|k| corners[(start + k) % 4]).collect() };
-        assert!(seen.insert(0, &polyline(&ring(0), true)));
-        assert!(!seen.insert(0, &polyline(&ring(2), true)));
+        assert!(seen.insert(0, &polyline(&ring(0), true), &budget()).unwrap());
+        assert!(!seen.insert(0, &polyline(&ring(2), true), &budget()).unwrap());
         let diagonal = [(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0), (0.0, 0.0)];
-        assert!(seen.insert(0, &polyline(&diagonal, true)), "the same corners, another way around");
+        assert!(seen.insert(0, &polyline(&diagonal, true), &budget()).unwrap(), "the same corners, another way around");
     }
 }

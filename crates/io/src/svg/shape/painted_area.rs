@@ -13,7 +13,7 @@ use crate::svg::{
         notes::Note,
         paint::{fraction, reference},
         scene::{Content, Node, build_definition},
-        source::Source,
+        source::{Source, clip_text},
         style::Property as P,
     },
     shape::{
@@ -105,11 +105,21 @@ fn united(shapes: &[Outline<2>], budget: &Budget) -> Result<Outline<2>> {
 pub(crate) struct Painter<'a, 's> {
     pub(crate) source: &'s Source<'a>,
     clips: RefCell<BTreeMap<String, Option<Rc<Node>>>>,
+    /// The last area of each clip path, with the transforms that it was found under.
+    areas: RefCell<BTreeMap<String, ClipArea>>,
+}
+
+/// The area of a clip path under the transforms from its content and from the clipped node to the root.
+#[derive(Clone)]
+struct ClipArea {
+    space: Affine,
+    world: Affine,
+    area: Option<Outline<2>>,
 }
 
 impl<'a, 's> Painter<'a, 's> {
     pub(crate) fn new(source: &'s Source<'a>) -> Self {
-        Self { source, clips: RefCell::default() }
+        Self { source, clips: RefCell::default(), areas: RefCell::default() }
     }
 
     /// The painted area of a node whose parent has the transform `parent` to the root.
@@ -179,19 +189,18 @@ impl<'a, 's> Painter<'a, 's> {
     }
 
     fn check_extent(&self, node: &Node, extent: kurbo::Rect, width: f64) -> Result<()> {
-        let largest = [extent.x0, extent.y0, extent.x1, extent.y1, width].map(f64::abs);
-        if largest.iter().all(|v| *v <= self.source.limits.coordinate) {
-            return Ok(());
-        }
+        let most = self.source.limits.coordinate;
+        let numbers = [extent.x0, extent.y0, extent.x1, extent.y1, width];
+        let Some(found) = numbers.into_iter().find(|v| !(v.abs() <= most)) else { return Ok(()) };
         let place = self.source.xml.get_node(node.meta.xml).map_or_else(String::new, |xml| self.source.place(xml));
-        let problem = format!("a coordinate beyond {:e} user units", self.source.limits.coordinate);
+        let problem = format!("a coordinate beyond {most:e} user units: {found:e}");
         Err(Error::input(place, problem, "correct or delete this shape"))
     }
 
     /// The area that the clips of a node leave visible; `world` leads from the node to the root.
     pub(crate) fn clip(&self, node: &Node, world: Affine) -> Result<Option<Outline<2>>> {
         let by_path = match node.own.get("clip-path").and_then(reference) {
-            Some(Ok((id, _))) => self.clip_area(id, node, world, 0)?,
+            Some(Ok((id, _))) => self.clip_area(id, node, world, &mut Vec::new())?,
             _ => None,
         };
         let by_viewport = match node.viewport_clip {
@@ -207,9 +216,13 @@ impl<'a, 's> Painter<'a, 's> {
         })
     }
 
-    fn clip_area(&self, id: &str, node: &Node, world: Affine, nested: usize) -> Result<Option<Outline<2>>> {
-        // A clip path that is clipped by itself ends here.
-        if nested > 8 {
+    /// The area of a clip path, cut by the clip path that clips it, and so on; `within` holds those on the way.
+    fn clip_area(&self, id: &str, node: &Node, world: Affine, within: &mut Vec<String>) -> Result<Option<Outline<2>>> {
+        if within.iter().any(|outer| outer == id) {
+            self.source.notes.add(Note::Cycle, || format!("clip path #{}", clip_text(id, 60)));
+            return Ok(None);
+        }
+        if within.len() > 8 {
             return Ok(None);
         }
         let Some(clip) = self.clip_node(id, node.viewport)? else { return Ok(None) };
@@ -221,21 +234,29 @@ impl<'a, 's> Painter<'a, 's> {
                 * Affine::translate(extent.origin().to_vec2())
                 * Affine::scale_non_uniform(extent.width(), extent.height());
         }
+        if let Some(known) = self.areas.borrow().get(id)
+            && (known.space, known.world) == (space, world)
+        {
+            self.source.budget.spend(known.area.as_ref().map_or(0, |area| area.points().count()) as u64)?;
+            return Ok(known.area.clone());
+        }
         let mut rings = Vec::new();
         for child in clip.children() {
             self.clip_rings(child, space * clip.transform, &mut rings)?;
         }
         let area = Outline::try_union(&rings, FillRule::NonZero, self.source.budget)?;
-        match clip.own.get("clip-path").and_then(reference) {
-            Some(Ok((outer, _))) => {
-                let outer = self.clip_area(outer, node, world, nested + 1)?;
-                match outer {
-                    Some(outer) => Ok(Some(area.try_intersection(&outer, self.source.budget)?)),
-                    None => Ok(Some(area)),
-                }
-            }
-            _ => Ok(Some(area)),
-        }
+        within.push(id.to_owned());
+        let outer = match clip.own.get("clip-path").and_then(reference) {
+            Some(Ok((outer, _))) => self.clip_area(outer, node, world, within)?,
+            _ => None,
+        };
+        let area = match outer {
+            Some(outer) => area.try_intersection(&outer, self.source.budget)?,
+            None => area,
+        };
+        let known = ClipArea { space, world, area: Some(area.clone()) };
+        self.areas.borrow_mut().insert(id.to_owned(), known);
+        Ok(Some(area))
     }
 
     fn clip_rings(&self, node: &Node, parent: Affine, rings: &mut Vec<Ring<2>>) -> Result<()> {

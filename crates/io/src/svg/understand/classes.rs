@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Class, Similarity};
+use arabesque_core::{Budget, Class, Result, Similarity};
 
 use crate::svg::{
     parse::{css::StyleRules, meta::Meta},
@@ -14,6 +14,11 @@ use crate::svg::{
 
 /// Mean distance of borders up to which two outlines are the same by hand, in radii.
 pub(crate) const WOBBLE: f64 = 0.08;
+
+/// Work for comparing two outlines.
+const FIT: u64 = 8000;
+/// Work for looking at an item that may be of the same class.
+const LOOK: u64 = 4;
 
 /// Shapes of one paint beyond which outlines tell nothing.
 const MAX_SHAPES: usize = 64;
@@ -27,21 +32,26 @@ pub(crate) struct Classes {
 }
 
 /// Sorts items into classes. Items that are cut take part by name and paint only: their outlines are not their own.
-pub(crate) fn classify(items: &[Item], is_whole: &[bool], sheet: &StyleRules<'_>) -> Classes {
+///
+/// # Errors
+/// As [`Budget::spend`].
+pub(crate) fn classify(items: &[Item], is_whole: &[bool], sheet: &StyleRules<'_>, budget: &Budget) -> Result<Classes> {
     let signatures: Vec<Option<Signature>> = items.iter().map(|item| Signature::new(&item.outline)).collect();
     let names = shared_names(items, sheet);
     let mut labels: Vec<Option<Label>> = names.into_iter().map(|n| n.map(Label::Name)).collect();
     let unnamed: Vec<usize> = (0..items.len()).filter(|&i| labels[i].is_none() && is_whole[i]).collect();
     let paints: Vec<String> = items.iter().map(|item| item.painted.colours_key()).collect();
-    for (i, label) in by_paint_and_outline(&unnamed, &paints, &signatures) {
+    for (i, label) in by_paint_and_outline(&unnamed, &paints, &signatures, budget)? {
         labels[i] = Some(label);
     }
     for i in 0..items.len() {
         if labels[i].is_none() {
+            budget.spend(LOOK * items.len() as u64)?;
             labels[i] = nearest_by_paint(i, &labels, &paints, &signatures).or(Some(Label::Made(paints[i].clone(), 0)));
         }
     }
-    numbered(&labels.into_iter().flatten().collect::<Vec<_>>(), is_whole, &signatures)
+    budget.spend(FIT * items.len() as u64)?;
+    Ok(numbered(&labels.into_iter().flatten().collect::<Vec<_>>(), is_whole, &signatures))
 }
 
 /// What makes a class.
@@ -89,34 +99,52 @@ fn bare_label(label: &str) -> String {
     bare.to_lowercase()
 }
 
-fn by_paint_and_outline(items: &[usize], paints: &[String], signatures: &[Option<Signature>]) -> Vec<(usize, Label)> {
+fn by_paint_and_outline(
+    items: &[usize],
+    paints: &[String],
+    signatures: &[Option<Signature>],
+    budget: &Budget,
+) -> Result<Vec<(usize, Label)>> {
     let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for &i in items {
         groups.entry(&paints[i]).or_default().push(i);
     }
     let mut labels = Vec::with_capacity(items.len());
     for (paint, members) in &groups {
-        let shapes = shapes(members, signatures);
+        let shapes = shapes(members, signatures, budget)?;
         labels.extend(members.iter().zip(shapes).map(|(&i, shape)| (i, Label::Made((*paint).to_owned(), shape))));
     }
     let classes = labels.iter().map(|(_, l)| l).collect::<std::collections::BTreeSet<_>>().len();
     if items.len() >= 6 && 2 * classes > items.len() {
         // Every colour is used once or twice: it tells nothing, so outlines alone decide.
-        let shapes = shapes(items, signatures);
-        return items.iter().zip(shapes).map(|(&i, shape)| (i, Label::Made(String::new(), shape))).collect();
+        let shapes = shapes(items, signatures, budget)?;
+        return Ok(items.iter().zip(shapes).map(|(&i, shape)| (i, Label::Made(String::new(), shape))).collect());
     }
-    labels
+    Ok(labels)
 }
 
 /// Numbers the shapes among `members`: by outline, or by size where hardly any two outlines are alike.
-fn shapes(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
-    let alike = |a: &Signature, b: &Signature| a.may_match(b) && a.fit(b).distance <= WOBBLE;
+fn shapes(members: &[usize], signatures: &[Option<Signature>], budget: &Budget) -> Result<Vec<usize>> {
+    let mut failed = None;
+    let alike = |a: &Signature, b: &Signature| {
+        let fits = |()| a.fit(b).distance <= WOBBLE;
+        let paid = if a.may_match(b) { budget.spend(FIT).map(fits) } else { Ok(false) };
+        paid.unwrap_or_else(|error| {
+            // Everything is alike from here on, which ends soon, and is thrown away.
+            failed.get_or_insert(error);
+            true
+        })
+    };
     let outlines = greedy(members, signatures, MAX_SHAPES, alike);
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    budget.spend(FIT * (members.len() + MAX_SHAPES * MAX_SHAPES) as u64)?;
     let told = outlines.filter(|(_, count)| members.len() < 3 || 2 * count <= members.len());
     if let Some((shapes, _)) = told.filter(|(shapes, _)| is_clear_cut(members, shapes, signatures)) {
-        return shapes;
+        return Ok(shapes);
     }
-    by_size(members, signatures)
+    Ok(by_size(members, signatures))
 }
 
 /// Numbers sizes: those within a factor of three of the median are one, the rest is divided again.
@@ -127,7 +155,7 @@ fn by_size(members: &[usize], signatures: &[Option<Signature>]) -> Vec<usize> {
     let mut shapes = vec![0; members.len()];
     let mut shape = 0;
     while let Some(&middle) = rest.get(rest.len() / 2) {
-        let near = |k: usize| k == middle || (1.0 / 3.0..=3.0).contains(&(size(k) / size(middle)));
+        let near = |k: usize| size(k) == size(middle) || (1.0 / 3.0..=3.0).contains(&(size(k) / size(middle)));
         rest.retain(|&k| {
             if near(k) {
                 shapes[k] = shape;
@@ -169,7 +197,7 @@ fn greedy(
     members: &[usize],
     signatures: &[Option<Signature>],
     most: usize,
-    alike: impl Fn(&Signature, &Signature) -> bool,
+    mut alike: impl FnMut(&Signature, &Signature) -> bool,
 ) -> Option<(Vec<usize>, usize)> {
     let mut firsts: Vec<&Signature> = Vec::new();
     let mut shapes = Vec::with_capacity(members.len());

@@ -31,6 +31,9 @@ use crate::{
     text::xml::{number, push_attribute},
 };
 
+/// Work for each edge of a clip that a stroke may cross.
+const PER_EDGE: u64 = 5;
+
 /// The curves of a drawing.
 #[derive(Debug, Default)]
 pub(crate) struct Curves {
@@ -113,7 +116,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         let style = self.style(&stroke, &item.meta);
         let colour = colour::of_paint(self.painter.source, fill);
         for path in &lines.paths {
-            self.push(Curve { path: path.clone(), style, width: lines.width, colour }, &stroke, item);
+            self.push(Curve { path: path.clone(), style, width: lines.width, colour }, &stroke, item)?;
         }
         self.check_count()
     }
@@ -159,24 +162,28 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
                 self.painter.source.notes.add(Note::ZeroLength, || item.meta.id.clone().unwrap_or_default());
                 continue;
             }
+            let budget = self.painter.source.budget;
+            budget.spend(PER_EDGE * at.clip.as_ref().map_or(0, |clip| clip.points().count()) as u64)?;
             let parts = at.clip.as_ref().and_then(|clip| cut(&line, clip, Side::Inside));
             for path in parts.unwrap_or_else(|| vec![line]) {
-                self.push(Curve { path, style, width: stroke.width, colour }, &stroke, item);
+                self.push(Curve { path, style, width: stroke.width, colour }, &stroke, item)?;
             }
+            self.check_count()?;
         }
-        self.check_count()
+        Ok(())
     }
 
-    fn push(&mut self, curve: Curve<2>, stroke: &Stroke, item: &Item) {
+    fn push(&mut self, curve: Curve<2>, stroke: &Stroke, item: &Item) -> Result<()> {
         if !curve.path.bounds().grown(0.5 * curve.width).intersects(&self.window) {
-            return;
+            return Ok(());
         }
-        if !self.seen.insert(curve.style, &curve.path) {
+        if !self.seen.insert(curve.style, &curve.path, self.painter.source.budget)? {
             self.painter.source.notes.add(Note::Duplicate, || item.meta.id.clone().unwrap_or_default());
-            return;
+            return Ok(());
         }
         self.found.curves.push(curve);
         self.found.strokes.push(stroke.clone());
+        Ok(())
     }
 
     /// Refuses more curves than the limit.

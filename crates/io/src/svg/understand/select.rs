@@ -22,6 +22,7 @@ use crate::svg::{
     options::Method,
     parse::{
         geometry::{Geometry, Painted},
+        guard,
         meta::{Mark, Part},
         notes::Note,
         paint::fraction,
@@ -47,6 +48,17 @@ const ROOMY: f64 = 0.1;
 const GAP: f64 = 0.4;
 /// Share of the frame that a background covers at least.
 const COVER: f64 = 0.95;
+
+/// Items that may become one element, in the mean.
+const PIECES: usize = 4;
+
+/// Work for the box around a node: for each of its nodes and segments.
+fn weight(node: &Node) -> u64 {
+    match &node.content {
+        Content::Group(children) => children.iter().map(|child| weight(child)).sum::<u64>() + 20,
+        Content::Shape(geometry) => 20 + 10 * geometry.path.elements().len() as u64,
+    }
+}
 
 /// Walks the drawing.
 struct Selector<'a, 's, 'i> {
@@ -174,6 +186,7 @@ impl Selector<'_, '_, '_> {
 
     /// Box around what the clips leave of a node.
     fn visible(&self, node: &Node, at: &Surroundings) -> Result<Bounds<2>> {
+        self.painter.source.budget.spend(weight(node))?;
         let mut extent = bounds(node, at.parent);
         if let Some(clip) = self.painter.clip(node, at.parent * node.transform)? {
             let clip = clip.bounds();
@@ -198,7 +211,17 @@ impl Selector<'_, '_, '_> {
     /// Takes a node as a whole.
     fn take(&mut self, node: &Rc<Node>, at: &Surroundings, kind: Kind, origin: Origin) -> Result<()> {
         self.found.items.extend(Item::taken(self.painter, node, at, kind, origin)?);
-        Ok(())
+        self.check_count()
+    }
+
+    /// Refuses so many items that joining them will not help.
+    fn check_count(&self) -> Result<()> {
+        let (found, source) = (self.found.items.len(), self.painter.source);
+        if found <= PIECES * source.limits.elements {
+            return Ok(());
+        }
+        let what = format!("{}: elements", source.name);
+        Err(guard::too_much(what, format!("more than {found}"), source.limits.elements as u64))
     }
 
     /// Decides about a node that is, or wraps, a single shape.
@@ -227,7 +250,7 @@ impl Selector<'_, '_, '_> {
             let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
             let whole = Item::taken(self.painter, node, at, kind, origin)?;
             self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
-            return Ok(());
+            return self.check_count();
         }
         if closed && self.is_frame(leaf, geometry, world)? {
             self.painter.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
@@ -275,6 +298,7 @@ impl Selector<'_, '_, '_> {
         }
         for group in sets.groups() {
             self.found.items.extend(Item::of_pieces(compound, self.painter, group, self.frame)?);
+            self.check_count()?;
         }
         Ok(())
     }

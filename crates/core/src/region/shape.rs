@@ -13,8 +13,16 @@ use crate::{
 
 /// Cells of the index, at most.
 const MOST_CELLS: usize = 65_536;
-/// Places of edges in cells, for each edge and cell: where there would be more, as with thousands of long edges, cells get larger.
+/// Places of edges in cells, for each edge and cell: where there would be more, as with many thousands of long edges, cells get larger.
 const MOST: usize = 16;
+/// How many may be in any case.
+const ALLOWED: usize = 10_000_000;
+
+/// Places of so many edges in cells, at most.
+fn most_entries(edges: usize) -> usize {
+    (MOST * (edges + MOST_CELLS)).max(ALLOWED)
+}
+
 /// Work for each edge, and for each cell.
 const PER_ENTRY: u64 = 300;
 
@@ -61,7 +69,7 @@ impl Shape {
         budget.within("corners of outlines", corners, ("outline-nodes", budget.limits().outline_nodes))?;
         in_range(outline.points(), budget)?;
         // Whether one edge takes much or little of the index, all of them together take no more than this.
-        let most = MOST * (corners + MOST_CELLS);
+        let most = most_entries(corners);
         budget.spend(PER_ENTRY * (corners + MOST_CELLS.min(corners * MOST)) as u64)?;
         drop(budget.hold("outlines", 16 * most.min(corners * MOST_CELLS))?);
         Ok(Self::from_outline(outline))
@@ -127,7 +135,7 @@ impl Shape {
 
     /// Lays the edges into cells as small as may be, without many cells to an edge.
     fn index_edges(&mut self) {
-        let most = MOST * (self.edges.len() + MOST_CELLS);
+        let most = most_entries(self.edges.len());
         loop {
             let across = |k: usize| (self.bounds.size()[k] / self.cell) as usize + 1;
             (self.columns, self.rows) = (across(0), across(1));
@@ -218,6 +226,21 @@ impl Shape {
         })
     }
 
+    /// How far a point is from whatever lies `reach` cells from its own or farther.
+    fn room(&self, p: Vector<2>, (c, r): (usize, usize), reach: usize) -> f64 {
+        if reach == 0 {
+            return 0.0;
+        }
+        let along = |at: usize, n: usize, v: f64| {
+            let low = if at < reach { f64::INFINITY } else { v - (at + 1 - reach) as f64 * self.cell };
+            let high = if at + reach >= n { f64::INFINITY } else { (at + reach) as f64 * self.cell - v };
+            low.min(high)
+        };
+        let from = p - self.bounds.min;
+        // A little less, for rounding.
+        along(c, self.columns, from[0]).min(along(r, self.rows, from[1])) - 1e-6 * self.cell
+    }
+
     fn contains(&self, p: Vector<2>) -> bool {
         if !self.bounds.contains(p) {
             return false;
@@ -250,11 +273,12 @@ impl Region<2> for Shape {
 
     fn nearest_boundary(&self, p: Vector<2>) -> Vector<2> {
         let (c, r) = self.column_row(p);
-        let outside = (p - self.bounds.clamp(p)).norm();
+        let clamped = self.bounds.clamp(p);
+        let outside = (p - clamped).norm();
         let (mut best, mut best2) = (self.edges[0].0, f64::INFINITY);
         for reach in 0..self.columns.max(self.rows) {
-            // Every edge not looked at yet is farther than `reach - 1` cells from the clamped point.
-            let sure = ((reach as f64 - 1.0) * self.cell - outside).max(0.0);
+            // Every edge not looked at yet lies beyond the cells that were looked at.
+            let sure = (self.room(clamped, (c, r), reach) - outside).max(0.0);
             if best2 <= sure * sure {
                 break;
             }
@@ -327,7 +351,7 @@ mod tests {
         comb.push(root(teeth) + Vector::xy(1.0, -1.0));
         comb.push(Vector::xy(1.0, -1.0));
         let shape = Shape::from_outline(Outline { rings: vec![comb] }).unwrap();
-        assert!(shape.members.len() <= MOST * (shape.edges.len() + MOST_CELLS), "{}", shape.members.len());
+        assert!(shape.members.len() <= most_entries(shape.edges.len()), "{}", shape.members.len());
         let mut s = Stream::new(1, Stage::TEST, 0);
         for _ in 0..100 {
             let p = Vector::xy(s.range(-95.0, 125.0), s.range(-5.0, 215.0));

@@ -4,6 +4,7 @@ mod demand;
 mod drawn;
 mod expansion;
 pub mod field;
+mod filtered;
 pub mod image;
 pub mod mask;
 pub mod png;

@@ -1,11 +1,11 @@
 //! PNG: pictures of results, with their resolution and their recipe.
 
-use std::io::{self, Write};
+use std::io;
 
-use arabesque_core::{Budget, Error, Held, Image, Result};
+use arabesque_core::{Budget, Error, Image, Result};
 
 use crate::{
-    raster::{drawn::Drawn, size::checked_size},
+    raster::{drawn::Drawn, filtered::Filtered, size::checked_size},
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
 
@@ -29,12 +29,10 @@ const RECIPE_KEYWORD: &str = "arabesque recipe";
 
 /// Most bytes of a recipe that was compressed.
 const RECIPE: usize = 64 << 20;
-/// Most bytes of one chunk of compressed pixels.
-const PART: usize = 64 << 20;
-/// Least by which the file grows.
-const GROWTH: usize = 1 << 16;
-/// Work of compressing one pixel.
-const COMPRESSING: u64 = 40;
+/// Most bytes of one chunk, by the format.
+const CHUNK: usize = (u32::MAX >> 1) as usize;
+/// Bytes of a file beside its pixels and its recipe, roughly.
+const HEADER: usize = 256;
 
 /// What a picture is made from.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +119,11 @@ pub fn write_rows(
 ) -> Result<Vec<u8>> {
     let refuse = |e: png::EncodingError| refused(&e.into());
     let [width, height] = size.map(|n| n as u32);
-    let mut file = Growing { bytes: Vec::new(), held: Vec::new(), budget };
+    let mut filtered = Filtered::new(size[0], budget)?;
+    rows(&mut |row| filtered.row(row))?;
+    let (pixels, _held) = filtered.finish()?;
+    let room = pixels.len() + recipe.map_or(0, str::len) + HEADER;
+    let (mut file, _file) = budget.list("bytes of the picture", room)?;
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
@@ -131,46 +133,13 @@ pub fn write_rows(
         encoder.add_itxt_chunk(RECIPE_KEYWORD.into(), recipe.into()).map_err(refuse)?;
     }
     let mut writer = encoder.write_header().map_err(refuse)?;
-    // Compressed pixels are rarely more than the pixels themselves; up to the size of a part they are one chunk.
-    let pixels = (size[0] + 1).saturating_mul(size[1]).saturating_mul(4);
-    let part = pixels.saturating_add(pixels / 1000 + 1024).min(PART);
-    let _part = budget.hold("a part of the picture", part)?;
-    let mut stream = writer.stream_writer_with_size(part).map_err(refuse)?;
-    rows(&mut |row| {
-        budget.spend(COMPRESSING * row.len() as u64)?;
-        stream.write_all(row.as_flattened()).map_err(|e| refused(&e))
-    })?;
-    stream.finish().map_err(refuse)?;
+    pixels.chunks(CHUNK).try_for_each(|part| writer.write_chunk(png::chunk::IDAT, part)).map_err(refuse)?;
     writer.finish().map_err(refuse)?;
-    Ok(file.bytes)
-}
-
-/// The bytes of a file while they come, their memory held.
-struct Growing<'a> {
-    bytes: Vec<u8>,
-    held: Vec<Held>,
-    budget: &'a Budget,
-}
-
-impl Write for Growing<'_> {
-    fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        if self.bytes.capacity() - self.bytes.len() < data.len() {
-            let more = self.bytes.len().max(data.len()).max(GROWTH);
-            let held = self.budget.hold("bytes of the picture", more).map_err(io::Error::other)?;
-            self.held.push(held);
-            self.bytes.try_reserve_exact(more).map_err(io::Error::other)?;
-        }
-        self.bytes.extend_from_slice(data);
-        Ok(data.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
+    Ok(file)
 }
 
 /// Why the encoder stopped: what the budget said, or something of its own.
-fn refused(error: &io::Error) -> Error {
+pub(super) fn refused(error: &io::Error) -> Error {
     match error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
         Some(Error::Limit { what, found, limit, advice }) => {
             Error::Limit { what: what.clone(), found: found.clone(), limit: limit.clone(), advice: advice.clone() }

@@ -4,6 +4,7 @@ use roxmltree::Node as Xml;
 use svgtypes::Color;
 
 use crate::svg::parse::{
+    css::style_declarations,
     paint::{fraction, reference},
     source::{Source, href},
 };
@@ -48,7 +49,7 @@ fn mean_of_stops(node: Xml<'_, '_>) -> Option<[f64; 3]> {
 fn stop_colour(stop: Xml<'_, '_>) -> Option<[f64; 3]> {
     let mut colour = stop.attribute("stop-color").and_then(parsed);
     let mut opacity = stop.attribute("stop-opacity").map_or(1.0, fraction);
-    for declaration in simplecss::DeclarationTokenizer::from(stop.attribute("style").unwrap_or_default()) {
+    for declaration in style_declarations(stop.attribute("style").unwrap_or_default()) {
         match declaration.name {
             "stop-color" => colour = parsed(declaration.value).or(colour),
             "stop-opacity" => opacity = fraction(declaration.value),

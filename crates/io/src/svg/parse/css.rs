@@ -1,24 +1,30 @@
 //! Style sheets: which rules apply to an element.
 
-use std::{cell::Cell, collections::BTreeSet, rc::Rc};
+use std::{
+    cell::Cell,
+    collections::{BTreeMap, BTreeSet},
+    rc::Rc,
+};
 
 use roxmltree::Node as Xml;
 use simplecss::{AttributeOperator, Declaration, PseudoClass, Rule, StyleSheet};
 
 /// Steps of matching selectors in a whole file: parts of a selector compared, and moves in the tree.
-pub(crate) const STEPS: u64 = 1_000_000_000;
+pub(crate) const STEPS: u64 = 200_000_000;
 
 /// Bytes of a selector beyond which its rule is skipped: each part of it may be one level deeper.
 const SELECTOR: usize = 2000;
 /// Comments in a row beyond which they are put together, for the same reason.
 const COMMENTS: usize = 500;
 /// Length of a style sheet beyond which it is parsed in parts: whatever is not understood is looked up from the start.
-const PART: usize = 1 << 16;
+const PART: usize = 1 << 13;
 
 /// The rules of a file, weakest first. A clone shares the rules, and counts its own steps from there.
 #[derive(Clone)]
 pub(crate) struct StyleRules<'a> {
     rules: Rc<[Rule<'a>]>,
+    /// Which rules may apply to an element, by what their selectors ask of it.
+    by_key: Rc<BTreeMap<Key, Vec<usize>>>,
     /// Class names that some rule refers to.
     styled: Rc<BTreeSet<String>>,
     steps: Cell<u64>,
@@ -38,13 +44,21 @@ impl<'a> StyleRules<'a> {
             selector.starts_with(|c: char| c.is_alphanumeric() || ".#[*:_".contains(c)) && selector.len() <= SELECTOR
         });
         let styled: BTreeSet<String> = rules.iter().flat_map(|rule| class_names(&rule.selector.to_string())).collect();
-        Self { rules: rules.into(), styled: Rc::new(styled), steps: Cell::new(0) }
+        let mut by_key: BTreeMap<Key, Vec<usize>> = BTreeMap::new();
+        for (k, rule) in rules.iter().enumerate() {
+            by_key.entry(Key::of(&rule.selector.to_string())).or_default().push(k);
+        }
+        Self { rules: rules.into(), by_key: Rc::new(by_key), styled: Rc::new(styled), steps: Cell::new(0) }
     }
 
     /// Declarations that apply to `node`, weakest first.
     pub(crate) fn declarations<'s>(&'s self, node: Xml<'s, 's>) -> impl Iterator<Item = Declaration<'a>> + 's {
         let element = Element { node, steps: &self.steps };
-        let matching = self.rules.iter().filter(move |rule| {
+        let lists = Key::all_of(node).into_iter().filter_map(|key| self.by_key.get(&key));
+        let mut may_apply: Vec<usize> = lists.flatten().copied().collect();
+        may_apply.sort_unstable();
+        may_apply.dedup();
+        let matching = may_apply.into_iter().map(|k| &self.rules[k]).filter(move |rule| {
             element.count(1);
             !self.is_exhausted() && rule.selector.matches(&element)
         });
@@ -67,6 +81,72 @@ impl<'a> StyleRules<'a> {
     }
 }
 
+/// What the last part of a selector asks of an element, as far as it is soon found.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Key {
+    Class(String),
+    Id(String),
+    Tag(String),
+    Any,
+}
+
+impl Key {
+    /// Of a selector, as it is written out: `svg > g[class~='a'] path[id='b']`.
+    fn of(selector: &str) -> Self {
+        let (mut start, mut inside) = (0, false);
+        for (k, c) in selector.char_indices() {
+            match c {
+                '[' => inside = true,
+                ']' => inside = false,
+                ' ' if !inside => start = k + 1,
+                _ => {}
+            }
+        }
+        let last = &selector[start..];
+        let quoted = |before: &str| Some(last.split_once(before)?.1.split_once("']")?.0.to_owned());
+        let is_plain = |name: &String| name.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_'));
+        if let Some(class) = quoted("[class~='").filter(is_plain) {
+            return Self::Class(class);
+        }
+        if let Some(id) = quoted("[id='").filter(is_plain) {
+            return Self::Id(id);
+        }
+        let tag = last.split(['[', ':']).next().unwrap_or_default().to_owned();
+        if tag.is_empty() || tag == "*" || !is_plain(&tag) { Self::Any } else { Self::Tag(tag) }
+    }
+
+    /// Everything that selectors may ask of an element and find.
+    fn all_of(node: Xml<'_, '_>) -> Vec<Self> {
+        let classes = node.attribute("class").unwrap_or_default().split_ascii_whitespace();
+        let mut keys: Vec<_> = classes.map(|class| Self::Class(class.to_owned())).collect();
+        keys.extend(node.attribute("id").map(|id| Self::Id(id.to_owned())));
+        keys.extend([Self::Tag(node.tag_name().name().to_owned()), Self::Any]);
+        keys
+    }
+}
+
+/// The declarations of a style attribute.
+pub(crate) fn style_declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
+    let (mut parts, mut from, mut quote, mut depth) = (Vec::new(), 0, None, 0_usize);
+    if style.len() > PART {
+        for (k, b) in style.bytes().enumerate() {
+            match (quote, b) {
+                (None, b'"' | b'\'') => quote = Some(b),
+                (Some(q), _) if q == b => quote = None,
+                (None, b'(') => depth += 1,
+                (None, b')') => depth = depth.saturating_sub(1),
+                (None, b';') if depth == 0 && k - from >= PART / 8 => {
+                    parts.push(&style[from..=k]);
+                    from = k + 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    parts.push(&style[from..]);
+    parts.into_iter().flat_map(simplecss::DeclarationTokenizer::from)
+}
+
 /// A long style sheet in parts that end with rules.
 fn parts(css: &str) -> Vec<&str> {
     if css.len() <= PART {
@@ -79,7 +159,7 @@ fn parts(css: &str) -> Vec<&str> {
             b'}' => depth = depth.saturating_sub(1),
             _ => {}
         }
-        if b == b'}' && depth == 0 && k + 1 - from >= PART / 16 {
+        if b == b'}' && depth == 0 && k + 1 - from >= PART / 8 {
             parts.push(&css[from..=k]);
             from = k + 1;
         }
@@ -215,6 +295,18 @@ mod tests {
         let sheet = StyleRules::new("path:first-child{fill:red} [a]{fill:lime} g{x:y}");
         assert_eq!(sheet.declarations(xml.descendants().rfind(Xml::is_element).unwrap()).count(), 2);
         assert!(sheet.steps() > 1000, "{}", sheet.steps());
+    }
+
+    #[test]
+    fn rules_are_found_by_what_they_ask_for() {
+        let css = "* {a:any} path{a:tag} .b{a:class} #i{a:id} g .b[x='y z']{a:both} g > path:first-child{a:first}
+            [x]{a:has} .b.c{a:two} [class='b c']{a:whole} .d path{a:none} path.e{a:none}";
+        let svg = "<svg><g><path class='b c' id='i' x='y z'/></g></svg>";
+        let found = fills(css, svg);
+        assert_eq!(found, ["any", "tag", "class", "has", "whole", "first", "two", "both", "id"].map(str::to_owned));
+        assert_eq!(Key::of("g[class~='a b'] > path[x='c d']"), Key::Tag("path".into()));
+        let long = format!("fill:url(';');{}stroke:red", "fill:lime;".repeat(50_000));
+        assert_eq!(style_declarations(&long).count(), 50_002);
     }
 
     #[test]

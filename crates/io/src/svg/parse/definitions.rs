@@ -32,6 +32,8 @@ pub(crate) struct Definitions<'a, 's> {
     queue: VecDeque<(NodeId, String, Viewport)>,
     /// Clips by rectangles: their markup, and which of them it is.
     rectangles: BTreeMap<String, usize>,
+    /// The stops that gradients have themselves, written.
+    stops: BTreeMap<u32, Rc<str>>,
     /// What drawing each definition takes, in nodes.
     weights: BTreeMap<u32, usize>,
     /// What went wrong with one of them.
@@ -58,6 +60,7 @@ impl<'a, 's> Definitions<'a, 's> {
             names: BTreeMap::new(),
             queue: VecDeque::new(),
             rectangles: BTreeMap::new(),
+            stops: BTreeMap::new(),
             weights: BTreeMap::new(),
             failed: None,
         }
@@ -211,11 +214,22 @@ impl<'a, 's> Definitions<'a, 's> {
             }
         }
         out.push('>');
-        let with_stops = chain.iter().find(|n| n.children().any(|c| c.tag_name().name() == "stop"));
-        for stop in with_stops.into_iter().flat_map(|n| n.children()).filter(|n| n.tag_name().name() == "stop") {
-            self.stop(out, stop, viewport);
+        if let Some(with_stops) = chain.iter().find(|n| n.children().any(|c| c.tag_name().name() == "stop")) {
+            // Many gradients may share theirs.
+            let known = self.stops.get(&with_stops.id().get()).cloned();
+            let text = known.unwrap_or_else(|| self.stops_of(*with_stops, viewport));
+            self.stops.insert(with_stops.id().get(), Rc::clone(&text));
+            out.push_str(&text);
         }
         let _ = write!(out, "</{tag}>");
+    }
+
+    fn stops_of(&self, node: Xml<'a, 'a>, viewport: Viewport) -> Rc<str> {
+        let mut out = String::new();
+        for stop in node.children().filter(|n| n.tag_name().name() == "stop") {
+            self.stop(&mut out, stop, viewport);
+        }
+        out.into()
     }
 
     fn stop(&self, out: &mut String, stop: Xml<'a, 'a>, viewport: Viewport) {

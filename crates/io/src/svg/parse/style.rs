@@ -7,6 +7,7 @@ use svgtypes::{Length, LengthListParser};
 
 use crate::{
     svg::parse::{
+        css::style_declarations,
         geometry::LARGEST,
         length::{Axis, Viewport},
         notes::Note,
@@ -215,7 +216,7 @@ fn declarations<'a>(source: &Source<'a>, node: Xml<'a, 'a>) -> Vec<(&'a str, Str
         }
     }
     if let Some(style) = node.attribute("style") {
-        for declaration in simplecss::DeclarationTokenizer::from(style) {
+        for declaration in style_declarations(style) {
             if let Some(name) = static_name(declaration.name) {
                 let list = if declaration.important { &mut important } else { &mut all };
                 list.push((name, declaration.value.to_owned()));

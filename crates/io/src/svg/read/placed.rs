@@ -34,7 +34,7 @@ use crate::{
 /// Work for looking at an element that something may be a copy of.
 const LOOK: u64 = 10;
 /// Work for comparing two outlines.
-const FIT: u64 = 20_000;
+const FIT: u64 = 12_000;
 
 /// Largest difference of mean colours (Euclidean, channels in [0, 1]) between an element and its copy.
 const COLOUR: f64 = 0.2;

@@ -42,8 +42,7 @@ pub(crate) type Edge = Segment<2>;
 pub(crate) struct Looks(pub(crate) u64);
 
 impl Looks {
-    /// Whether `test` holds for an edge of `a` and one of `b` whose boxes come within `tolerance` of those of the other
-    /// side; `None` when none is left.
+    /// Whether `test`, which holds only for edges that come within `tolerance` of each other, holds for an edge of `a` and one of `b`; `None` when none is left.
     pub(crate) fn any(
         &mut self,
         a: &[Edge],
@@ -59,7 +58,12 @@ impl Looks {
         };
         let (a, b) = (near(a, &box_b), near(b, &box_a));
         self.0 = self.0.checked_sub(a.len() as u64 * b.len() as u64)?;
-        Some(a.iter().any(|&p| b.iter().any(|&q| test(p, q))))
+        let boxes: Vec<_> = b.iter().map(|e| Bounds::around([e.0, e.1]).grown(tolerance)).collect();
+        let meets = |p: Edge| {
+            let own = Bounds::around([p.0, p.1]).grown(tolerance);
+            b.iter().zip(&boxes).any(|(&q, around)| around.intersects(&own) && test(p, q))
+        };
+        Some(a.iter().any(|&p| meets(p)))
     }
 }
 

@@ -11,11 +11,14 @@ const NEAR: f64 = 1e-4;
 const PLACES: usize = 24;
 
 /// Work for a look at a stroke that may be the same, and for each place compared with each point.
-const LOOK: u64 = 10;
+const LOOK: u64 = 50;
 const PER_PLACE: u64 = 4;
 
 /// A style, and a cell of the grid.
 type GridCell = (usize, [i64; 2]);
+
+/// Strokes by their lengths, whose bits are in the order of the numbers.
+type ByLength = BTreeMap<u64, Vec<Known>>;
 
 /// A stroke, with the box around it.
 #[derive(Debug)]
@@ -28,8 +31,8 @@ struct Known {
 #[derive(Debug)]
 pub(crate) struct Seen {
     near: f64,
-    /// By style and by the cell in which the centre of the box around them lies.
-    cells: BTreeMap<GridCell, Vec<Known>>,
+    /// By style and by the cell in which a corner of the box around them lies.
+    cells: BTreeMap<GridCell, ByLength>,
 }
 
 impl Seen {
@@ -45,11 +48,15 @@ impl Seen {
     pub(crate) fn insert(&mut self, style: usize, path: &Path<2>, budget: &Budget) -> Result<bool> {
         let measured = Measured::new(path.clone(), 0.2 * self.near);
         let bounds = Bounds::around(measured.points().iter().copied());
-        let centre = bounds.centre() * (1.0 / (2.0 * self.near));
-        let cell = [centre[0].floor() as i64, centre[1].floor() as i64];
+        let corner = Vector::xy(bounds.min[0], bounds.max[1]) * (1.0 / (2.0 * self.near));
+        let cell = [corner[0].floor() as i64, corner[1].floor() as i64];
+        let length = measured.length();
+        let off = self.near.max(2e-3 * length);
+        let lengths = (length - off).max(0.0).to_bits()..=(length + off).to_bits();
         let around =
             (-1..=1).flat_map(|x| (-1..=1).map(move |y| [cell[0].saturating_add(x), cell[1].saturating_add(y)]));
-        let known = around.filter_map(|cell| self.cells.get(&(style, cell))).flatten();
+        let known = around.filter_map(|cell| self.cells.get(&(style, cell)));
+        let known = known.flat_map(|cell| cell.range(lengths.clone())).flat_map(|(_, alike)| alike);
         let new = Known { bounds, line: measured };
         for other in known {
             budget.spend(LOOK)?;
@@ -61,7 +68,7 @@ impl Seen {
                 }
             }
         }
-        self.cells.entry((style, cell)).or_default().push(new);
+        self.cells.entry((style, cell)).or_default().entry(length.to_bits()).or_default().push(new);
         Ok(true)
     }
 

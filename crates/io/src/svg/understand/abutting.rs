@@ -23,7 +23,7 @@ use crate::svg::{
 const EDGE_PAIRS: u64 = 200_000_000;
 
 /// Work for each of them.
-const PAIR: u64 = 5;
+const PAIR: u64 = 10;
 
 /// Share of the painted area of tiles that lines make up where tiles without a net are put together.
 const NEARLY_ALL: f64 = 0.9;

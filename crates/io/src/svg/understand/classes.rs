@@ -16,7 +16,7 @@ use crate::svg::{
 pub(crate) const WOBBLE: f64 = 0.08;
 
 /// Work for comparing two outlines.
-const FIT: u64 = 8000;
+const FIT: u64 = 12_000;
 /// Work for looking at an item that may be of the same class.
 const LOOK: u64 = 4;
 

@@ -1,8 +1,9 @@
 //! A filled compound path and its connected pieces.
 
-use std::rc::Rc;
+use std::{ops::Range, rc::Rc};
 
 use arabesque_core::{Bounds, Result};
+use kurbo::BezPath;
 
 use crate::svg::{
     parse::{
@@ -32,6 +33,8 @@ pub(crate) struct Compound {
     /// What these and the containers around them do.
     pub(crate) context: Surroundings,
     pub(crate) pieces: Vec<Piece>,
+    /// Which elements of the path each subpath is.
+    subpaths: Vec<Range<usize>>,
     /// Box around each piece.
     pub(crate) boxes: Vec<Bounds<2>>,
     /// Name of a group around it whose effects its pieces go without.
@@ -68,7 +71,12 @@ impl Compound {
         context.parent = parent;
         let nameless = Meta { class: None, label: None, kind: None, shows: None, ..(*leaf.meta).clone() };
         let bare = Node { own: leaf.own.without("clip-path"), meta: Rc::new(nameless), ..(**leaf).clone() };
-        let mut compound = Self { bare, context, pieces, boxes: Vec::new(), effects };
+        let subpaths = geometry.path.subpaths().scan(0, |at, elements| {
+            let from = std::mem::replace(at, *at + elements.len());
+            Some(from..*at)
+        });
+        let subpaths = subpaths.collect();
+        let mut compound = Self { bare, context, pieces, subpaths, boxes: Vec::new(), effects };
         let box_of = |k: usize| bounds(&compound.node(&[k]), parent);
         compound.boxes = (0..compound.pieces.len()).map(box_of).collect();
         Ok(Some(compound))
@@ -83,9 +91,10 @@ impl Compound {
     /// What draws some of the pieces.
     pub(crate) fn node(&self, which: &[usize]) -> Node {
         let Content::Shape(geometry) = &self.bare.content else { return self.bare.clone() };
-        let all: Vec<_> = geometry.path.subpaths().collect();
-        let subpaths: Vec<usize> = which.iter().flat_map(|&k| self.pieces[k].subpaths.iter().copied()).collect();
-        let chosen = Geometry::from_path(pieces::chosen(&all, &subpaths));
+        let subpaths = which.iter().flat_map(|&k| &self.pieces[k].subpaths);
+        let ranges = subpaths.filter_map(|&k| self.subpaths.get(k).cloned());
+        let elements = ranges.filter_map(|range| geometry.path.elements().get(range)).flatten();
+        let chosen = Geometry::from_path(BezPath::from_vec(elements.copied().collect()));
         Node { content: Content::Shape(Rc::new(chosen)), ..self.bare.clone() }
     }
 

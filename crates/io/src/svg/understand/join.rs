@@ -20,7 +20,7 @@ use crate::svg::{
 const EDGE_PAIRS: u64 = 200_000_000;
 
 /// Work for each of them.
-const PAIR: u64 = 5;
+const PAIR: u64 = 10;
 
 /// Gap that still counts as touching, as a share of the frame.
 const SEAM: f64 = 2e-4;

@@ -4,7 +4,7 @@
 //! a hole is a piece of its own, and knows the piece that it lies in.
 
 use arabesque_core::{Bounds, Budget, DisjointSets, FillRule, Result, Ring, ring};
-use kurbo::{BezPath, PathEl};
+use kurbo::BezPath;
 
 use crate::svg::shape::{
     adjacency::{Edge, Looks, edges_meet, meeting},
@@ -15,7 +15,7 @@ use crate::svg::shape::{
 const EDGE_PAIRS: u64 = 50_000_000;
 
 /// Work for each pair of edges, and for each edge that a point is compared with.
-const PAIR: u64 = 5;
+const PAIR: u64 = 10;
 
 /// A connected part of a compound path.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -112,11 +112,6 @@ fn gather(sets: DisjointSets, homes: &[Option<usize>]) -> Vec<Piece> {
         |k: usize, group: &[usize]| group.iter().find_map(|&i| homes[i]).map(|o| piece_of[o]).filter(|&o| o != k);
     let pieces = groups.iter().enumerate();
     pieces.map(|(k, group)| Piece { subpaths: group.clone(), within: within(k, group) }).collect()
-}
-
-/// Some of the subpaths of a path, as a path.
-pub(crate) fn chosen(all: &[&[PathEl]], subpaths: &[usize]) -> BezPath {
-    BezPath::from_vec(subpaths.iter().filter_map(|&i| all.get(i)).flat_map(|s| s.iter().copied()).collect())
 }
 
 #[cfg(test)]

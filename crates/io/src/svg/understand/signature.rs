@@ -17,6 +17,9 @@ const TURNS: usize = 5;
 /// Relative spread of the profile below which an outline is round: no turn can be told from another.
 const ROUND: f64 = 0.02;
 
+/// Distances that are reckoned at a time.
+const LANES: usize = 8;
+
 /// The shape of an outline in short.
 #[derive(Clone, Debug)]
 pub(crate) struct Signature {
@@ -118,7 +121,19 @@ impl Signature {
 
 /// Mean square distance from the points of `a` to the nearest of `b`.
 fn square_gap(a: &[Vector<2>], b: &[Vector<2>]) -> f64 {
-    let nearest = |p: Vector<2>| b.iter().map(|&q| (p - q).norm2()).fold(f64::INFINITY, f64::min).sqrt();
+    // Side by side, so that several are reckoned with at a time.
+    let (xs, ys): (Vec<f64>, Vec<f64>) = b.iter().map(|q| (q[0], q[1])).unzip();
+    let nearest = |p: Vector<2>| {
+        let mut least = [f64::INFINITY; LANES];
+        for (xs, ys) in xs.chunks(LANES).zip(ys.chunks(LANES)) {
+            for ((least, x), y) in least.iter_mut().zip(xs).zip(ys) {
+                let (dx, dy) = (p[0] - x, p[1] - y);
+                let d2 = dx * dx + dy * dy;
+                *least = if d2 < *least { d2 } else { *least };
+            }
+        }
+        least.into_iter().fold(f64::INFINITY, f64::min).sqrt()
+    };
     // Samples lie half a step apart on average even where the borders agree; that is not a difference.
     let step = b.windows(2).map(|w| (w[1] - w[0]).norm()).fold(f64::INFINITY, f64::min);
     let slack = if step.is_finite() { 0.25 * step } else { 0.0 };

@@ -43,6 +43,11 @@ impl Failure {
         Self::of(FAILURE, anyhow::Error::new(error).context("cannot write the summary: standard output"))
     }
 
+    /// Standard output cannot take what would go there.
+    pub(crate) fn standard(error: io::Error) -> Self {
+        Self::of(FAILURE, anyhow::Error::new(error).context("cannot write the result: standard output"))
+    }
+
     /// Something would be lost.
     pub(crate) fn refused(message: impl Into<String>) -> Self {
         Self::of(FAILURE, anyhow::Error::msg(message.into()))

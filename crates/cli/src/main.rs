@@ -6,14 +6,11 @@ mod duration;
 mod failure;
 mod guard;
 mod limits;
-mod memory;
 mod pair;
+mod process;
 mod produce;
 mod progress;
 mod say;
-mod sentinel;
-mod signals;
-mod standard;
 mod summary;
 
 use std::process::ExitCode;
@@ -21,10 +18,10 @@ use std::process::ExitCode;
 use clap::Parser;
 
 #[global_allocator]
-static ALLOCATOR: memory::Counting = memory::Counting;
+static ALLOCATOR: process::memory::Counting = process::memory::Counting;
 
 fn main() -> ExitCode {
-    sentinel::began();
+    process::sentinel::began();
     let app = app::App::parse();
     match app.execute() {
         Ok(code) => code,

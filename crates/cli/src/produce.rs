@@ -13,10 +13,13 @@ use crate::{
     failure::Failure,
     guard::{Guard, RecipeFile, WriteOptions},
     limits::LimitOptions,
-    memory,
+    process::{
+        memory,
+        sentinel::{self, Orders, Phase},
+        standard,
+    },
     progress::Watch,
     say::{self, Level},
-    sentinel::{self, Orders, Phase},
     summary::{self, Output, Outputs},
 };
 
@@ -118,14 +121,17 @@ fn check(
     path: &str,
     options: &RunOptions,
 ) -> Result<Vec<Plan>, Failure> {
-    let standard = path == file::STANDARD;
-    if standard && options.talk.json {
+    let piped = path == file::STANDARD;
+    if piped && options.talk.json {
         return Err(Failure::usage("--json and -o - both write to standard output; give a file for one of them"));
     }
-    if standard && options.variations.is_some() {
+    if piped && options.variations.is_some() {
         return Err(Failure::usage("--variations writes several files; give -o a name"));
     }
-    let by_name = if standard || options.format.is_some() { None } else { Format::of_path(path)? };
+    if piped || options.talk.json {
+        standard::check().map_err(Failure::standard)?;
+    }
+    let by_name = if piped || options.format.is_some() { None } else { Format::of_path(path)? };
     let format = options.format.or(by_name).or(recipe.output.format).unwrap_or_else(|| recipe.usual_format());
     recipe.output.format = Some(format);
     recipe.output.bare |= options.no_recipe;

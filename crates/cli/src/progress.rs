@@ -10,8 +10,8 @@ use arabesque::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::{
+    process::sentinel::{self, Phase},
     say::{self, Level},
-    sentinel::{self, Phase},
 };
 
 /// Steps of the bar.

@@ -5,7 +5,10 @@ use std::io::Write;
 use arabesque::{Summary, Warning};
 use serde::Serialize;
 
-use crate::{failure::Failure, memory, standard};
+use crate::{
+    failure::Failure,
+    process::{memory, standard},
+};
 
 /// What a command made.
 #[derive(Debug, Serialize)]

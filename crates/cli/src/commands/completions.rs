@@ -5,7 +5,7 @@ use std::{io::Write, process::ExitCode};
 use clap::Args;
 use clap_complete::Shell;
 
-use crate::{failure::Failure, standard};
+use crate::{failure::Failure, process::standard};
 
 /// Write the completion script of a shell
 #[derive(Args, Debug)]

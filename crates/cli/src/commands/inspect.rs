@@ -10,10 +10,13 @@ use crate::{
     failure::Failure,
     guard::{Guard, WriteOptions},
     limits::LimitOptions,
+    process::{
+        sentinel::{self, Orders, Phase},
+        standard,
+    },
     produce::TalkOptions,
     say::{self, Level},
-    sentinel::{self, Orders, Phase},
-    standard, summary,
+    summary,
 };
 
 /// Say what was understood of an exemplar

@@ -4,7 +4,7 @@ use std::{io::Write, process::ExitCode};
 
 use clap::Args;
 
-use crate::{failure::Failure, standard};
+use crate::{failure::Failure, process::standard};
 
 /// Write the manual page
 #[derive(Args, Debug)]

@@ -76,7 +76,10 @@ fn a_closed_or_full_standard_output_is_told() {
         assert_eq!(code, Some(1), "{line}: {message}");
         assert!(message.contains("standard output") || message.contains("/dev/full"), "{line}: {message}");
     }
-    // To throw a result away is no mistake.
+    // To throw a result away is no mistake, however the null device was opened.
+    for line in ["$A inspect leaves.svg 1<>/dev/null", "$A fill leaves.svg --size 80x80 -o - 1<>/dev/null"] {
+        assert_eq!(shell(&folder, "sh", line).0, Some(0), "{line}");
+    }
     assert_eq!(shell(&folder, "sh", "$A fill leaves.svg --size 80x80 -o - >/dev/null").0, Some(0));
     // Of a text people read as much as they like.
     assert_eq!(shell(&folder, "sh", "exec 3>&1; { $A man; echo $? >&3; } | true").1, "");

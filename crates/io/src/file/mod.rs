@@ -15,6 +15,6 @@ mod text;
 pub use identity::Identity;
 pub use part::abandon_writing;
 pub use read::read_bytes;
-pub use stream::{STANDARD, is_standard_input, is_standard_output, is_stream, standard_output_is_open};
+pub use stream::{STANDARD, is_standard_input, is_standard_output, is_stream};
 pub use target::{Step, Target};
 pub use text::decode_text;

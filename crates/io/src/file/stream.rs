@@ -31,14 +31,6 @@ fn descriptor(path: &str) -> Option<u32> {
     digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse().ok())?
 }
 
-/// Whether something is behind standard output.
-///
-/// Where it was closed, Rust opens the null device for reading and writing in its place before the program begins, so that no
-/// other file takes its number. Written to, that would swallow the result without a word.
-pub fn standard_output_is_open() -> bool {
-    !super::system::is_placeholder(&std::io::stdout())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,10 +8,7 @@ use std::{
 
 #[cfg(unix)]
 mod on_unix {
-    use std::{
-        io::Stdout,
-        os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown},
-    };
+    use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
 
     use rustix::{
         event::{PollFd, PollFlags, Timespec, poll},
@@ -95,13 +92,6 @@ mod on_unix {
         }
     }
 
-    /// Whether a standard stream is the null device opened for reading and writing, as Rust opens it in place of a closed one.
-    pub(in super::super) fn is_placeholder(stream: &Stdout) -> bool {
-        let is_read_and_written = fcntl_getfl(stream).is_ok_and(|flags| flags & OFlags::RWMODE == OFlags::RDWR);
-        let (Ok(there), Ok(null)) = (rustix::fs::fstat(stream), rustix::fs::stat("/dev/null")) else { return false };
-        is_read_and_written && (there.st_dev, there.st_ino) == (null.st_dev, null.st_ino)
-    }
-
     /// What a thing that is not a regular file is called; `None` for a regular file.
     pub(in super::super) fn kind(metadata: &Metadata) -> Option<&'static str> {
         use std::os::unix::fs::FileTypeExt;
@@ -153,10 +143,6 @@ mod elsewhere {
 
     pub(in super::super) fn is_name_of(path: &Path, _file: &File) -> bool {
         path.exists()
-    }
-
-    pub(in super::super) fn is_placeholder(_stream: &Stdout) -> bool {
-        false
     }
 
     pub(in super::super) fn kind(metadata: &Metadata) -> Option<&'static str> {

@@ -13,7 +13,7 @@ use arabesque_core::{Error, Result};
 use super::{
     copy,
     part::{self, Part},
-    stream::{is_standard_output, is_stream, standard_output_is_open},
+    stream::{is_standard_output, is_stream},
     system,
 };
 
@@ -92,7 +92,7 @@ impl Target {
     fn checked(path: &str) -> Result<Self> {
         let fail = |source| Error::Io { path: path.to_owned(), source };
         if is_standard_output(path) {
-            return if standard_output_is_open() { Ok(Self::at(path.into(), Kind::Standard)) } else { Err(closed()) };
+            return Ok(Self::at(path.into(), Kind::Standard));
         }
         check_name(path)?;
         let (real, kind) = resolved(path).map_err(fail)?;
@@ -253,11 +253,6 @@ fn resolved(path: &str) -> io::Result<(PathBuf, Kind)> {
 
 fn standard(source: io::Error) -> Error {
     Error::Io { path: "standard output".to_owned(), source }
-}
-
-fn closed() -> Error {
-    let text = "it is closed; name a file, or /dev/null for no result at all";
-    standard(io::Error::new(ErrorKind::NotConnected, text))
 }
 
 /// What the system says of pipes, in plain words.

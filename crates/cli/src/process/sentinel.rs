@@ -17,9 +17,8 @@ use arabesque::{Cause, Limits, Stopper, io::file};
 
 use crate::{
     failure::{BAD_INPUT, FAILURE, Failure, NO_RESULT},
-    memory, say,
-    signals::Signals,
-    summary,
+    process::{memory, signals::Signals},
+    say, summary,
 };
 
 /// How often the sentinel looks around.

@@ -1,7 +1,7 @@
 //! Memory, counted: whatever input brings about, the program uses no more than its limit.
 //!
 //! Readers and engines ask their budget before they allocate by a number from outside. This is the net below them: an allocator that
-//! counts, and that lets no thread go beyond the limit. A thread that would is held where it is, and the [`crate::sentinel`] ends the
+//! counts, and that lets no thread go beyond the limit. A thread that would is held where it is, and the [`crate::process::sentinel`] ends the
 //! program with an error, so that an allocation that fails is an error too, not an abort.
 
 #![allow(unsafe_code, reason = "an allocator cannot be written without; this is the one place of the project")]

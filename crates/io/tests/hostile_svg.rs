@@ -26,7 +26,10 @@ fn read(body: &str) -> (Result<Drawing, Error>, u64) {
 fn reads(body: &str, most: u64) -> Drawing {
     let (read, work) = read(body);
     assert!(work <= most * 1_000_000, "{work} units of work");
-    read.unwrap()
+    match read {
+        Ok(drawing) => drawing,
+        Err(error) => panic!("{error}"),
+    }
 }
 
 /// Reads what must be refused for `reason`, and take no more than so many millions of units.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use arabesque_core::{Budget, Cause, Error, Limits, Progress, Result, StopReason, Warning};
 
 /// Millions of units of work that are spent on what was cut short before it is taken as it is.
-const LAST_TOUCHES: usize = 20;
+const LAST_TOUCHES: usize = 10;
 
 /// A small account for what is still to be done with a result that was cut short: a page that needs more is drawn as it is.
 pub(crate) fn last_touches(budget: &Budget) -> Budget {

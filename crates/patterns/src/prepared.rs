@@ -37,7 +37,7 @@ const CROWDED: f64 = 0.95;
 const MIN_ELEMENTS: usize = 12;
 
 /// Work that a sample of a stroke makes, as a share of that of an element.
-const SAMPLE_SHARE: f64 = 0.2;
+const SAMPLE_SHARE: f64 = 0.05;
 
 /// An exemplar, analysed once, ready for any number of runs.
 #[derive(Clone, Debug)]

@@ -63,11 +63,11 @@ impl<const D: usize> GridIndex<D> {
 
     /// Calls `visit(i, offset)` for each point within `radius` of `p`, with the offset from `p` to it by the shortest way.
     /// Points come cell by cell, in a fixed order. On a torus a point comes once, even when the radius reaches around. Returns how many
-    /// points were looked at, within the radius or not: what the query cost.
+    /// points and cells were looked at, within the radius or not: what the query cost.
     pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) -> u64 {
         let mut looked = 0;
         self.lattice.around(p, radius, |cell, _| {
-            looked += u64::from(self.starts[cell + 1] - self.starts[cell]);
+            looked += 1 + u64::from(self.starts[cell + 1] - self.starts[cell]);
             for slot in self.starts[cell] as usize..self.starts[cell + 1] as usize {
                 let offset = periodic::offset(p, self.points[slot], self.period);
                 if offset.norm2() <= radius * radius {
@@ -101,14 +101,19 @@ impl<const D: usize> GridIndex<D> {
 
     /// The nearest point to `p` other than `except`, with its distance, no farther than `radius`.
     pub fn nearest(&self, p: Vector<D>, radius: f64, except: Option<usize>) -> Option<(usize, f64)> {
+        self.nearest_counted(p, radius, except).0
+    }
+
+    /// As [`GridIndex::nearest`], with what the query cost.
+    pub fn nearest_counted(&self, p: Vector<D>, radius: f64, except: Option<usize>) -> (Option<(usize, f64)>, u64) {
         let mut best: Option<(usize, f64)> = None;
-        self.within(p, radius, |i, offset| {
+        let looked = self.within(p, radius, |i, offset| {
             let d2 = offset.norm2();
             if Some(i) != except && best.is_none_or(|(j, b)| d2 < b || (d2 == b && i < j)) {
                 best = Some((i, d2));
             }
         });
-        best.map(|(i, d2)| (i, d2.sqrt()))
+        (best.map(|(i, d2)| (i, d2.sqrt())), looked)
     }
 }
 

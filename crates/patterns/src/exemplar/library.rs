@@ -15,6 +15,9 @@ const FAR: f64 = 2.0;
 /// Nanoseconds for an element that is looked at, whether it is near or not.
 const LOOK: u64 = 4;
 
+/// How often the reach is doubled, at most, in which the element nearest to a place, and to another element, is looked for.
+const DOUBLINGS: (u32, u32) = (6, 8);
+
 /// Nanoseconds for a corner of an outline that is described.
 const CORNER: u64 = 60;
 
@@ -205,12 +208,22 @@ fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64, b
     for c in 0..cells.iter().product() {
         let p = window.cell_centre(c, &cells);
         let side = view.signed_distance(p);
-        meter.spend(30 + LOOK * all.load(p, spacing))?;
-        let Some((_, distance)) = (0..6).find_map(|n| all.nearest(p, spacing * f64::from(1 << n), None)) else {
-            continue;
-        };
-        if distance <= side {
-            largest = largest.max(distance);
+        meter.spend(LOOK)?;
+        // What is farther than the sides, or no farther than what is known already, changes nothing.
+        let mut reach = spacing;
+        for _ in 0..DOUBLINGS.0 {
+            if side <= largest {
+                break;
+            }
+            let (found, looked) = all.nearest_counted(p, reach, None);
+            meter.spend(LOOK * (4 + looked))?;
+            if let Some((_, distance)) = found.filter(|(_, distance)| *distance <= side) {
+                largest = largest.max(distance);
+            }
+            if found.is_some() || reach >= side {
+                break;
+            }
+            reach *= 2.0;
         }
     }
     Ok(if largest > 0.0 { largest } else { spacing })
@@ -229,11 +242,18 @@ fn nearest_distances<const D: usize>(
 ) -> Result<Numbered<f64>> {
     let mut meter = budget.meter();
     // Doubling the radius finds the neighbour of a lonely element without scanning everything for the others.
-    let search = |i: usize| (0..8).find_map(|n| all.nearest(centre[i], spacing * f64::from(1 << n), Some(i)));
     let mut nearest = Numbered::new();
     for (i, &p) in centre.iter().enumerate() {
-        meter.spend(LOOK * (10 + all.load(p, spacing)))?;
-        nearest.push(search(i).map_or(spacing, |(_, d)| d));
+        let mut distance = spacing;
+        for doubling in 0..DOUBLINGS.1 {
+            let (found, looked) = all.nearest_counted(p, spacing * f64::from(1 << doubling), Some(i));
+            meter.spend(LOOK * looked)?;
+            if let Some((_, found)) = found {
+                distance = found;
+                break;
+            }
+        }
+        nearest.push(distance);
     }
     Ok(nearest)
 }

@@ -78,7 +78,7 @@ pub(crate) fn read(source: &Source<'_>, node: Xml<'_, '_>, viewport: Viewport) -
     source.count_segments(geometry.path.elements().len())?;
     source.count_bytes(geometry.markup.len() + SEGMENT_BYTES * geometry.path.elements().len())?;
     let extent = geometry.path.control_box();
-    if let Some(v) = [extent.x0, extent.y0, extent.x1, extent.y1].iter().find(|v| !(v.abs() <= LARGEST)) {
+    if let Some(v) = [extent.x0, extent.y0, extent.x1, extent.y1].iter().find(|v| !(0.0..=LARGEST).contains(&v.abs())) {
         return Err(
             reader.wrong(format!("a coordinate is {v:e}, expected a number between -{LARGEST:e} and {LARGEST:e}"))
         );
@@ -110,7 +110,7 @@ impl Reader<'_, '_> {
             .parse::<Length>()
             .map_err(|_| self.wrong(format!("{name}=\"{}\" is not a length", clip_text(text, 40))))?;
         let value = self.viewport.resolve(length, axis, 16.0);
-        if !(value.abs() <= LARGEST) {
+        if !(0.0..=LARGEST).contains(&value.abs()) {
             let shown = clip_text(text, 40);
             let problem = format!("{name}=\"{shown}\", expected a number between -{LARGEST:e} and {LARGEST:e}");
             return Err(self.wrong(problem));

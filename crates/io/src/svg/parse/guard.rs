@@ -258,7 +258,7 @@ fn check_arcs(data: &str, largest: f64) -> std::result::Result<(), String> {
             continue;
         };
         let radius = rx.abs().max(ry.abs());
-        if !(radius <= largest) {
+        if !(0.0..=largest).contains(&radius) {
             return Err(format!("an arc has a radius of {radius:e}, expected at most {largest:e}"));
         }
         let chord = (to[0] - from[0]).hypot(to[1] - from[1]);

@@ -117,7 +117,7 @@ fn checked(source: &Source<'_>, page: Page) -> Result<Page> {
     let size = page.view.size();
     let root = || source.place(source.xml.root_element());
     let extremes = page.view.min.0.iter().chain(page.view.max.0.iter());
-    if let Some(v) = { extremes }.find(|v| !(v.abs() <= source.limits.coordinate)) {
+    if let Some(v) = { extremes }.find(|v| !(0.0..=source.limits.coordinate).contains(&v.abs())) {
         let problem = format!("the page reaches beyond {:e} user units: {v:e}", source.limits.coordinate);
         return Err(Error::input(root(), problem, "give it a sensible width, height and viewBox"));
     }

@@ -1,6 +1,7 @@
 //! A drawing of which a part is refilled: everything else stays as the file has it, to the last byte.
 
 use std::{
+    borrow::Cow,
     collections::{BTreeMap, BTreeSet},
     fmt::Write as _,
     ops::Range,
@@ -16,7 +17,7 @@ use crate::{
         drawing::{Drawing, HostDocument, Page, Placed},
         namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
         options::{Method, ReadOptions},
-        parse::{definitions::Definitions, source::Source},
+        parse::{definitions::Definitions, geometry::LARGEST, guard, source::Source},
         read::{
             document::{Document, Opened},
             placed::{Matcher, Sorted, Sorter},
@@ -53,6 +54,7 @@ impl Document<'_> {
     pub fn host(&self, drawing: &Drawing, area: &Outline<2>) -> Result<HostDocument> {
         let Opened { source, root, page } = self.open()?;
         let source = &source;
+        refuse_closes(source)?;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;
         let content = bounds(&root, Affine::IDENTITY);
@@ -84,6 +86,18 @@ impl Document<'_> {
 
 /// Work for looking at one item.
 const PER_ITEM: u64 = 100;
+
+/// Refuses path data that closes so often in a row that no program could draw the file, whose text stays.
+fn refuse_closes(source: &Source<'_>) -> Result<()> {
+    let closes = |data: &str| matches!(guard::path_data(data, LARGEST), Ok(Cow::Owned(_)));
+    let mut nodes = source.xml.descendants();
+    match nodes.find(|node| node.attribute("d").is_some_and(closes)) {
+        Some(node) => {
+            Err(Error::input(source.place(node), "a path closes hundreds of times in a row", "close it once"))
+        }
+        None => Ok(()),
+    }
+}
 
 fn is_changed(kept: &Sorted) -> bool {
     match kept {

@@ -191,7 +191,7 @@ impl<'a, 's> Painter<'a, 's> {
     fn check_extent(&self, node: &Node, extent: kurbo::Rect, width: f64) -> Result<()> {
         let most = self.source.limits.coordinate;
         let numbers = [extent.x0, extent.y0, extent.x1, extent.y1, width];
-        let Some(found) = numbers.into_iter().find(|v| !(v.abs() <= most)) else { return Ok(()) };
+        let Some(found) = numbers.into_iter().find(|v| !(0.0..=most).contains(&v.abs())) else { return Ok(()) };
         let place = self.source.xml.get_node(node.meta.xml).map_or_else(String::new, |xml| self.source.place(xml));
         let problem = format!("a coordinate beyond {most:e} user units: {found:e}");
         Err(Error::input(place, problem, "correct or delete this shape"))

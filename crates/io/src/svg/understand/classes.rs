@@ -139,7 +139,8 @@ fn shapes(members: &[usize], signatures: &[Option<Signature>], budget: &Budget) 
     if let Some(error) = failed {
         return Err(error);
     }
-    budget.spend(FIT * (members.len() + MAX_SHAPES * MAX_SHAPES) as u64)?;
+    let firsts = outlines.as_ref().map_or(0, |(_, count)| count * count);
+    budget.spend(FIT * (members.len() + firsts) as u64)?;
     let told = outlines.filter(|(_, count)| members.len() < 3 || 2 * count <= members.len());
     if let Some((shapes, _)) = told.filter(|(shapes, _)| is_clear_cut(members, shapes, signatures)) {
         return Ok(shapes);

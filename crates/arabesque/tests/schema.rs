@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use arabesque::{
-    Recipe,
+    Limits, Recipe,
     core::options::{markdown_table, preset_list},
     patterns::Params,
     ribbons::RibbonParams,
@@ -23,6 +23,16 @@ fn is_current(name: &str, generated: &str) {
 #[test]
 fn the_shipped_schema_is_current() {
     is_current("recipe.schema.json", &Recipe::schema());
+}
+
+#[test]
+fn the_shipped_table_of_limits_is_current() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/limits.md");
+    let shipped = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = shipped.split_once("<!-- limits -->\n").unwrap();
+    let (_, after) = rest.split_once("<!-- end -->\n").unwrap();
+    let table = markdown_table(&Limits::specs());
+    is_current("limits.md", &format!("{before}<!-- limits -->\n{table}<!-- end -->\n{after}"));
 }
 
 #[test]

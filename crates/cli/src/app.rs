@@ -14,7 +14,7 @@ use crate::{
 #[command(name = "arabesque", version, propagate_version = true, arg_required_else_help = true)]
 #[command(
     after_help = "Exit codes: 0 done; 1 failure; 2 usage; 3 bad input; 4 no valid result under the given constraints; \
-                        130 interrupted (the best so far is written)."
+                        130, 143, 129 stopped by Ctrl-C, SIGTERM, SIGHUP (the best so far is written, where there is one)."
 )]
 pub(crate) struct App {
     #[command(subcommand)]

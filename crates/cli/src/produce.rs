@@ -239,6 +239,7 @@ impl Run<'_> {
                 StopReason::Stopped => "time limit",
             },
             seconds: elapsed.as_secs_f64(),
+            work: artwork.work() / 1_000_000,
             memory: memory::peak(),
             warnings,
         }

@@ -28,6 +28,8 @@ pub(crate) struct Output {
     /// `finished`, `interrupted`, `time limit` or `limit`.
     pub(crate) stopped: &'static str,
     pub(crate) seconds: f64,
+    /// Millions of units of work that the run has done.
+    pub(crate) work: u64,
     /// Bytes that were in use at most, by everything so far.
     pub(crate) memory: usize,
     pub(crate) warnings: Vec<Warning>,

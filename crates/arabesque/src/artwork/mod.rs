@@ -60,6 +60,11 @@ impl Artwork {
         self.made.stopped()
     }
 
+    /// Work that the run has done, in units of about a nanosecond; see [`Budget`].
+    pub fn work(&self) -> u64 {
+        self.origin.budget.work()
+    }
+
     /// How much of what there is.
     pub fn summary(&self) -> Summary {
         self.made.summary()

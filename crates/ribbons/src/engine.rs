@@ -22,6 +22,8 @@ use crate::{
 
 /// What errors of a run begin with.
 const LAYING: &str = "laying pieces";
+/// Elements of a drawing that a piece counts as, for the work that each adds: it is looked for all over the exemplar.
+const ELEMENTS: f64 = 5.0;
 /// Most work of stitching that is still done when somebody asked to stop; pieces that would take more stay unbent.
 const QUICK: u64 = 200_000_000;
 
@@ -202,6 +204,7 @@ impl Prepared {
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
         let mut outcome = RibbonOutcome::new();
         let total = cages.iter().map(Cage::len).sum();
+        budget.allow_elements(ELEMENTS * total as f64);
         let mut done = 0;
         for (k, (cage, free)) in cages.iter().zip(&free.cages).enumerate() {
             let name = &request.curves[k].0;

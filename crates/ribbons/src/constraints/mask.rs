@@ -11,8 +11,8 @@ use crate::{constraints::valid::Offset, geometry::cage::Cage};
 const INSIDE: f64 = 0.5;
 
 /// Work of one pixel of a piece, of comparing it with one other piece, of one blocked point, and of one box among others.
-const PIXEL: u64 = 30;
-const RIVAL: u64 = 15;
+const PIXEL: u64 = 60;
+const RIVAL: u64 = 45;
 const POINT: u64 = 60;
 const BOX: u64 = 2;
 

@@ -27,7 +27,7 @@ const LEAF: usize = 4;
 /// What the memory of rows is called.
 const TABLE: &str = "places of the pieces laid so far";
 /// Work of bounding one box, and of comparing one column with all lanes by their summaries.
-const BOX: u64 = 40;
+const BOX: u64 = 80;
 const COMPARED: u64 = 60;
 /// Work of bounding one pair of columns block by block.
 const BOUNDED: u64 = 60;

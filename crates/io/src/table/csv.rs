@@ -314,10 +314,19 @@ pub(crate) fn recipe_comments(recipe: &str) -> String {
 /// The comment line that a recipe follows.
 pub(crate) const RECIPE_MARK: &str = "# arabesque recipe:";
 
-/// The recipe in the comments of a file that [`write_points`] wrote.
+/// The recipe in the comments of a file that [`write_points`] wrote. A name of a class that looks like one is none.
 pub fn recipe_of(text: &str) -> Option<String> {
-    let (_, after) = text.split_once(&format!("{RECIPE_MARK}\n"))?;
-    let lines = after.lines().map_while(|line| line.strip_prefix("# ").or_else(|| line.strip_prefix('#')));
+    let mut lines = text.lines();
+    // Names with quotes are quoted and their quotes doubled, so that every other one opens.
+    let mut quoted = false;
+    lines.find(|line| {
+        if !quoted && line.starts_with('#') {
+            return *line == RECIPE_MARK;
+        }
+        quoted ^= line.matches('"').count() % 2 == 1;
+        false
+    })?;
+    let lines = lines.map_while(|line| line.strip_prefix("# ").or_else(|| line.strip_prefix('#')));
     Some(lines.map(|line| format!("{line}\n")).collect())
 }
 
@@ -392,6 +401,29 @@ mod tests {
         assert!(message.contains("line 4, column y"), "{message}");
         let message = read("x,y,class\n0,0,a\n0,1,\"a\n1,0,b\n").unwrap_err().to_string();
         assert!(message.starts_with("t.csv: line 3: a quote that nothing closes"), "{message}");
+    }
+
+    #[test]
+    fn names_that_look_like_a_recipe_are_none() {
+        for class in [
+            "a\n# arabesque recipe:\n# seed = 9",
+            "# arabesque recipe:\n",
+            "\"\n# arabesque recipe:\n#",
+            "# arabesque recipe:",
+        ] {
+            let points = [Vector::ZERO, Vector::xy(1.0, 2.0)];
+            let exemplar = Exemplar::from_points("t", &points, &[0, 0], &[class.into()]).unwrap();
+            let placed = |source| Placement {
+                source,
+                transform: arabesque_core::Similarity::identity(),
+                control: Vec::new(),
+                frozen: None,
+            };
+            let text = write_points(&exemplar, &[placed(0), placed(1)], 2.0, Some("seed = 1\n"));
+            assert_eq!(recipe_of(&text).as_deref(), Some("seed = 1\n"), "{text}");
+            assert_eq!(recipe_of(&write_points(&exemplar, &[placed(0)], 2.0, None)), None);
+        }
+        assert_eq!(recipe_of("# curves as polylines\ng # arabesque recipe:\n# seed = 9\n"), None);
     }
 
     #[test]

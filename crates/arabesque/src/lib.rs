@@ -73,8 +73,8 @@ pub use arabesque_ribbons as ribbons;
 
 pub use arabesque_core::suggest::nearest;
 pub use arabesque_core::{
-    Border, Budget, Cause, EnergyPoint, Error, Limits, Progress, Result, Snapshot, StopReason, Stopper, Unobserved,
-    Warning, Watch,
+    Border, Budget, Cause, EnergyPoint, Error, Forecast, Limits, Progress, Result, Snapshot, StopReason, Stopper,
+    Unobserved, Warning, Watch,
 };
 pub use arabesque_ribbons::Closing;
 pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, RibbonSummary, Summary};

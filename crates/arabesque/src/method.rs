@@ -5,7 +5,7 @@
 
 use std::{fmt::Debug, ops::ControlFlow, sync::Arc};
 
-use arabesque_core::{Budget, Progress, Result, Warning, Watch};
+use arabesque_core::{Budget, Forecast, Progress, Result, Warning, Watch};
 
 use crate::{
     artwork::{Artwork, Made, Origin},
@@ -74,6 +74,10 @@ pub(crate) struct Show<'a, F> {
 }
 
 impl<P, M: Made + 'static, F: Fn(P) -> M> Watch<P> for Show<'_, F> {
+    fn foreseen(&mut self, forecast: &Forecast) {
+        self.watch.foreseen(forecast);
+    }
+
     fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> P) -> ControlFlow<()> {
         let (make, origin) = (&self.make, self.origin);
         self.watch.step(progress, &|| Artwork::new(Arc::clone(origin), make(preview())))

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use arabesque::Progress;
+use arabesque::{Forecast, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::{
@@ -14,12 +14,18 @@ use crate::{
     say::{self, Level},
 };
 
+/// Seconds that a unit of work takes on one core, by and large.
+const UNIT: f64 = 2e-9;
+/// Seconds from which on a user wants to know before.
+const WORTH_TELLING: f64 = 10.0;
+
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
 /// Watches a run.
 pub(crate) struct Watch {
     bar: ProgressBar,
+    level: Level,
     started: Instant,
     /// The last stage that was told, where stages are told.
     told: Option<Cow<'static, str>>,
@@ -36,7 +42,7 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template(&format!("{} {{percent:>3}}% {{msg}}", say::bar_style())) {
             bar.set_style(style);
         }
-        Self { bar, started: Instant::now(), told: (level == Level::Verbose).then_some(Cow::Borrowed("")) }
+        Self { bar, level, started: Instant::now(), told: (level == Level::Verbose).then_some(Cow::Borrowed("")) }
     }
 
     /// Takes the bar off the screen.
@@ -58,6 +64,14 @@ impl Watch {
 }
 
 impl<P> arabesque::Watch<P> for Watch {
+    fn foreseen(&mut self, forecast: &Forecast) {
+        let seconds = forecast.work * UNIT;
+        if self.level > Level::Quiet && seconds > WORTH_TELLING {
+            let text = format!("about {:.0} elements, samples or pieces to place: {} of work for one core", forecast.count, clock(seconds));
+            self.bar.suspend(|| say::note(&text));
+        }
+    }
+
     fn step(&mut self, progress: &Progress, _: &dyn Fn() -> P) -> ControlFlow<()> {
         sentinel::enter(Phase::Running);
         self.tell(progress);

@@ -44,8 +44,8 @@ pub use region::{
     segment::{self, Segment},
 };
 pub use run::{
-    Border, Drawn, EnergyPoint, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason, Unobserved,
-    Warning, Watch,
+    Border, Drawn, EnergyPoint, Forecast, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason,
+    Unobserved, Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};
 pub use text::Decimals;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Budget, Error, Exemplar, Numbered, Outcome, Request, Result, Role, Snapshot, Vector, Warning, Watch,
+    Budget, Error, Exemplar, Forecast, Numbered, Outcome, Request, Result, Role, Snapshot, Vector, Warning, Watch,
 };
 
 use crate::{
@@ -38,6 +38,11 @@ const MIN_ELEMENTS: usize = 12;
 
 /// Work that a sample of a stroke makes, as a share of that of an element.
 const SAMPLE_SHARE: f64 = 0.05;
+
+/// Work units that an element takes in one iteration, by and large.
+const PER_ELEMENT: f64 = 1e4;
+/// Work units that a sample of a stroke takes in one iteration, by and large.
+const PER_SAMPLE: f64 = 4e4;
 
 /// An exemplar, analysed once, ready for any number of runs.
 #[derive(Clone, Debug)]
@@ -202,6 +207,7 @@ where
         let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
         let run = Run { params: &self.params, request, contexts, iterations };
         request.budget.allow_elements(self.share_of_work(&targets, used));
+        watch.foreseen(&self.forecast(&run));
         let mut trace = Vec::new();
         let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
         if cut_short.is_none() && !found.placements.is_empty() {
@@ -238,6 +244,23 @@ where
             targets.iter().enumerate().map(|(c, n)| if is_stroke(c) { SAMPLE_SHARE * n } else { *n }).sum()
         };
         targets.iter().zip(used).map(of_level).fold(0.0, f64::max)
+    }
+
+    /// What a run will take, by what its samples take in each iteration.
+    fn forecast(&self, run: &Run<'_, D>) -> Forecast {
+        let of_level = |context: &LevelContext<'_, D>| -> (f64, f64) {
+            let (library, base) = (&context.sampled.library, context.sampled.level.base);
+            let is_stroke = |c: usize| library.members(c as u32).first().is_some_and(|&e| e >= base);
+            let price = |c: usize| if is_stroke(c) { PER_SAMPLE } else { PER_ELEMENT };
+            let each = context.targets.iter().enumerate().map(|(c, &n)| (n, n * price(c)));
+            each.fold((0.0, 0.0), |(count, work), (n, more)| (count + n, work + more))
+        };
+        let levels: Vec<_> = run.contexts.iter().map(of_level).collect();
+        let work: f64 = levels.iter().map(|(_, work)| work).sum();
+        Forecast {
+            count: levels.iter().map(|(count, _)| *count).fold(0.0, f64::max),
+            work: work * run.iterations as f64,
+        }
     }
 
     /// What may be wrong with an exemplar.

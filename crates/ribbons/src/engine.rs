@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Error, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
+use arabesque_core::{
+    Budget, Error, Forecast, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch,
+};
 use rayon::prelude::*;
 
 use crate::{
@@ -26,6 +28,9 @@ const LAYING: &str = "laying pieces";
 const ELEMENTS: f64 = 5.0;
 /// Most work of stitching that is still done when somebody asked to stop; pieces that would take more stay unbent.
 const QUICK: u64 = 200_000_000;
+
+/// Pieces after which the work of all of them is foreseen.
+const TYPICAL: usize = 4;
 
 /// The result of a run.
 #[derive(Clone, Debug)]
@@ -212,6 +217,11 @@ impl Prepared {
             let curve = CurveRun { cage, free, name, request, rows, budget: &budget };
             let finished = &outcome.ribbons;
             let solved = self.solve(&curve, &mut |rows, energy, path| {
+                if done + rows == TYPICAL {
+                    // By now a row has cost what rows cost.
+                    let work = budget.work() as f64 * (total - TYPICAL) as f64 / TYPICAL as f64;
+                    watch.foreseen(&Forecast { count: total as f64, work });
+                }
                 let progress = progress(done + rows, total, energy);
                 let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };
                 watch.step(&progress, &preview).is_continue()

@@ -8,4 +8,4 @@ mod watch;
 pub use outcome::{Drawn, EnergyPoint, Outcome, Placement, StopReason, Warning};
 pub use patch::Patch;
 pub use request::{Border, Request};
-pub use watch::{Progress, Snapshot, Unobserved, Watch};
+pub use watch::{Forecast, Progress, Snapshot, Unobserved, Watch};

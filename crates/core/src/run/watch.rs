@@ -32,6 +32,15 @@ impl fmt::Display for Progress {
     }
 }
 
+/// What a run will take, as far as it can be told before or soon after it begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forecast {
+    /// Elements and samples of strokes, or pieces, that there will be.
+    pub count: f64,
+    /// Work, in units of about a nanosecond; see [`crate::Budget`].
+    pub work: f64,
+}
+
 /// The geometry of a run at one moment, as it would be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot<const D: usize> {
@@ -54,6 +63,9 @@ impl<const D: usize> Default for Snapshot<D> {
 /// `P` is what a preview is to the caller: an engine offers its [`Snapshot`]; who stands above it may offer more. An observer that
 /// looks at no previews implements `Watch<P>` for every `P` and serves all methods in all dimensions.
 pub trait Watch<P> {
+    /// Called once, before the work or soon after it begins.
+    fn foreseen(&mut self, _: &Forecast) {}
+
     /// Called after each step. `preview` builds the present state; building it costs time, so call it only to show it.
     /// [`ControlFlow::Break`] ends the run early, with the best so far as its outcome.
     fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> P) -> ControlFlow<()>;

@@ -5,10 +5,8 @@
 
 use std::io::{self, Write};
 
-use arabesque_core::{Budget, Held, Result};
+use arabesque_core::{Budget, Error, Held, Result};
 use flate2::{Compression, write::ZlibEncoder};
-
-use crate::raster::png::refused;
 
 /// Bytes of a pixel, which filters look back by.
 const PIXEL: usize = 4;
@@ -122,6 +120,16 @@ impl Write for Growing<'_> {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+/// Why the encoder stopped: what the budget said, or something of its own.
+pub(super) fn refused(error: &io::Error) -> Error {
+    match error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+        Some(Error::Limit { what, found, limit, advice }) => {
+            Error::Limit { what: what.clone(), found: found.clone(), limit: limit.clone(), advice: advice.clone() }
+        }
+        _ => Error::input("writing the picture", error.to_string(), "write it as SVG instead"),
     }
 }
 

@@ -2,10 +2,14 @@
 
 use std::io;
 
-use arabesque_core::{Budget, Error, Image, Result};
+use arabesque_core::{Budget, Image, Result};
 
 use crate::{
-    raster::{drawn::Drawn, filtered::Filtered, size::checked_size},
+    raster::{
+        drawn::Drawn,
+        filtered::{Filtered, refused},
+        size::checked_size,
+    },
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
 
@@ -53,7 +57,7 @@ pub struct RenderJob<'a> {
 /// picture of a seamless tile is exactly one period.
 ///
 /// # Errors
-/// [`Error::Limit`] when it would have more than [`arabesque_core::Limits::pixels`] pixels, [`Error::Input`] when the text cannot be
+/// [`arabesque_core::Error::Limit`] when it would have more than [`arabesque_core::Limits::pixels`] pixels, [`arabesque_core::Error::Input`] when the text cannot be
 /// drawn.
 pub fn write_png(job: &RenderJob<'_>, budget: &Budget) -> Result<Vec<u8>> {
     let drawn = Drawn::read("drawing the result", job.svg, budget)?;
@@ -99,7 +103,7 @@ pub fn write_drawing(
 /// Writes a picture with straight alpha as PNG.
 ///
 /// # Errors
-/// [`Error::Input`] when the encoder refuses it, [`Error::Limit`] when the work or the memory is used up.
+/// [`arabesque_core::Error::Input`] when the encoder refuses it, [`arabesque_core::Error::Limit`] when the work or the memory is used up.
 pub fn write_image(image: &Image, per_metre: f64, recipe: Option<&str>, budget: &Budget) -> Result<Vec<u8>> {
     write_rows([image.width, image.height], per_metre, recipe, budget, |write| {
         image.pixels.chunks(image.width.max(1)).try_for_each(write)
@@ -138,16 +142,6 @@ pub fn write_rows(
     Ok(file)
 }
 
-/// Why the encoder stopped: what the budget said, or something of its own.
-pub(super) fn refused(error: &io::Error) -> Error {
-    match error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
-        Some(Error::Limit { what, found, limit, advice }) => {
-            Error::Limit { what: what.clone(), found: found.clone(), limit: limit.clone(), advice: advice.clone() }
-        }
-        _ => Error::input("writing the picture", error.to_string(), "write it as SVG instead"),
-    }
-}
-
 /// The recipe in a picture that [`write_png`] wrote.
 pub fn recipe_of(bytes: &[u8]) -> Option<String> {
     let mut decoder = png::Decoder::new(io::Cursor::new(bytes));
@@ -166,6 +160,8 @@ pub fn is_png(bytes: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use arabesque_core::Error;
+
     use super::*;
 
     const SQUARE: &str = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"25.4mm\" height=\"12.7mm\" viewBox=\"0 0 \

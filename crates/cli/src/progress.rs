@@ -67,7 +67,11 @@ impl<P> arabesque::Watch<P> for Watch {
     fn foreseen(&mut self, forecast: &Forecast) {
         let seconds = forecast.work * UNIT;
         if self.level > Level::Quiet && seconds > WORTH_TELLING {
-            let text = format!("about {:.0} elements, samples or pieces to place: {} of work for one core", forecast.count, clock(seconds));
+            let text = format!(
+                "about {:.0} elements, samples or pieces to place: {} of work for one core",
+                forecast.count,
+                clock(seconds)
+            );
             self.bar.suspend(|| say::note(&text));
         }
     }

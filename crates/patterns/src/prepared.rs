@@ -36,9 +36,6 @@ const CROWDED: f64 = 0.95;
 /// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
 const MIN_ELEMENTS: usize = 12;
 
-/// Work that a sample of a stroke makes, as a share of that of an element.
-const SAMPLE_SHARE: f64 = 0.05;
-
 /// Work units that an element takes in one iteration, by and large.
 const PER_ELEMENT: f64 = 1e4;
 /// Work units that a sample of a stroke takes in one iteration, by and large.
@@ -206,8 +203,9 @@ where
         };
         let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
         let run = Run { params: &self.params, request, contexts, iterations };
-        request.budget.allow_elements(self.share_of_work(&targets, used));
-        watch.foreseen(&self.forecast(&run));
+        let forecast = Self::forecast(&run);
+        request.budget.allow_elements(forecast.count);
+        watch.foreseen(&forecast);
         let mut trace = Vec::new();
         let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
         if cut_short.is_none() && !found.placements.is_empty() {
@@ -236,18 +234,8 @@ where
         Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
     }
 
-    /// Elements of the result, samples of strokes counted by the work they make.
-    fn share_of_work(&self, targets: &[Numbered<f64>], used: &[usize]) -> f64 {
-        let of_level = |(targets, &k): (&Numbered<f64>, &usize)| -> f64 {
-            let (library, base) = (&self.levels[k].library, self.levels[k].level.base);
-            let is_stroke = |c: usize| library.members(c as u32).first().is_some_and(|&e| e >= base);
-            targets.iter().enumerate().map(|(c, n)| if is_stroke(c) { SAMPLE_SHARE * n } else { *n }).sum()
-        };
-        targets.iter().zip(used).map(of_level).fold(0.0, f64::max)
-    }
-
     /// What a run will take, by what its samples take in each iteration.
-    fn forecast(&self, run: &Run<'_, D>) -> Forecast {
+    fn forecast(run: &Run<'_, D>) -> Forecast {
         let of_level = |context: &LevelContext<'_, D>| -> (f64, f64) {
             let (library, base) = (&context.sampled.library, context.sampled.level.base);
             let is_stroke = |c: usize| library.members(c as u32).first().is_some_and(|&e| e >= base);

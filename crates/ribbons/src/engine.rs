@@ -25,7 +25,7 @@ use crate::{
 /// What errors of a run begin with.
 const LAYING: &str = "laying pieces";
 /// Elements of a drawing that a piece counts as, for the work that each adds: it is looked for all over the exemplar.
-const ELEMENTS: f64 = 5.0;
+const ELEMENTS: f64 = 25.0;
 /// Most work of stitching that is still done when somebody asked to stop; pieces that would take more stay unbent.
 const QUICK: u64 = 200_000_000;
 

@@ -32,8 +32,8 @@ crate::params! {
         iterations "iterations": usize = 10_000, in 1..=1 << 32;
         /// Work of one command, in millions of units; a unit takes one or two nanoseconds on one core.
         work "work": usize = 10_000, in 1..=1 << 40, unit "million units";
-        /// Work that each element of the result adds to it, in millions of units.
-        work_per_element "work-per-element": usize = 10, in 0..=1 << 40, unit "million units";
+        /// Work that each element, or sample of a stroke, of the result adds to it, in millions of units.
+        work_per_element "work-per-element": usize = 4, in 0..=1 << 40, unit "million units";
         /// Memory in use at one time.
         memory "memory": usize = 1_200_000_000, in 1 << 20..=1 << 44, unit "bytes";
     }

@@ -4,9 +4,9 @@
 //! share a vertex, or end at the same place, meet there. `# box x0 y0 z0 x1 y1 z1` gives the frame, else it is the box
 //! around the vertices in use. Written: the same, and the recipe in comment lines at the end.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use arabesque_core::{Bounds, Budget, Class, Contents, Curve, Error, Exemplar, Path, Result, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Class, Contents, Cubic, Curve, Error, Exemplar, Path, Result, Vector, Warning};
 
 use crate::{
     mesh::obj::lexer::{Lexer, logical_lines},
@@ -174,20 +174,21 @@ impl<'a> Reader<'a> {
     fn finish(self) -> Result<Net> {
         let mut points = 0;
         let mut curves = Vec::new();
+        let mut drawn = Drawn::default();
         for (line, polyline) in &self.lines {
             let path = self.path(*line, polyline)?;
             if path.is_empty() {
                 points += 1;
-            } else {
-                curves.push(Curve { path, style: polyline.style, width: 0.0, colour: [0.0; 3] });
             }
+            let curve = |path| Curve { path, style: polyline.style, width: 0.0, colour: [0.0; 3] };
+            curves.extend(drawn.new_parts(path).into_iter().map(curve));
         }
         if curves.is_empty() {
             let advice = "draw the network as lines, such as l 1 2 3";
             return Err(Error::input(self.lexer.name, "no line of any length found", advice));
         }
         let window = self.window(&curves)?;
-        let warnings = self.warnings(points);
+        let warnings = self.warnings(points, drawn.again);
         let styles = self.styles.into_iter().map(|name| Class { name }).collect();
         let exemplar =
             Exemplar::with_curves(self.lexer.name, Contents { curves, styles, ..Contents::default() }, window)?;
@@ -224,8 +225,12 @@ impl<'a> Reader<'a> {
         Ok(path)
     }
 
-    fn warnings(&self, points: usize) -> Vec<Warning> {
+    fn warnings(&self, points: usize, again: usize) -> Vec<Warning> {
         let mut warnings = Vec::new();
+        if again > 0 {
+            let message = format!("{}: {again} segments that are drawn already are left out", self.lexer.name);
+            warnings.push(Warning::new(message, "draw every line once"));
+        }
         if points > 0 {
             let message = format!("{}: {points} lines without length are left out", self.lexer.name);
             warnings.push(Warning::new(message, "remove them, or move their vertices apart"));
@@ -236,6 +241,34 @@ impl<'a> Reader<'a> {
             warnings.push(Warning::new(message, "draw what should be repeated as lines"));
         }
         warnings
+    }
+}
+
+/// Segments by the bits of their ends, either way round.
+#[derive(Debug, Default)]
+struct Drawn {
+    known: BTreeSet<[[u64; 3]; 2]>,
+    /// Segments that were drawn before.
+    again: usize,
+}
+
+impl Drawn {
+    /// The parts of a line that were not drawn before; the whole line where it is new.
+    fn new_parts(&mut self, path: Path<3>) -> Vec<Path<3>> {
+        let ends = |c: &Cubic<3>| {
+            let mut ends = [c[0], c[3]].map(|p| p.0.map(|v| (v + 0.0).to_bits()));
+            ends.sort_unstable();
+            ends
+        };
+        let is_new: Vec<bool> = path.cubics.iter().map(|c| self.known.insert(ends(c))).collect();
+        let again = is_new.iter().filter(|new| !**new).count();
+        if again == 0 {
+            return if path.is_empty() { Vec::new() } else { vec![path] };
+        }
+        self.again += again;
+        let numbered: Vec<usize> = (0..is_new.len()).collect();
+        let runs = numbered.chunk_by(|a, b| is_new[*a] == is_new[*b]).filter(|run| is_new[run[0]]);
+        runs.map(|run| Path { cubics: path.cubics[run[0]..=run[run.len() - 1]].to_vec(), closed: false }).collect()
     }
 }
 
@@ -359,6 +392,19 @@ mod tests {
         assert_eq!(back.curves[0].path.start(), back.curves[1].path.end());
         let length = |path: &Path<3>| Measured::new(path.clone(), 1e-4).length();
         assert!((length(&back.curves[1].path) - length(&curves[0].path)).abs() < 0.02);
+    }
+
+    #[test]
+    fn what_is_drawn_twice_is_drawn_once() {
+        let text = "v 0 0 0\nv 1 1 1\nv 2 0 1\nl 1 2 1 2 1\nl 2 1\nl 1 2 3\nl 3 1 1\n";
+        let net = read(text).unwrap();
+        let lengths: Vec<_> = net.exemplar.curves.iter().map(|c| c.path.cubics.len()).collect();
+        assert_eq!(lengths, [1, 1, 1]);
+        assert!(
+            net.warnings.iter().any(|w| w.message.contains("5 segments that are drawn already")),
+            "{:?}",
+            net.warnings
+        );
     }
 
     #[test]

@@ -39,7 +39,7 @@ impl EdgeBands {
         let bands_per_unit = if height > 0.0 { bands as f64 / height } else { 0.0 };
         // Each edge lies in a band more than it climbs over.
         let entries = (climbs * bands_per_unit) as usize + 2 * count;
-        let held = Arc::new(budget.hold("edges of outlines", 2 * entries * size_of::<Edge>())?);
+        let held = Arc::new(budget.hold("edges of outlines", entries * size_of::<Edge>())?);
         let (low, starts) = (bounds.min[1], vec![0; bands + 1]);
         let mut sorted = Self { low, bands_per_unit, starts, edges: Vec::new(), _held: held };
         let mut members = vec![Vec::new(); bands];

@@ -20,6 +20,7 @@ fn assert_references_lead_somewhere(name: &str, drawing: &Drawing) {
     let text = format!("<svg xmlns='http://www.w3.org/2000/svg'><defs>{}</defs>{body}</svg>", drawing.definitions);
     let document = roxmltree::Document::parse(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
     let ids: Vec<_> = document.descendants().filter_map(|n| n.attribute("id")).collect();
+    assert!((1..ids.len()).all(|k| !ids[..k].contains(&ids[k])), "{name}: an id occurs twice: {text}");
     for value in document.descendants().flat_map(|n| n.attributes().map(|a| a.value())) {
         if let Some(id) = value.strip_prefix("url(#") {
             assert!(ids.contains(&id.trim_end_matches(')')), "{name}: {value}");

@@ -4,15 +4,18 @@
 //! the border of what it draws. So bands are for pictures that could not be drawn otherwise, and which these are depends on the drawing
 //! and the size alone.
 
+use std::sync::{Mutex, PoisonError};
+
 use arabesque_core::{Budget, Error, Held, Result};
 use resvg::{
     tiny_skia::{Pixmap, Transform},
-    usvg::{Options, Tree, roxmltree},
+    usvg::{ImageHrefResolver, Options, Tree, roxmltree},
 };
 
 use crate::raster::{
     demand::{Demand, LAYER},
     expansion::expanded,
+    palette,
 };
 
 /// Bytes of a pixel.
@@ -25,6 +28,8 @@ const BAND: f64 = (64_u32 << 20) as f64;
 const PER_BYTE: usize = 5;
 /// Work for each byte of the text, references resolved.
 const READING: u64 = 30;
+/// Bytes in memory for each pixel of a picture inside the text: as decoded, and as drawn.
+const DECODED: usize = 8;
 /// Work of one pixel that is handed over.
 const HANDING: u64 = 4;
 
@@ -44,14 +49,16 @@ impl<'a> Drawn<'a> {
     /// counts as often.
     pub(crate) fn read(name: &'a str, text: &str, budget: &'a Budget) -> Result<Self> {
         let fail = |problem: String| Error::input(name, problem, "write it as SVG, or open that in a drawing program");
-        let parsing = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
-        let document = roxmltree::Document::parse_with_options(text, parsing)
-            .map_err(|e| fail(format!("SVG data parsing failed cause {e}")))?;
+        let document = parsed(text).map_err(|e| fail(format!("SVG data parsing failed cause {e}")))?;
         let bytes = expanded(&document, budget)?;
         budget.spend(READING.saturating_mul(bytes as u64))?;
         let held =
             budget.hold("elements of the drawing, each as often as it is shown", bytes.saturating_mul(PER_BYTE))?;
-        let tree = Tree::from_xmltree(&document, &options()).map_err(|e| fail(e.to_string()))?;
+        let refused = Mutex::new(None);
+        let tree = Tree::from_xmltree(&document, &options(name, budget, &refused)).map_err(|e| fail(e.to_string()))?;
+        if let Some(error) = refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
         Ok(Self { name, budget, tree, _held: held })
     }
 
@@ -119,11 +126,60 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Nothing is read beside the text itself.
-fn options() -> Options<'static> {
+fn is_before_markup(c: char) -> bool {
+    c.is_whitespace() || c == '\u{feff}'
+}
+
+/// With the entities that a document type declares: they are counted with the rest.
+fn parsed(text: &str) -> std::result::Result<roxmltree::Document<'_>, roxmltree::Error> {
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
+    roxmltree::Document::parse_with_options(text, options)
+}
+
+/// Nothing is read beside the text itself. A picture in it that is over a limit is `refused`; one that is broken shows nothing.
+fn options<'a>(name: &'a str, budget: &'a Budget, refused: &'a Mutex<Option<Error>>) -> Options<'a> {
     let mut options = Options::default();
     options.image_href_resolver.resolve_string = Box::new(|_, _| None);
+    let usual = ImageHrefResolver::default_data_resolver();
+    options.image_href_resolver.resolve_data =
+        Box::new(move |kind, data, options| match check_inner(name, &data, budget) {
+            Ok(()) => usual(kind, data, options),
+            Err(Error::Input { .. }) => None,
+            Err(error) => {
+                refused.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                None
+            }
+        });
     options
+}
+
+/// Looks at a picture or a drawing inside a drawing, before those who decode it do.
+///
+/// # Errors
+/// [`Error::Input`] when it is broken in a way that a decoder does not expect, [`Error::Limit`] when it is too large.
+fn check_inner(name: &str, data: &[u8], budget: &Budget) -> Result<()> {
+    let what = format!("{name}: a picture inside it");
+    let text = std::str::from_utf8(data).ok().filter(|text| text.trim_start_matches(is_before_markup).starts_with('<'));
+    let Some(text) = text else {
+        // A drawing that is compressed, which may become as large as it likes, has no size either.
+        let size = imagesize::blob_size(data).map_err(|e| Error::input(&what, e.to_string(), "leave it out"))?;
+        let pixels = size.width.saturating_mul(size.height);
+        budget.within(&what, pixels, ("pixels", budget.limits().pixels))?;
+        drop(budget.hold(&what, pixels.saturating_mul(DECODED))?);
+        let is_broken = palette::is_broken(data);
+        return if is_broken { Err(Error::input(what, "a broken palette", "leave it out")) } else { Ok(()) };
+    };
+    let document = parsed(text).map_err(|e| Error::input(&what, e.to_string(), "leave it out"))?;
+    // The renderer goes as deep as the groups do.
+    let most = budget.limits().depth;
+    let mut elements = document.descendants().filter(roxmltree::Node::is_element);
+    if elements.any(|node| node.ancestors().take(most + 2).count() > most + 1) {
+        budget.within(&format!("{what}: nested XML elements"), most + 1, ("depth", most))?;
+    }
+    let bytes = expanded(&document, budget)?;
+    budget.spend(READING.saturating_mul(bytes as u64))?;
+    drop(budget.hold(&what, bytes.saturating_mul(PER_BYTE))?);
+    Ok(())
 }
 
 #[cfg(test)]
@@ -133,6 +189,51 @@ mod tests {
     use arabesque_core::Limits;
 
     use super::*;
+
+    #[test]
+    fn pictures_inside_a_drawing_are_looked_at_first() {
+        let message = |kind: &str, data: &[u8]| {
+            let data = base64(data);
+            let text = format!(
+                "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><image width='9' height='9' href='data:{kind};base64,{data}'/></svg>"
+            );
+            let budget = Budget::default();
+            let drawn = Drawn::read("d", &text, &budget).and_then(|drawn| rows(&drawn, [9.0, 9.0]));
+            drawn.map_or_else(|e| e.to_string(), |_| "fine".into())
+        };
+        let mut palette = Vec::new();
+        let mut encoder = png::Encoder::new(&mut palette, 2, 1);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_palette(vec![7; 14]);
+        encoder.write_header().unwrap().write_image_data(&[0, 0]).unwrap();
+        assert_eq!(message("image/png", &palette), "fine");
+        let gif = b"GIF89a\xff\xff\xff\xff\0\0\0,\0\0\0\0\xff\xff\xff\xff\0\x02\x02\x44\x01\0;";
+        assert!(message("image/gif", gif).contains("--limit pixels"));
+        let mut bomb = String::from(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><g id='a0'><path d='M0 0h9v9z'/></g>",
+        );
+        for k in 1..12 {
+            let _ = write!(bomb, "<g id='a{k}'>{}</g>", format!("<use href='#a{}'/>", k - 1).repeat(10));
+        }
+        bomb += "</svg>";
+        for kind in ["image/svg+xml", "text/plain"] {
+            assert!(message(kind, bomb.as_bytes()).contains("limit"), "{kind}");
+        }
+        let deep = format!("<svg xmlns='http://www.w3.org/2000/svg'>{}{}</svg>", "<g>".repeat(900), "</g>".repeat(900));
+        assert!(message("image/svg+xml", deep.as_bytes()).contains("--limit depth"));
+        assert_eq!(message("image/svg+xml", b"<svg xmlns='http://www.w3.org/2000/svg'/>"), "fine");
+        assert_eq!(message("image/svg+xml", &[0x1f, 0x8b, 8, 0, 0]), "fine");
+    }
+
+    fn base64(data: &[u8]) -> String {
+        const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        data.chunks(3)
+            .flat_map(|bytes| {
+                let whole = bytes.iter().chain([&0, &0]).take(3).fold(0_usize, |all, b| all << 8 | usize::from(*b));
+                (0..4).map(move |k| if k > bytes.len() { '=' } else { char::from(LETTERS[whole >> (18 - 6 * k) & 63]) })
+            })
+            .collect()
+    }
 
     /// Layers, clips, gradients and strokes over a page of 60 x 40.
     fn drawing() -> String {

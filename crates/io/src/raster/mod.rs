@@ -7,6 +7,7 @@ pub mod field;
 mod filtered;
 pub mod image;
 pub mod mask;
+mod palette;
 pub mod png;
 pub mod rows;
 pub mod size;

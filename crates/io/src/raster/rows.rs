@@ -5,7 +5,7 @@ use std::io::Cursor;
 use arabesque_core::{Budget, Error, Held, Result};
 use png::{BitDepth, ColorType, DecodingError, InterlaceInfo, Transformations};
 
-use crate::raster::png::is_png;
+use crate::raster::{palette, png::is_png};
 
 /// Work of decoding one byte of a row and of looking at it.
 const BYTE: u64 = 4;
@@ -66,6 +66,10 @@ impl<'a> Rows<'a> {
         decoder.set_ignore_text_chunk(true);
         decoder.set_ignore_iccp_chunk(true);
         let reader = decoder.read_info().map_err(|e| broken(name, &e))?;
+        if !palette::is_sound(reader.info()) {
+            let problem = "broken PNG: its palette is not a list of colours of three bytes each";
+            return Err(Error::input(name, problem, "save the picture again"));
+        }
         let (kind, depth) = reader.output_color_type();
         Ok(Self { name, budget, reader, width, height, kind, depth, _held: held })
     }
@@ -149,6 +153,21 @@ mod tests {
     use arabesque_core::Limits;
 
     use super::*;
+
+    #[test]
+    fn a_palette_of_parts_of_colours_is_refused() {
+        for (colours, sound) in [(3, true), (14, false), (767, false), (768, true)] {
+            let mut bytes = Vec::new();
+            let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+            encoder.set_color(ColorType::Indexed);
+            encoder.set_palette(vec![7; colours]);
+            encoder.write_header().unwrap().write_image_data(&[0, 0]).unwrap();
+            let budget = Budget::default();
+            let message = Rows::open("t.png", &bytes, &budget).err().map(|e| e.to_string());
+            assert_eq!(message.is_none(), sound, "{colours}: {message:?}");
+            assert_eq!(palette::is_broken(&bytes), !sound);
+        }
+    }
 
     /// A gray picture of `width` x `height` pixels.
     fn gray(width: u32, height: u32) -> Vec<u8> {

@@ -277,8 +277,8 @@ impl<'a, 's> Definitions<'a, 's> {
         }
         let Some(attributes) = self.attributes(node, inherited.viewport) else { return };
         let _ = write!(out, "<{tag}");
-        let name = name.map(str::to_owned).or_else(|| self.names.get(node.attribute("id")?).cloned());
-        name.into_iter().for_each(|name| push_attribute(out, "id", &name));
+        // What is inside keeps no id: where it is referred to, it is copied once more by itself.
+        name.into_iter().for_each(|name| push_attribute(out, "id", name));
         out.push_str(&attributes);
         self.properties(out, &own, inherited.viewport);
         let shape = geometry::is_shape(tag) && tag != "image";

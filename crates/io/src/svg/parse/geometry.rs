@@ -56,6 +56,9 @@ pub(crate) const LARGEST: f64 = 1e15;
 /// Bytes that a segment of a path takes.
 const SEGMENT_BYTES: usize = 56;
 
+/// Segments of one path after which the limit is looked at, while it is read.
+const FORESEEN: usize = 1024;
+
 /// Whether an element of this name is a shape that [`read`] knows.
 pub(crate) fn is_shape(name: &str) -> bool {
     matches!(name, "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" | "image")
@@ -135,6 +138,10 @@ impl Reader<'_, '_> {
                     return Ok(Geometry::new(path.clone(), format!("path d=\"{}\"", path_data(&path))));
                 }
                 Err(e) => return Err(self.wrong(format!("the path data cannot be read: {e}"))),
+            }
+            // A large arc is hundreds of segments in a few characters.
+            if path.elements().len().is_multiple_of(FORESEEN) {
+                self.source.foresee_segments(path.elements().len())?;
             }
         }
         if path.elements().len() < 2 {

@@ -202,9 +202,11 @@ const NO_ARCS: usize = 500;
 const FLAT: f64 = 1e12;
 /// Radius up to which that is rounding: of an arc that was to end where it starts.
 const ROUNDING: f64 = 1e6;
+/// Distance of the ends of an arc from which on its square is a number other than zero, whatever the radius.
+const CHORD: f64 = 1e-100;
 
 /// Path data as the parser may have it, which takes every segment that draws nothing one level deeper: closes in a row are one.
-/// The error is what is wrong with it: an arc with a radius beyond `largest`, or that is no arc.
+/// The error is what is wrong with it: an arc with a radius or an end beyond `largest`, or that is no arc.
 pub(crate) fn path_data(data: &str, largest: f64) -> std::result::Result<Cow<'_, str>, String> {
     let data = if most_closes(data) > CLOSES { Cow::Owned(closed_once(data)) } else { Cow::Borrowed(data) };
     if data.contains(['a', 'A']) {
@@ -243,7 +245,8 @@ fn closed_once(data: &str) -> String {
     out
 }
 
-/// Refuses arcs with a radius that is no sensible number, and those that are no arcs to a computer.
+/// Refuses arcs with a radius or an end that is no sensible number, and those that are no arcs to a computer: they are taken apart, into
+/// the more pieces the larger they are, before anybody sees their coordinates.
 fn check_arcs(data: &str, largest: f64) -> std::result::Result<(), String> {
     let (mut at, mut start, mut run) = ([0.0; 2], [0.0; 2], 0);
     // What cannot be read is told by whoever reads it in earnest.
@@ -261,9 +264,12 @@ fn check_arcs(data: &str, largest: f64) -> std::result::Result<(), String> {
         if !(0.0..=largest).contains(&radius) {
             return Err(format!("an arc has a radius of {radius:e}, expected at most {largest:e}"));
         }
+        if let Some(v) = [from, to].as_flattened().iter().find(|v| !(v.abs() <= largest)) {
+            return Err(format!("an arc ends at {v:e}, expected a number between -{largest:e} and {largest:e}"));
+        }
         let chord = (to[0] - from[0]).hypot(to[1] - from[1]);
         let is_flat = radius > FLAT * chord;
-        if is_flat && chord > 0.0 && radius > ROUNDING {
+        if is_flat && chord > 0.0 && (radius > ROUNDING || chord < CHORD) {
             return Err(format!(
                 "an arc has a radius of {radius:e} for ends {chord:e} apart, expected a line or an arc"
             ));
@@ -329,6 +335,10 @@ mod tests {
         let problem = |text: &str| path_data(text, 1e15).unwrap_err();
         assert!(problem("M0 0A1e155 5 0 0 1 3 3").contains("1e155"));
         assert!(problem("M0 0A1e14 1e14 0 0 1 1e-9 0").contains("1e14"));
+        assert!(problem("M0 0A5 5 0 0 1 1e30 3").contains("an arc ends at 1e30"));
+        assert!(problem("M0-1e200a5 5 0 0 1 3 3").contains("an arc ends at -1e200"));
+        assert!(problem("M0 0L1e308 0l1e308 0a5 5 0 0 1 3 3").contains("an arc ends at inf"));
+        assert!(problem("M0 0a.1.1 30 0 1 1e-300 0").contains("1e-300 apart"));
         assert!(problem(&format!("M0 0L1 1{}", "A5 5 0 0 1 1 1.0000000000001e0".repeat(3000))).contains("3000 arcs"));
         assert!(path_data(&format!("M0 0{}", "a5 5 0 0 1 1 1".repeat(3000)), 1e15).is_ok());
     }

@@ -192,12 +192,18 @@ impl<'a> Source<'a> {
 
     /// Counts `more` path segments against the limit.
     pub(crate) fn count_segments(&self, more: usize) -> Result<()> {
+        self.foresee_segments(more)?;
+        self.segments.set(self.segments.get() + more);
+        self.budget.spend(SEGMENT * more as u64)
+    }
+
+    /// Whether `more` path segments would still be within the limit.
+    pub(crate) fn foresee_segments(&self, more: usize) -> Result<()> {
         let total = self.segments.get().saturating_add(more);
-        self.segments.set(total);
         if total > self.limits.segments {
             return Err(guard::too_much(format!("{}: path segments", self.name), total, self.limits.segments as u64));
         }
-        self.budget.spend(SEGMENT * more as u64)
+        self.budget.foresee(SEGMENT * more as u64)
     }
 
     /// Counts one node of the drawing, `<use>` resolved, against the limit.

@@ -395,7 +395,7 @@ mod tests {
 
     #[test]
     fn quotes_reach_over_lines_and_errors_still_name_the_line() {
-        let e = plane("x,y,class\n0,0,\"a\n# b \"\"c\"\"\"\n1,0, \"d,e\"\n");
+        let e = plane("x,y,class\n0,0,\"a\n# b \"\"c\"\"\"\n1,1, \"d,e\"\n");
         assert_eq!(e.classes.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(), ["a\n# b \"c\"", "d,e"]);
         let message = read("x,y,class\n0,0,\"a\nb\"\n1,no,c\n").unwrap_err().to_string();
         assert!(message.contains("line 4, column y"), "{message}");

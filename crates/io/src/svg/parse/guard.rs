@@ -264,7 +264,7 @@ fn check_arcs(data: &str, largest: f64) -> std::result::Result<(), String> {
         if !(0.0..=largest).contains(&radius) {
             return Err(format!("an arc has a radius of {radius:e}, expected at most {largest:e}"));
         }
-        if let Some(v) = [from, to].as_flattened().iter().find(|v| !(v.abs() <= largest)) {
+        if let Some(v) = [from, to].as_flattened().iter().find(|v| !(-largest..=largest).contains(*v)) {
             return Err(format!("an arc ends at {v:e}, expected a number between -{largest:e} and {largest:e}"));
         }
         let chord = (to[0] - from[0]).hypot(to[1] - from[1]);

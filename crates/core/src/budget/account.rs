@@ -47,9 +47,6 @@ struct Account {
     /// Work that may be done, in units.
     allowed: AtomicU64,
     memory: AtomicU64,
-    /// For tests: the check that asks to stop, and how many there were.
-    stop_at: Option<u64>,
-    checks: AtomicU64,
 }
 
 impl Default for Budget {
@@ -68,16 +65,6 @@ impl Budget {
     /// stopped is drawn on a fresh account.
     pub fn with_stopper(limits: Limits, stopper: Stopper) -> Self {
         let heard = stopper.asked();
-        Self::open(limits, stopper, heard, None)
-    }
-
-    /// An account that asks to stop by itself at the `n`-th check, counted from 1: for tests of what stopping leaves behind. Checks of
-    /// one parallel step may come in any order; which step the `n`-th one falls into does not depend on it.
-    pub fn stopping_at(limits: Limits, n: u64) -> Self {
-        Self::open(limits, Stopper::default(), 0, Some(n))
-    }
-
-    fn open(limits: Limits, stopper: Stopper, heard: u32, stop_at: Option<u64>) -> Self {
         let account = Account {
             limits,
             stopper,
@@ -85,10 +72,14 @@ impl Budget {
             work: AtomicU64::new(0),
             allowed: AtomicU64::new((limits.work as u64).saturating_mul(MILLION)),
             memory: AtomicU64::new(0),
-            stop_at,
-            checks: AtomicU64::new(0),
         };
         Self { account: Arc::new(account), stage: "" }
+    }
+
+    /// An account that asks to stop by itself at the `n`-th check, counted from 1: for tests of what stopping leaves behind. Checks of
+    /// one parallel step may come in any order; which step the `n`-th one falls into does not depend on it.
+    pub fn stopping_at(limits: Limits, n: u64) -> Self {
+        Self::with_stopper(limits, Stopper::at_check(n))
     }
 
     /// A fresh account with the same limits, for another part of the same command that has its own share, or for what is still to be
@@ -121,7 +112,7 @@ impl Budget {
 
     /// Checks made so far; counted on accounts of [`Budget::stopping_at`] alone.
     pub fn checks(&self) -> u64 {
-        self.account.checks.load(Ordering::Relaxed)
+        self.account.stopper.checks()
     }
 
     /// Allows the work that `elements` more elements of the result may take.
@@ -140,8 +131,8 @@ impl Budget {
     /// [`Error::Stopped`] when somebody did.
     pub fn check(&self) -> Result<()> {
         let account = &*self.account;
-        let hook = account.stop_at.is_some_and(|n| account.checks.fetch_add(1, Ordering::Relaxed) + 1 >= n);
-        if hook || account.stopper.hint() > account.heard {
+        account.stopper.count_check();
+        if account.stopper.hint() > account.heard {
             return Err(Error::Stopped { stage: self.stage_name().to_owned(), cause: account.stopper.cause() });
         }
         Ok(())

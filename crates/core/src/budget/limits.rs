@@ -16,7 +16,7 @@ crate::params! {
         pixels "pixels": usize = 100_000_000, in 1..=1 << 40;
         /// Elements of one exemplar.
         elements "elements": usize = 100_000, in 1..=1 << 32;
-        /// Elements of one result.
+        /// Elements that one result is expected to have.
         output_elements "output-elements": usize = 2_000_000, in 1..=1 << 32;
         /// Largest absolute coordinate, in user units.
         coordinate "coordinate": f64 = 1e9, in 1.0..=1e12, unit "user units";

@@ -2,7 +2,7 @@
 
 use std::sync::{
     Arc,
-    atomic::{AtomicU32, Ordering},
+    atomic::{AtomicU32, AtomicU64, Ordering},
 };
 
 /// Why somebody asks to stop.
@@ -24,9 +24,31 @@ struct Asked {
     any: AtomicU32,
     /// How often because the time was up.
     time: AtomicU32,
+    /// For tests: the check at which to ask, and how many there were.
+    hook: Option<(u64, AtomicU64)>,
 }
 
 impl Stopper {
+    /// Asks by itself at the `n`-th check, counted from 1 over all accounts: for tests of what stopping leaves behind. Checks of one
+    /// parallel step may come in any order; which step the `n`-th one falls into does not depend on it.
+    pub fn at_check(n: u64) -> Self {
+        Self(Arc::new(Asked { hook: Some((n, AtomicU64::new(0))), ..Asked::default() }))
+    }
+
+    /// Checks made so far; counted by [`Stopper::at_check`] alone.
+    pub fn checks(&self) -> u64 {
+        self.0.hook.as_ref().map_or(0, |(_, checks)| checks.load(Ordering::Relaxed))
+    }
+
+    /// Counts a check where checks are counted.
+    pub(super) fn count_check(&self) {
+        if let Some((n, checks)) = &self.0.hook
+            && checks.fetch_add(1, Ordering::Relaxed) + 1 == *n
+        {
+            self.stop(Cause::Asked);
+        }
+    }
+
     /// Asks to stop: with what there is so far, where there is something. It may be called from any thread, and again, which then also
     /// stops what is still done with the best so far.
     pub fn stop(&self, cause: Cause) {

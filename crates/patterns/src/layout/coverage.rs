@@ -18,9 +18,11 @@ const MOST_CELLS: (usize, usize) = (8192, 8192 * 8192);
 
 /// Nanoseconds to find out whether a cell may be used, and to look at one that is known.
 const CELL: (u64, u64) = (20, 2);
+/// Nanoseconds to find out whether a cell lies in a shape.
+const CELL_OF_SHAPE: u64 = 250;
 
 /// Cells that are made between two checks of the budget.
-const BLOCK: usize = 1 << 15;
+const BLOCK: usize = 1 << 12;
 
 /// A raster over the output.
 #[derive(Debug)]
@@ -44,10 +46,11 @@ impl<const D: usize> Coverage<D> {
         let is_inside = |c| domain.signed_distance(lattice.centre(c)) >= -margin - 0.5 * lattice.cell()[0];
         let state = |c| if is_inside(c) { Cell::Open } else { Cell::Outside };
         let count = lattice.count();
+        let price = if matches!(domain, Domain::Region(_)) { CELL_OF_SHAPE } else { CELL.0 };
         let (mut states, held) = budget.list("cells of the output", count)?;
         for first in (0..count).step_by(BLOCK) {
             let block = first..count.min(first + BLOCK);
-            budget.spend(CELL.0 * block.len() as u64)?;
+            budget.spend(price * block.len() as u64)?;
             states.extend(block.map(state));
         }
         Ok(Self { state: states, lattice, _held: held })

@@ -1,6 +1,6 @@
 //! `--limit`: what is read and made may be larger than usual.
 
-use arabesque::{Limits, core::options::help_list};
+use arabesque::{Error, Limits, core::options::help_list};
 use clap::Args;
 
 use crate::{failure::Failure, pair::pair};
@@ -22,7 +22,18 @@ impl LimitOptions {
     /// The usual limits with those that were set.
     pub(crate) fn limits(&self) -> Result<Limits, Failure> {
         let mut limits = Limits::default();
-        self.limit.iter().try_for_each(|(name, value)| limits.set(name, value))?;
+        let named = |error, name: &str| match error {
+            // The registry speaks of --set where it does not know the name.
+            Error::Parameter { name: known, value, expected } if known == "set" => {
+                Error::Parameter { name: "limit".into(), value, expected }
+            }
+            Error::Parameter { value, expected, .. } => {
+                Error::Parameter { name: format!("limit {name}"), value, expected }
+            }
+            other => other,
+        };
+        let set = |(name, value): &(String, String)| limits.set(name, value).map_err(|error| named(error, name));
+        self.limit.iter().try_for_each(set)?;
         Ok(limits)
     }
 }

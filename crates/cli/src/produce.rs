@@ -208,6 +208,7 @@ impl Run<'_> {
         let (artwork, bytes, warnings) = ran.map_err(stopped)?;
         sentinel::enter(Phase::Writing);
         let copy = plan.target.write(&bytes).map_err(Failure::writing)?;
+        sentinel::written();
         let made = self.describe(&artwork, plan, warnings, watch.elapsed());
         tell(&made, artwork.energy(), self.level);
         if let Some(copy) = copy.filter(|_| self.level > Level::Quiet) {

@@ -73,6 +73,10 @@ impl<P> arabesque::Watch<P> for Watch {
                 clock(seconds)
             );
             self.bar.suspend(|| say::note(&text));
+            if forecast.work > forecast.allowed {
+                let (needed, name) = ((forecast.work / 1e6).ceil(), "--limit work");
+                self.bar.suspend(|| say::note(&format!("the limit of work will not do: give it {name}={needed}")));
+            }
         }
     }
 

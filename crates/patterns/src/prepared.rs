@@ -205,7 +205,7 @@ where
         let run = Run { params: &self.params, request, contexts, iterations };
         let forecast = Self::forecast(&run);
         request.budget.allow_elements(forecast.count);
-        watch.foreseen(&forecast);
+        watch.foreseen(&Forecast { allowed: request.budget.allowed() as f64, ..forecast });
         let mut trace = Vec::new();
         let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
         if cut_short.is_none() && !found.placements.is_empty() {
@@ -248,6 +248,7 @@ where
         Forecast {
             count: levels.iter().map(|(count, _)| *count).fold(0.0, f64::max),
             work: work * run.iterations as f64,
+            allowed: 0.0,
         }
     }
 

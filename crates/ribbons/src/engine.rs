@@ -95,6 +95,9 @@ impl<const D: usize> RibbonOutcome<D> {
     /// What was laid so far is all there will be.
     fn end(&mut self, ended: Ended) {
         self.stopped = StopReason::Stopped;
+        if matches!(ended, Ended::Budget(Error::Limit { .. })) {
+            self.stopped = StopReason::Limit;
+        }
         if let Ended::Budget(Error::Limit { what, found, limit, advice }) = ended {
             let message = format!("{what}: {found} is over the limit of {limit}; this is what was laid until then");
             self.warnings.push(Warning::new(message, advice));
@@ -220,7 +223,7 @@ impl Prepared {
                 if done + rows == TYPICAL {
                     // By now a row has cost what rows cost.
                     let work = budget.work() as f64 * (total - TYPICAL) as f64 / TYPICAL as f64;
-                    watch.foreseen(&Forecast { count: total as f64, work });
+                    watch.foreseen(&Forecast { count: total as f64, work, allowed: budget.allowed() as f64 });
                 }
                 let progress = progress(done + rows, total, energy);
                 let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };

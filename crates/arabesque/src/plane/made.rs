@@ -5,15 +5,15 @@ use std::sync::Arc;
 use arabesque_core::{Budget, Drawn, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
 use arabesque_io::{
     json,
-    raster::png::{RenderJob, Resolution, write_png},
+    raster::png::{RenderJob, write_png},
     svg::{Sheet as SvgSheet, Style, Written, simplified, write_svg},
     table::csv,
 };
 
 use crate::{
     artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
-    plane::{exemplar::PlaneExemplar, place::Units, request::PlaneRequest},
-    recipe::{Format, OutputOptions},
+    plane::{exemplar::PlaneExemplar, picture::resolution, place::Units, request::PlaneRequest},
+    recipe::Format,
     spacing::spacing,
 };
 
@@ -164,20 +164,4 @@ impl Made for PlaneMade {
 /// The geometry of an outcome.
 pub(crate) fn snapshot<const D: usize>(outcome: &Outcome<D>) -> Snapshot<D> {
     Snapshot { placements: outcome.placements.clone(), curves: outcome.curves.clone(), patches: Vec::new() }
-}
-
-fn resolution(output: &OutputOptions) -> Result<Resolution> {
-    let (name, value, resolution) = match (output.dpi, output.pixels_per_unit) {
-        (None, None) => return Ok(Resolution::default()),
-        (Some(_), Some(_)) => {
-            return Err(Error::parameter("dpi", "given with pixels-per-unit", "only one of the two"));
-        }
-        (Some(dpi), None) => ("dpi", dpi, Resolution::PerInch(dpi)),
-        (None, Some(n)) => ("pixels-per-unit", n, Resolution::PerUnit(n)),
-    };
-    if value.is_finite() && value > 0.0 {
-        Ok(resolution)
-    } else {
-        Err(Error::parameter(name, value, "a positive number"))
-    }
 }

@@ -3,6 +3,7 @@
 mod exemplar;
 mod fields;
 mod made;
+mod picture;
 mod place;
 mod redo;
 mod request;

@@ -8,6 +8,7 @@ use crate::{
     plane::{
         exemplar::PlaneExemplar,
         fields::FieldSources,
+        picture::check_picture,
         place::{Place, check_room},
         redo::check_border,
         surroundings,
@@ -42,6 +43,7 @@ impl PlaneExemplar {
             (None, _) => return Err(Error::parameter("request", job.name(), "a request to fill")),
         };
         check_room(self.exemplar(), &place.domain, files.budget()).map_err(|error| self.in_region(error, context))?;
+        check_picture(context.output(), &place.page, files.budget())?;
         let surroundings = Surroundings::of(job)?;
         if self.region.is_some() {
             check_border(surroundings.border)?;

@@ -30,6 +30,8 @@ static BEGAN: OnceLock<Instant> = OnceLock::new();
 static SIGNAL: AtomicU8 = AtomicU8::new(0);
 /// Whether the time is up.
 static TIME: AtomicBool = AtomicBool::new(false);
+/// Whether a file was written.
+static WRITTEN: AtomicBool = AtomicBool::new(false);
 static PHASE: AtomicU8 = AtomicU8::new(Phase::Reading as u8);
 
 /// What the program is doing, as far as stopping is concerned.
@@ -58,12 +60,22 @@ impl Phase {
 
     fn in_words(self) -> &'static str {
         match self {
-            Self::Reading => "the exemplar and what goes with it were read and analysed",
+            Self::Reading => "files were read and analysed and the run was prepared",
             Self::Running => "the pattern was made",
             Self::Encoding => "the result was encoded",
             Self::Writing => "the result was written",
         }
     }
+}
+
+/// Says that a file was written.
+pub(crate) fn written() {
+    WRITTEN.store(true, Ordering::SeqCst);
+}
+
+/// What was written by the end, in words.
+fn written_in_words() -> &'static str {
+    if WRITTEN.load(Ordering::SeqCst) { "nothing more was written" } else { "nothing was written" }
 }
 
 /// What the sentinel minds.
@@ -138,19 +150,19 @@ impl Sentinel {
             self.on_time();
         }
         if (self.orders.piped || self.orders.json) && is_reader_gone() {
-            self.leave(FAILURE, "standard output: whoever reads it went away; nothing more was written");
+            self.leave(FAILURE, &format!("standard output: whoever reads it went away; {}", written_in_words()));
         }
     }
 
     fn on_signal(&self, code: u8) {
         if let Some(first) = signal() {
-            self.leave(first, "stopped at once, as asked a second time; nothing more was written");
+            self.leave(first, &format!("stopped at once, as asked a second time; {}", written_in_words()));
         }
         SIGNAL.store(code, Ordering::SeqCst);
         self.stopper.stop(Cause::Asked);
         match Phase::now() {
             phase @ (Phase::Reading | Phase::Encoding) => {
-                self.leave(code, &format!("stopped while {}; nothing more was written", phase.in_words()));
+                self.leave(code, &format!("stopped while {}; {}", phase.in_words(), written_in_words()));
             }
             Phase::Running if !self.orders.quiet => say::note("stopping with the best so far; once more ends at once"),
             Phase::Running | Phase::Writing => {}
@@ -160,7 +172,7 @@ impl Sentinel {
     fn on_time(&self) {
         if Phase::now() == Phase::Reading {
             let what = Phase::Reading.in_words();
-            self.leave(NO_RESULT, &format!("the time was up while {what}; nothing was written; give it more time"));
+            self.leave(NO_RESULT, &format!("the time was up while {what}; {}; give it more time", written_in_words()));
         }
         self.stopper.stop(Cause::Time);
     }

@@ -115,6 +115,11 @@ impl Budget {
         self.account.stopper.checks()
     }
 
+    /// Work that may be done, in units.
+    pub fn allowed(&self) -> u64 {
+        self.account.allowed.load(Ordering::Relaxed)
+    }
+
     /// Allows the work that `elements` more elements of the result may take.
     pub fn allow_elements(&self, elements: f64) {
         let each = (self.account.limits.work_per_element as u64).saturating_mul(MILLION) as f64;
@@ -225,12 +230,13 @@ impl Budget {
     fn overworked(&self) -> Error {
         // How much more there was depends on the threads: it is not told.
         let limit = self.account.allowed.load(Ordering::Relaxed) / MILLION;
-        let work = self.account.limits.work;
+        // Twice as much in all, of which the elements bring their share.
+        let work = (self.account.limits.work as u64).saturating_add(limit);
         Error::Limit {
             what: self.stage_name().to_owned(),
             found: format!("more than {limit} million units of work"),
             limit: limit.to_string(),
-            advice: format!("give it less to do, or raise the limit with --limit work={}", work.saturating_mul(2)),
+            advice: format!("give it less to do, or raise the limit with --limit work={work}"),
         }
     }
 

@@ -39,6 +39,8 @@ pub struct Forecast {
     pub count: f64,
     /// Work, in units of about a nanosecond; see [`crate::Budget`].
     pub work: f64,
+    /// Work that the limits allow, in the same units.
+    pub allowed: f64,
 }
 
 /// The geometry of a run at one moment, as it would be drawn.

@@ -17,7 +17,7 @@ pub fn checked_size(what: &str, [width, height]: [f64; 2], budget: &Budget, advi
         what: what.to_owned(),
         found: format!("{width} x {height} pixels"),
         limit: format!("{} pixels, {MAX_SIDE} per side", budget.limits().pixels),
-        advice: advice.to_owned(),
+        advice: format!("{advice}, or raise the limit with --limit pixels"),
     })
 }
 

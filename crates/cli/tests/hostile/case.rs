@@ -12,6 +12,8 @@ use tempfile::TempDir;
 
 /// Memory that no run may use, in bytes.
 const MEMORY: u64 = 1_300_000_000;
+/// Less work than usual, so that what is ended by its limit is ended soon.
+const WORK: [&str; 4] = ["--limit", "work=1500", "--limit", "work-per-element=1"];
 /// Longest line that a message may have, in bytes.
 const LINE: usize = 700;
 
@@ -61,6 +63,7 @@ impl Case {
         let output = Command::new(env!("CARGO_BIN_EXE_arabesque"))
             .args(self.line.split_whitespace())
             .arg("--json")
+            .args(WORK)
             .current_dir(folder.path())
             .stdin(Stdio::null())
             .output()

@@ -82,7 +82,7 @@ fn broken() -> Vec<Case> {
             "[exemplar]\npath='in.svg'\nhash='00000000000000000000000000000000'\n[fill]\nsize='90x90'\n",
             BROKEN,
         ),
-        run("an output elsewhere", format!("{good}[output]\npath='/tmp/elsewhere.svg'\n"), ANY),
+        run("an output elsewhere", format!("{good}[output]\npath='/elsewhere/a.svg'\n"), ANY),
     ];
     for share in [5, 30, 60, 95] {
         cases.push(run(format!("{share} per cent of a recipe"), &good.as_bytes()[..good.len() * share / 100], BROKEN));

@@ -6,6 +6,8 @@ const MANY: usize = 50_000;
 
 pub(crate) fn cases() -> Vec<Case> {
     let mut cases = deep();
+    cases.extend(repeated());
+    cases.extend(clips());
     cases.extend(cycles());
     cases.extend(bombs());
     cases.extend(other_files());
@@ -15,7 +17,7 @@ pub(crate) fn cases() -> Vec<Case> {
 fn deep() -> Vec<Case> {
     let nested =
         |open: &str, close: &str, inner: &str| page(&format!("{}{inner}{}", open.repeat(MANY), close.repeat(MANY)));
-    let mut cases = vec![
+    vec![
         Case::fill("nested groups", nested("<g>", "</g>", &dots()), REFUSED),
         Case::fill("nested drawings", nested("<svg>", "</svg>", &dots()), REFUSED),
         Case::fill("nested links", nested("<a>", "</a>", &dots()), REFUSED),
@@ -40,76 +42,54 @@ fn deep() -> Vec<Case> {
             dots_and(&format!("<circle r='3' transform='{}'/>", "(".repeat(MANY))),
             EITHER,
         ),
-    ];
+    ]
+}
+
+/// Dots, and something long.
+fn long(name: String, more: &str) -> Case {
+    Case::fill(name, dots_and(more), EITHER)
+}
+
+fn repeated() -> Vec<Case> {
+    let mut cases = Vec::new();
     for n in [7_000, MANY] {
-        cases.push(Case::fill(
-            format!("a path that closes {n} times"),
-            dots_and(&format!("<path d='M5 5h3v3{}'/>", "z".repeat(n))),
-            EITHER,
-        ));
-        cases.push(Case::fill(
+        cases.push(long(format!("a path that closes {n} times"), &format!("<path d='M5 5h3v3{}'/>", "z".repeat(n))));
+        cases.push(long(
             format!("a path that closes {n} times after a line"),
-            dots_and(&format!("<path d='M5 5{}'/>", "h3v3z".repeat(n))),
-            EITHER,
+            &format!("<path d='M5 5{}'/>", "h3v3z".repeat(n)),
         ));
-        cases.push(Case::fill(
-            format!("a path that moves {n} times"),
-            dots_and(&format!("<path d='M5 5{}'/>", "m1 1".repeat(n))),
-            EITHER,
-        ));
-        cases.push(Case::fill(
+        cases.push(long(format!("a path that moves {n} times"), &format!("<path d='M5 5{}'/>", "m1 1".repeat(n))));
+        cases.push(long(
             format!("a stroke that closes {n} times"),
-            dots_and(&format!("<path fill='none' stroke='red' d='M5 5h3v3{}'/>", "z".repeat(n))),
-            EITHER,
+            &format!("<path fill='none' stroke='red' d='M5 5h3v3{}'/>", "z".repeat(n)),
         ));
-        cases.push(Case::fill(
-            format!("{n} ids"),
-            dots_and(&(0..n).map(|k| format!("<g id='i{k}'/>")).collect::<String>()),
-            EITHER,
-        ));
-        cases.push(Case::fill(
+        cases.push(long(format!("{n} ids"), &(0..n).map(|k| format!("<g id='i{k}'/>")).collect::<String>()));
+        cases.push(long(
             format!("{n} style rules"),
-            dots_and(&format!("<style>{}</style>", (0..n).map(|k| format!(".c{k}{{fill:red}}")).collect::<String>())),
-            EITHER,
+            &format!("<style>{}</style>", (0..n).map(|k| format!(".c{k}{{fill:red}}")).collect::<String>()),
         ));
-        cases.push(Case::fill(
+        cases.push(long(
             format!("{n} attributes of style"),
-            dots_and(&format!("<circle r='3' style='{}'/>", "fill:red;".repeat(n))),
-            EITHER,
+            &format!("<circle r='3' style='{}'/>", "fill:red;".repeat(n)),
         ));
-        cases.push(Case::fill(
-            format!("a selector of {n} parts"),
-            dots_and(&format!("<style>{}{{fill:red}}</style>", "g ".repeat(n))),
-            EITHER,
-        ));
-        cases.push(Case::fill(
-            format!("{n} classes"),
-            dots_and(&format!("<circle r='3' class='{}'/>", "a ".repeat(n))),
-            EITHER,
-        ));
+        cases.push(long(format!("a selector of {n} parts"), &format!("<style>{}{{fill:red}}</style>", "g ".repeat(n))));
+        cases.push(long(format!("{n} classes"), &format!("<circle r='3' class='{}'/>", "a ".repeat(n))));
         let chain: String = (0..n).map(|k| format!("<linearGradient id='g{k}' href='#g{}'/>", k + 1)).collect();
-        cases.push(Case::fill(
-            format!("a chain of {n} gradients"),
-            dots_and(&format!("{chain}<circle r='4' fill='url(#g0)'/>")),
-            EITHER,
-        ));
+        cases.push(long(format!("a chain of {n} gradients"), &format!("{chain}<circle r='4' fill='url(#g0)'/>")));
         let chain: String = (0..n)
             .map(|k| {
                 format!("<clipPath id='c{k}' clip-path='url(#c{})'><rect width='99' height='99'/></clipPath>", k + 1)
             })
             .collect();
-        cases.push(Case::fill(
-            format!("a chain of {n} clips"),
-            dots_and(&format!("{chain}<circle r='4' clip-path='url(#c0)'/>")),
-            EITHER,
-        ));
+        cases.push(long(format!("a chain of {n} clips"), &format!("{chain}<circle r='4' clip-path='url(#c0)'/>")));
         let chain: String = (0..n).map(|k| format!("<g id='u{k}'><use href='#u{}'/></g>", k + 1)).collect();
-        cases.push(Case::fill(
-            format!("a chain of {n} uses"),
-            dots_and(&format!("<defs>{chain}</defs><use href='#u0'/>")),
-            EITHER,
-        ));
+        cases.push(long(format!("a chain of {n} uses"), &format!("<defs>{chain}</defs><use href='#u0'/>")));
     }
+    cases
+}
+
+fn clips() -> Vec<Case> {
+    let mut cases = Vec::new();
     let clip: String =
         (0..5_000).map(|k| format!("<rect x='{}' y='{}' width='1' height='1'/>", k % 60 * 2, k / 60 * 2)).collect();
     cases.push(Case::fill(

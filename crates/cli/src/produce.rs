@@ -3,8 +3,8 @@
 use std::{path::Path, process::ExitCode, time::Duration};
 
 use arabesque::{
-    Artwork, Cause, EnergyPoint, Error, Format, OutputOptions, Prepared, Recipe, Resources, StopReason, Stopper,
-    Summary, Warning, in_pool, io::file,
+    Artwork, EnergyPoint, Error, Format, OutputOptions, Prepared, Recipe, Resources, StopReason, Stopper, Summary,
+    Warning, in_pool, io::file,
 };
 use clap::Args;
 
@@ -180,8 +180,14 @@ fn make_all(
     let run = Run { prepared: &prepared, output: &recipe.output, level };
     let mut outputs = Vec::new();
     for plan in &plans {
-        outputs.push(run.make(plan)?);
-        if sentinel::signal().is_some() || sentinel::is_late() {
+        match run.make(plan) {
+            // What is finished is told; of the last one there was nothing yet.
+            Err(failure) if sentinel::is_over() && !outputs.is_empty() => {
+                say::note(&format!("{}: {}", plan.path, failure.message()));
+            }
+            made => outputs.push(made?),
+        }
+        if sentinel::is_over() {
             break;
         }
     }
@@ -205,10 +211,14 @@ impl Run<'_> {
         let mut watch = Watch::new(self.level);
         let ran = self.run(plan.seed, &mut watch);
         watch.finish();
-        let (artwork, bytes, warnings) = ran.map_err(stopped)?;
+        let (artwork, bytes, mut warnings) = ran.map_err(stopped)?;
         sentinel::enter(Phase::Writing);
         let copy = plan.target.write(&bytes).map_err(Failure::writing)?;
         sentinel::written();
+        if artwork.stopped() == StopReason::Stopped && sentinel::signal().is_none() {
+            let message = "the time was up before the pattern was finished: this is the best so far";
+            warnings.push(Warning::new(message, "give it more time, or less to make"));
+        }
         let made = self.describe(&artwork, plan, warnings, watch.elapsed());
         tell(&made, artwork.energy(), self.level);
         if let Some(copy) = copy.filter(|_| self.level > Level::Quiet) {
@@ -249,7 +259,7 @@ impl Run<'_> {
 
 /// A failure, which a signal explains better.
 fn stopped(error: Error) -> Failure {
-    let late = matches!(error, Error::Stopped { cause: Cause::Time, .. });
+    let late = sentinel::is_late() && matches!(error, Error::Stopped { .. });
     let failure = Failure::from(error);
     match sentinel::signal() {
         Some(code) => failure.with_code(code),

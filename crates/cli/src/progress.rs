@@ -87,11 +87,8 @@ impl<P> arabesque::Watch<P> for Watch {
             self.bar.set_position((progress.fraction.clamp(0.0, 1.0) * STEPS as f64) as u64);
             self.bar.set_message(describe(progress, self.started.elapsed()));
         }
-        if sentinel::signal().is_some() || sentinel::is_late() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        // The run hears the same from its budget; here it is heard too when it came before the run had one.
+        if sentinel::is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

@@ -44,8 +44,9 @@ impl Run {
 
     /// The recipe, and where its result goes.
     fn recipe(&self) -> Result<(Recipe, String), Failure> {
+        let resources = Resources { limits: self.run.limit.limits()?, ..Resources::default() };
         let input = Input::file(&self.file);
-        let bytes = Resources::default().read_as("recipe", &input)?;
+        let bytes = resources.read_as("recipe", &input)?;
         let (mut recipe, carrier) = carried_recipe(input.name(), &bytes)?;
         if let Some(seed) = self.seed {
             recipe.seed = seed;

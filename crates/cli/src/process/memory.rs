@@ -4,7 +4,7 @@
 //! counts, and that lets no thread go beyond the limit. A thread that would is held where it is, and the [`crate::process::sentinel`] ends the
 //! program with an error, so that an allocation that fails is an error too, not an abort.
 
-#![allow(unsafe_code, reason = "an allocator cannot be written without; this is the one place of the project")]
+#![allow(unsafe_code, reason = "an allocator cannot be written without")]
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},

@@ -68,6 +68,11 @@ impl Phase {
     }
 }
 
+/// Whether a signal or the time asks for an end.
+pub(crate) fn is_over() -> bool {
+    signal().is_some() || is_late()
+}
+
 /// Says that a file was written.
 pub(crate) fn written() {
     WRITTEN.store(true, Ordering::SeqCst);
@@ -161,6 +166,8 @@ impl Sentinel {
         SIGNAL.store(code, Ordering::SeqCst);
         self.stopper.stop(Cause::Asked);
         match Phase::now() {
+            // What was written before is still to be summed up.
+            Phase::Reading if WRITTEN.load(Ordering::SeqCst) => {}
             phase @ (Phase::Reading | Phase::Encoding) => {
                 self.leave(code, &format!("stopped while {}; {}", phase.in_words(), written_in_words()));
             }
@@ -170,7 +177,7 @@ impl Sentinel {
     }
 
     fn on_time(&self) {
-        if Phase::now() == Phase::Reading {
+        if Phase::now() == Phase::Reading && !WRITTEN.load(Ordering::SeqCst) {
             let what = Phase::Reading.in_words();
             self.leave(NO_RESULT, &format!("the time was up while {what}; {}; give it more time", written_in_words()));
         }

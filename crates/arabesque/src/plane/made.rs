@@ -2,13 +2,17 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Drawn, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{
+    Budget, Drawn, EnergyPoint, Error, Exemplar, Outcome, Path, Result, Snapshot, StopReason, Warning,
+};
 use arabesque_io::{
     json,
     raster::png::{RenderJob, write_png},
     svg::{Sheet as SvgSheet, Style, Written, simplified, write_svg},
     table::csv,
 };
+
+use rayon::prelude::*;
 
 use crate::{
     artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
@@ -21,6 +25,8 @@ use crate::{
 const NODE_SPACING: f64 = 0.001;
 /// The same in stroke widths.
 const NODE_WIDTH: f64 = 0.02;
+/// Work units for each segment of a stroke that is simplified.
+const PER_SEGMENT: u64 = 10_000;
 
 /// Elements and strokes in a part of the plane.
 #[derive(Debug)]
@@ -33,7 +39,10 @@ pub(crate) struct PlaneMade {
 impl PlaneMade {
     /// What a run ended with.
     pub(crate) fn new(exemplar: &Arc<PlaneExemplar>, request: Arc<PlaneRequest>, mut outcome: Outcome<2>) -> Self {
-        simplify(&exemplar.drawing.exemplar, &mut outcome.curves);
+        // Whoever asked to stop waits: strokes have as many nodes then as they were drawn with.
+        if outcome.stopped != StopReason::Stopped {
+            simplify(&exemplar.drawing.exemplar, &mut outcome.curves, &request.engine.budget);
+        }
         Self { exemplar: Arc::clone(exemplar), request, outcome }
     }
 
@@ -93,12 +102,23 @@ pub(crate) fn unfinished<const D: usize>(snapshot: Snapshot<D>) -> Outcome<D> {
     }
 }
 
-/// Leaves strokes with as few nodes as their width and spacing allow; what the user drew stays as it is.
-fn simplify(exemplar: &Exemplar<2>, curves: &mut [Drawn<2>]) {
+/// Leaves strokes with as few nodes as their width and spacing allow; what the user drew stays as it is. All stay as they are where
+/// there is no time or work left for it.
+fn simplify(exemplar: &Exemplar<2>, curves: &mut [Drawn<2>], budget: &Budget) {
     let spacing = spacing(exemplar);
-    for drawn in curves.iter_mut().filter(|d| d.frozen.is_none()) {
+    let fewer = |drawn: &Drawn<2>| -> Result<Option<Path<2>>> {
+        if drawn.frozen.is_some() {
+            return Ok(None);
+        }
+        budget.spend(PER_SEGMENT * drawn.path.cubics.len() as u64)?;
         let width = exemplar.curves[drawn.source].width * drawn.scale;
-        drawn.path = simplified(&drawn.path, (NODE_SPACING * spacing).max(NODE_WIDTH * width));
+        Ok(Some(simplified(&drawn.path, (NODE_SPACING * spacing).max(NODE_WIDTH * width))))
+    };
+    let Ok(paths) = curves.par_iter().map(fewer).collect::<Result<Vec<_>>>() else { return };
+    for (drawn, path) in curves.iter_mut().zip(paths) {
+        if let Some(path) = path {
+            drawn.path = path;
+        }
     }
 }
 

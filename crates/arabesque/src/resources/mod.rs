@@ -47,7 +47,7 @@ impl Resources {
     /// [`Resources::base`], then in the working folder; where the recipe has a fingerprint of it, also under other names there.
     ///
     /// # Errors
-    /// As [`file::read_bytes`]; [`Error::Input`] when the content is not the one that the fingerprint was taken of, or no file has it.
+    /// As [`file::read_bytes`](arabesque_io::file::read_bytes); [`Error::Input`] when the content is not the one that the fingerprint was taken of, or no file has it.
     pub fn read(&self, input: &Input) -> Result<Arc<[u8]>> {
         let bytes = match (input.held()?, self.inputs.get(&input.path)) {
             (Some(held), _) => held.into(),

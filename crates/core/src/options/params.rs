@@ -93,7 +93,7 @@ macro_rules! params {
             /// Sets one parameter by name.
             ///
             /// # Errors
-            /// [`arabesque_core::Error::Parameter`] for an unknown name, with the nearest known one, or for a value that is
+            /// `Error::Parameter` for an unknown name, with the nearest known one, or for a value that is
             /// not allowed.
             pub fn set(&mut self, name: &str, value: &str) -> $crate::Result<()> {
                 Self::registry().set(self, name, value)
@@ -107,7 +107,7 @@ macro_rules! params {
             /// Checks that every parameter has an allowed value.
             ///
             /// # Errors
-            /// [`arabesque_core::Error::Parameter`] for the first one that has not.
+            /// `Error::Parameter` for the first one that has not.
             pub fn check(&self) -> $crate::Result<()> {
                 Self::registry().check(self)
             }

@@ -17,7 +17,7 @@ pub enum Alpha {
 /// Reads a PNG picture: gray, colour or palette, up to 16 bits per channel.
 ///
 /// # Errors
-/// [`Error::Input`] when `bytes` is something else or broken, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`] or when the work
+/// [`Error::Input`](arabesque_core::Error::Input) when `bytes` is something else or broken, [`Error::Limit`](arabesque_core::Error::Limit) beyond [`arabesque_core::Limits::pixels`] or when the work
 /// or the memory is used up.
 pub fn read_image(name: &str, bytes: &[u8], budget: &Budget) -> Result<(Image, Alpha)> {
     let rows = Rows::open(name, bytes, budget)?;
@@ -54,7 +54,7 @@ pub(crate) fn straight_pixels(row: &[u8], kind: ColorType, depth: BitDepth) -> i
 /// `units`.
 ///
 /// # Errors
-/// [`Error::Input`] naming `name` when the text cannot be drawn, [`Error::Limit`] beyond [`arabesque_core::Limits::pixels`] or when the
+/// [`Error::Input`](arabesque_core::Error::Input) naming `name` when the text cannot be drawn, [`Error::Limit`](arabesque_core::Error::Limit) beyond [`arabesque_core::Limits::pixels`] or when the
 /// work or the memory is used up.
 pub fn draw_svg(name: &str, text: &str, (units, scale): ([f64; 2], f64), budget: &Budget) -> Result<Image> {
     let size = units.map(|u| (u * scale).round().max(1.0));

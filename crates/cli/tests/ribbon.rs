@@ -276,7 +276,7 @@ fn a_time_limit_without_anything_to_write_says_so() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_writes_the_ribbon_as_far_as_it_got() {
+fn a_signal_writes_the_ribbon_as_far_as_it_got() {
     let folder = folder();
     folder.write(
         "long.png",
@@ -294,9 +294,9 @@ fn ctrl_c_writes_the_ribbon_as_far_as_it_got() {
         said.clear();
         assert!(told.read_line(&mut said).unwrap() > 0, "the run ended before it began");
     }
-    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).output().unwrap();
+    std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).output().unwrap();
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(output.status.code(), Some(143));
     let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(summary["outputs"][0]["stopped"], "interrupted");
     let made: serde_json::Value = serde_json::from_str(&folder.text("o.json")).unwrap();

@@ -76,20 +76,20 @@ fn long_run(folder: &Folder, more: &str) -> (Child, BufReader<ChildStderr>) {
     (child, told)
 }
 
-/// Sends the signal of Ctrl-C, to nobody if the program has just ended.
+/// Asks to end, which a program that was started in the background hears too (it does not hear Ctrl-C); to nobody if the program has just ended.
 #[cfg(unix)]
 fn interrupt(child: &Child) {
-    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).output().unwrap();
+    std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).output().unwrap();
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_writes_the_best_so_far() {
+fn a_signal_writes_the_best_so_far() {
     let folder = Folder::new();
     let (child, _told) = long_run(&folder, "--json");
     interrupt(&child);
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(output.status.code(), Some(143));
     let text = folder.text("out.csv");
     assert!(text.starts_with("x,y,class\n") && text.lines().count() > 2);
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -104,7 +104,7 @@ fn a_second_ctrl_c_ends_at_once_without_half_a_file() {
     let (mut child, _told) = long_run(&folder, "");
     interrupt(&child);
     interrupt(&child);
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(child.wait().unwrap().code(), Some(143));
     let after: Vec<_> = folder.names().into_iter().filter(|n| n != "out.csv").collect();
     assert_eq!(after, before);
 }

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Result, Vector};
+use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Result, Snapshot, Vector, Watch};
+
+use crate::regular::{Filled, Regular};
 
 mod sealed {
     pub trait Sealed {}
@@ -33,6 +35,18 @@ pub trait Dimension<const D: usize>: sealed::Sealed {
         change: impl FnOnce(Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>>,
     ) -> Result<Vec<Drawn<D>>>;
 
+    /// Fills a domain of the plane from an exemplar that repeats; `None` in space.
+    ///
+    /// # Errors
+    /// As for filling it.
+    #[doc(hidden)]
+    fn fill_plane(
+        regular: &Regular,
+        exemplar: &Exemplar<D>,
+        request: &Request<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<Option<Filled<D>>>;
+
     /// A region of the plane, as one of this dimension.
     fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<D>>>;
 }
@@ -55,6 +69,15 @@ impl Dimension<2> for Vector<2> {
         change: impl FnOnce(Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>>,
     ) -> Result<Vec<Drawn<2>>> {
         change(strokes)
+    }
+
+    fn fill_plane(
+        regular: &Regular,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Option<Filled<2>>> {
+        regular.fill(exemplar, request, watch).map(Some)
     }
 
     fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<2>>> {
@@ -80,6 +103,15 @@ impl Dimension<3> for Vector<3> {
         _: impl FnOnce(Vec<Drawn<2>>) -> Result<Vec<Drawn<2>>>,
     ) -> Result<Vec<Drawn<3>>> {
         Ok(strokes)
+    }
+
+    fn fill_plane(
+        _: &Regular,
+        _: &Exemplar<3>,
+        _: &Request<3>,
+        _: &mut dyn Watch<Snapshot<3>>,
+    ) -> Result<Option<Filled<3>>> {
+        Ok(None)
     }
 
     fn from_plane(_: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<3>>> {

@@ -46,11 +46,14 @@ mod ending;
 mod exemplar;
 mod finish;
 mod frozen;
+mod irregular;
 mod layout;
 mod optimise;
 mod output;
 mod params;
 mod prepared;
+mod regular;
+pub mod repeat;
 mod run;
 #[cfg(feature = "bench-stages")]
 #[doc(hidden)]
@@ -59,7 +62,7 @@ mod streams;
 
 pub use dimension::Dimension;
 pub use finish::clearance::overlap_ratio;
-pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Search, Switch};
+pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Repeats, Search, Switch};
 #[doc(hidden)]
 pub use prepared::Compiled;
 pub use prepared::Prepared;

@@ -86,9 +86,23 @@ choices! {
     }
 }
 
+choices! {
+    /// Whether an exemplar that repeats is continued by its repeat.
+    pub enum Repeats {
+        /// Every exemplar is treated as irregular.
+        Off = "off",
+        /// What repeats is continued exactly, anything else by its neighbourhoods.
+        Auto = "auto",
+        /// An exemplar without a repeat, and a request that the repeat cannot serve, are refused.
+        Exact = "exact",
+    }
+}
+
 params! {
     /// Parameters of the engine.
     pub struct Params {
+        /// Whether an exemplar that repeats is continued by its repeat.
+        repeat "repeat": Repeats = Repeats::Auto;
         /// How samples are paired.
         matching "matching": Matching = Matching::Robust;
         /// How similar neighbourhoods are found.
@@ -168,6 +182,7 @@ impl Params {
     /// [`arabesque_core::Error::Parameter`] for an unknown name.
     pub fn preset(name: &str) -> Result<Self> {
         let published = Self {
+            repeat: Repeats::Off,
             missing: 0.0,
             novelty: 0.0,
             balance: 0.0,
@@ -264,6 +279,6 @@ mod tests {
             assert_eq!(told.split(',').next(), Some(spec.default.as_str()));
             assert_eq!(spec.default == "auto", told.contains(", "), "{told}");
         }
-        assert_eq!(Params::specs().len(), 27);
+        assert_eq!(Params::specs().len(), 28);
     }
 }

@@ -1,55 +1,27 @@
 //! An exemplar, prepared for any number of runs.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use arabesque_core::{
-    Budget, Error, Exemplar, Forecast, Numbered, Outcome, Request, Result, Role, Snapshot, Vector, Warning, Watch,
-};
+use arabesque_core::{Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, Vector, Watch};
 
 use crate::{
-    border::Extent,
     dimension::Dimension,
-    ending,
-    exemplar::{
-        checks,
-        graph::{crowding, skeleton::Skeleton},
-        level_exemplar::{LevelExemplar, expected_nodes, level_exemplars, shortest},
-    },
-    finish::{
-        clearance::{self, ExemplarClearance},
-        placements,
-    },
-    optimise::{search, targets::class_targets},
-    params::Params,
-    run::{LevelContext, Made, Run},
+    exemplar::checks,
+    irregular::Irregular,
+    params::{Params, Repeats},
+    regular::{Filled, Regular},
+    repeat::Repeat,
 };
-
-/// Curves with more [`search::dissimilarity`] than this have nothing to repeat.
-const MAX_DISSIMILARITY: f64 = 0.7;
-
-/// With more samples than this, curves that never repeat are taken for a random pattern.
-const MIN_RANDOM_NODES: usize = 100;
-
-/// Strokes that cover more of the exemplar than this run into one another.
-const CROWDED: f64 = 0.95;
-
-/// Fewest elements in the window of an exemplar from which a distribution can be learnt without a warning.
-const MIN_ELEMENTS: usize = 12;
-
-/// Work units that an element takes in one iteration, by and large.
-const PER_ELEMENT: f64 = 1e4;
-/// Work units that a sample of a stroke takes in one iteration, by and large.
-const PER_SAMPLE: f64 = 4e4;
 
 /// An exemplar, analysed once, ready for any number of runs.
 #[derive(Clone, Debug)]
 pub struct Prepared<const D: usize> {
     exemplar: Arc<Exemplar<D>>,
-    clearance: Option<ExemplarClearance>,
-    pub(crate) levels: Vec<LevelExemplar<D>>,
     pub(crate) params: Params,
-    /// See [`search::dissimilarity`]; `None` without curves.
-    dissimilarity: Option<f64>,
+    /// Its repeat, where it has one that is to be used.
+    regular: Option<Arc<Regular>>,
+    /// What the engine needs; where there is a repeat, worked out when a request first needs it.
+    irregular: OnceLock<Arc<Irregular<D>>>,
 }
 
 /// The engine for one dimension, compiled in this crate: left generic, it would be compiled again in every crate that calls it.
@@ -100,7 +72,8 @@ where
     /// Analyses the exemplar, which is shared where the caller shares it.
     ///
     /// # Errors
-    /// [`Error::Parameter`] when a parameter is out of range or the radius larger than the exemplar; [`Error::Input`]
+    /// [`Error::Parameter`] when a parameter is out of range, the radius larger than the exemplar, or a repeat asked for
+    /// that is not there; [`Error::Input`]
     /// when the exemplar shows no curve and fewer than two elements that may be copied, for then nothing tells how far
     /// apart they belong, or when its curves lie outside its frame; [`Error::Limit`] when its curves meet in too many
     /// places or lie too densely.
@@ -113,8 +86,6 @@ where
 
     fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Self> {
         params.check()?;
-        let budget = &budget.stage("analysing the exemplar");
-        budget.check()?;
         if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
             let problem = "one element only, expected at least two";
             let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
@@ -129,46 +100,52 @@ where
                 format!("at most {side}, the shorter side of the exemplar"),
             ));
         }
-        let skeleton = match exemplar.curves.as_slice() {
-            [] => None,
-            curves => Some(Arc::new(Skeleton::new(curves, &exemplar.view(), budget)?)),
+        let regular = match Vector::<D>::plane_exemplar(exemplar) {
+            Some(plane) if params.repeat != Repeats::Off => Regular::new(plane, budget)?.map(Arc::new),
+            _ => None,
         };
-        if skeleton.as_ref().is_some_and(|s| s.lines.is_empty()) && exemplar.elements.is_empty() {
-            let problem = "every curve lies outside the frame or is too short to be seen";
-            return Err(Error::input("exemplar", problem, "draw longer curves inside the frame of the page"));
+        if regular.is_none() && params.repeat == Repeats::Exact {
+            let expected = "auto or off: the exemplar shows no repeat that explains it";
+            return Err(Error::parameter("repeat", "exact", expected));
         }
-        let skeleton = skeleton.filter(|s| !s.lines.is_empty());
-        checks::density(skeleton.as_ref().map_or(0.0, |s| expected_nodes(exemplar, s, params)))?;
-        let levels = level_exemplars(exemplar, skeleton.as_ref(), params, budget)?;
-        checks::sizes(exemplar, &levels)?;
-        let dissimilarity = match levels.first().filter(|_| skeleton.is_some()) {
-            Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
-            None => None,
-        };
-        Ok(Self {
-            exemplar: Arc::clone(exemplar),
-            clearance: clearance::measure(exemplar, budget)?,
-            dissimilarity,
-            levels,
-            params: params.clone(),
-        })
+        let prepared =
+            Self { exemplar: Arc::clone(exemplar), params: params.clone(), regular, irregular: OnceLock::new() };
+        if prepared.regular.is_none() {
+            prepared.irregular(budget)?;
+        }
+        Ok(prepared)
     }
 
-    /// Neighbourhood radius of each level, coarsest first, in the exemplar's units.
+    /// What the engine works with.
+    pub(crate) fn irregular(&self, budget: &Budget) -> Result<&Irregular<D>> {
+        if let Some(known) = self.irregular.get() {
+            return Ok(known);
+        }
+        let made = Irregular::new(&self.exemplar, &self.params, budget)?;
+        Ok(self.irregular.get_or_init(|| Arc::new(made)))
+    }
+
+    /// The repeat by which the exemplar is continued; `None` where it is treated as irregular.
+    pub fn repeat(&self) -> Option<&Repeat> {
+        self.regular.as_ref().map(|regular| &regular.repeat)
+    }
+
+    /// Neighbourhood radius of each level, coarsest first, in the exemplar's units; none where no neighbourhood is
+    /// compared.
     pub fn radii(&self) -> Vec<f64> {
-        self.levels.iter().map(|s| s.level.radius).collect()
+        self.irregular.get().map_or_else(Vec::new, |irregular| irregular.radii())
     }
 
-    /// Number of samples of each exemplar element at the finest level.
+    /// Number of samples of each exemplar element at the finest level; none where no neighbourhood is compared.
     pub fn samples_per_element(&self) -> Vec<usize> {
-        let parts = |s: &LevelExemplar<D>| s.level.parts.iter().take(s.level.base as usize).map(Vec::len).collect();
-        self.levels.last().map_or_else(Vec::new, parts)
+        self.irregular.get().map_or_else(Vec::new, |irregular| irregular.samples_per_element())
     }
 
     /// Fills a domain.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a frozen element with an unknown source; [`Error::Limit`] when the output would be too
+    /// [`Error::Parameter`] for a frozen element with an unknown source, or where `repeat=exact` cannot be kept;
+    /// [`Error::Limit`] when the output would be too
     /// large, or a limit is reached before there is anything; [`Error::Stopped`] when somebody asks to stop so early;
     /// [`Error::NoResult`] when nothing fits into the domain.
     pub fn run(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>>
@@ -179,190 +156,21 @@ where
     }
 
     fn filled(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
-        let (levels, mut warnings) = self.usable_levels(request);
-        let iterations = if levels.is_empty() { 0 } else { self.params.iterations };
-        // Where no neighbourhood fits, the first layout is all there can be.
-        let levels = if levels.is_empty() { vec![self.levels.len() - 1] } else { levels };
-        // Levels without curves share one exemplar; what it means for the request is then worked out once.
-        let used = if self.has_curves() { &levels[..] } else { &levels[..1] };
-        let extents: Vec<_> = used
-            .iter()
-            .map(|&k| {
-                Extent::new(request, &self.levels[k].exemplar, &self.levels[k].library, self.levels[k].level.base)
-            })
-            .collect::<Result<_>>()?;
-        let targets: Vec<_> = used
-            .iter()
-            .zip(&extents)
-            .map(|(&k, extent)| class_targets(&self.levels[k].library, request, extent, self.levels[k].level.base))
-            .collect::<Result<_>>()?;
-        self.check_request(request, targets.iter().map(|t| t.iter().sum()).fold(0.0, f64::max))?;
-        let context = |(n, &k): (usize, &usize)| {
-            let shared = n.min(used.len() - 1);
-            LevelContext { sampled: &self.levels[k], extent: &extents[shared], targets: &targets[shared] }
-        };
-        let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
-        let run = Run { params: &self.params, request, contexts, iterations };
-        let forecast = Self::forecast(&run);
-        request.budget.allow_elements(forecast.count);
-        watch.foreseen(&Forecast { allowed: request.budget.allowed() as f64, ..forecast });
-        let mut trace = Vec::new();
-        let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
-        if cut_short.is_none() && !found.placements.is_empty() {
-            cut_short = run.mending(&found, watch).err();
-        }
-        let last = &extents[extents.len() - 1];
-        let budget = if cut_short.is_some() { ending::last_touches(&request.budget) } else { request.budget.clone() };
-        match placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params, &budget) {
-            Ok(mended) => warnings.extend(mended),
-            Err(error) => {
-                found.placements.retain(|p| p.frozen.is_some() || last.keeps_rule(p));
-                cut_short = cut_short.or(Some(error));
+        checks::frozen(&self.exemplar, request)?;
+        let mut told = Vec::new();
+        if let Some(regular) = &self.regular {
+            match Vector::<D>::fill_plane(regular, &self.exemplar, request, watch)? {
+                Some(Filled::Done(outcome)) => return Ok(outcome),
+                Some(Filled::Unfit(warnings)) => told = warnings,
+                None => {}
+            }
+            if self.params.repeat == Repeats::Exact {
+                let why = told.first().map_or("fields, or strokes that turn or stay, bend it", |w| w.message.as_str());
+                return Err(Error::parameter("repeat", "exact", format!("auto: {why}")));
             }
         }
-        if found.placements.is_empty() && found.curves.is_empty() {
-            if let Some(error) = cut_short {
-                return Err(error);
-            }
-            let what = if self.has_curves() { "stroke" } else { "element" };
-            return Err(Error::no_result(
-                format!("no {what} fits into the domain"),
-                "make the domain larger, lower the scale, or allow elements to cross its border",
-            ));
-        }
-        let stopped = ending::reason(cut_short, &mut warnings)?;
-        Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
-    }
-
-    /// What a run will take, by what its samples take in each iteration.
-    fn forecast(run: &Run<'_, D>) -> Forecast {
-        let of_level = |context: &LevelContext<'_, D>| -> (f64, f64) {
-            let (library, base) = (&context.sampled.library, context.sampled.level.base);
-            let is_stroke = |c: usize| library.members(c as u32).first().is_some_and(|&e| e >= base);
-            let price = |c: usize| if is_stroke(c) { PER_SAMPLE } else { PER_ELEMENT };
-            let each = context.targets.iter().enumerate().map(|(c, &n)| (n, n * price(c)));
-            each.fold((0.0, 0.0), |(count, work), (n, more)| (count + n, work + more))
-        };
-        let levels: Vec<_> = run.contexts.iter().map(of_level).collect();
-        let work: f64 = levels.iter().map(|(_, work)| work).sum();
-        Forecast {
-            count: levels.iter().map(|(count, _)| *count).fold(0.0, f64::max),
-            work: work * run.iterations as f64,
-            allowed: 0.0,
-        }
-    }
-
-    /// What may be wrong with an exemplar.
-    fn exemplar_warnings(&self) -> Vec<Warning> {
-        let mut warnings = Vec::new();
-        let giants = self.levels.first().map_or(0, |s| s.library.giants);
-        if giants > 0 {
-            warnings.push(Warning::new(
-                format!("elements far larger than the frame of the exemplar are not copied: {giants}"),
-                "draw them smaller, or make the frame larger",
-            ));
-        }
-        let Some(sampled) = self.levels.first().filter(|_| self.has_curves()) else { return warnings };
-        let side = self.exemplar.view().side();
-        if sampled.level.radius >= 0.5 * side {
-            warnings.push(Warning::new(
-                format!(
-                    "the exemplar is hardly larger than one neighbourhood: {side:.4} across, and it takes {:.4} \
-                     to see one",
-                    2.0 * sampled.level.radius
-                ),
-                "show more of the pattern, or set a smaller radius or spacing",
-            ));
-        }
-        // A large irregular net has nothing alike either, but enough of it to be one of a kind.
-        let nodes = sampled.level.net.as_ref().map_or(0, |net| net.nodes.len());
-        if nodes < MIN_RANDOM_NODES && self.dissimilarity.is_none_or(|s| s > MAX_DISSIMILARITY) {
-            warnings.push(Warning::new(
-                "no part of the exemplar's curves looks like another: there is nothing to repeat",
-                "draw the pattern several times over, so that the exemplar shows how it goes on",
-            ));
-        }
-        let Some(net) = &sampled.level.net else { return warnings };
-        let covered = crowding::coverage(&net.skeleton, &self.exemplar.window, CROWDED);
-        if covered > CROWDED {
-            warnings.push(Warning::new(
-                format!(
-                    "strokes at least as wide as their spacing: they cover {:.0} % of the exemplar and run into one another",
-                    100.0 * covered
-                ),
-                "use thinner strokes; lines closer than their width are taken to touch",
-            ));
-        }
-        let short = self.lost_curves(&net.skeleton);
-        if short > 0 {
-            warnings.push(Warning::new(
-                format!("strokes too short to be seen left out: {short}, each below a thousandth of the exemplar"),
-                "draw them longer, or as dots: filled circles",
-            ));
-        }
-        warnings
-    }
-
-    /// Curves in the window that are in no line of the skeleton and not part of a junction either.
-    fn lost_curves(&self, skeleton: &Skeleton<D>) -> usize {
-        let mut is_seen = Numbered::filled(false, self.exemplar.curves.len());
-        skeleton.lines.iter().for_each(|line| is_seen[line.curve] = true);
-        let side = self.exemplar.view().side();
-        let is_lost = |n: &usize| {
-            let centre = self.exemplar.curves[*n].path.bounds().centre();
-            self.exemplar.view().contains(centre) && !skeleton.is_in_junction(centre, side)
-        };
-        (0..is_seen.len()).filter(|&n| !is_seen[n]).filter(is_lost).count()
-    }
-
-    fn has_curves(&self) -> bool {
-        self.levels.iter().any(|s| s.level.net.is_some())
-    }
-
-    fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {
-        let limit = request.budget.limits().output_elements;
-        if expected.is_nan() || expected > limit as f64 {
-            return Err(Error::Limit {
-                what: "elements of the result".into(),
-                found: format!("about {expected:.0}"),
-                limit: limit.to_string(),
-                advice: "fill a smaller domain, or raise the scale".into(),
-            });
-        }
-        let known = self.exemplar.elements.len();
-        match request.frozen.iter().find(|p| p.source >= known) {
-            Some(p) => {
-                Err(Error::parameter("frozen source", p.source, format!("below {known}, the number of elements")))
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// Levels whose neighbourhoods fit into the domain, and what to say about the rest.
-    fn usable_levels(&self, request: &Request<D>) -> (Vec<usize>, Vec<Warning>) {
-        let mut warnings = Vec::new();
-        let inside = self.exemplar.elements.iter().filter(|e| self.exemplar.view().contains(e.centre)).count();
-        if inside < MIN_ELEMENTS && !self.has_curves() {
-            warnings.push(Warning::new(
-                format!("the exemplar shows only {inside} elements"),
-                format!(
-                    "draw {MIN_ELEMENTS} or more, so that the output need not repeat the few arrangements there are"
-                ),
-            ));
-        }
-        warnings.extend(self.exemplar_warnings());
-        let room = request
-            .domain
-            .period()
-            .map_or(f64::INFINITY, |p| 0.5 * shortest(p) / Extent::<D>::largest_spacing_scale(request));
-        let levels = self.levels.len();
-        let fits: Vec<_> = (0..levels).filter(|&l| self.levels[l].level.radius <= room).collect();
-        if fits.len() < levels {
-            warnings.push(Warning::new(
-                format!("the tile is too small for {} of {levels} levels", levels - fits.len()),
-                "make the tile larger, or set a smaller radius",
-            ));
-        }
-        (fits, warnings)
+        let mut outcome = self.irregular(&request.budget)?.filled(request, watch)?;
+        outcome.warnings.splice(0..0, told);
+        Ok(outcome)
     }
 }

@@ -86,8 +86,12 @@ impl Setup {
     /// # Panics
     /// When the exemplar cannot be analysed.
     pub fn new(exemplar: &Exemplar<2>, n: usize) -> Self {
-        let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default())
-            .expect("the exemplar can be analysed");
+        let prepared = Prepared::new(
+            exemplar.clone(),
+            &Params { repeat: crate::Repeats::Off, ..Params::default() },
+            &Budget::default(),
+        )
+        .expect("the exemplar can be analysed");
         let side = (n as f64 / density(finest(&prepared))).sqrt();
         let request = Request::new(Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(side))));
         Self { prepared, request }
@@ -211,7 +215,8 @@ impl Clearing {
 }
 
 fn finest(prepared: &Prepared<2>) -> &LevelExemplar<2> {
-    prepared.levels.last().expect("there is a level")
+    let irregular = prepared.irregular(&Budget::default()).expect("the exemplar was analysed");
+    irregular.levels.last().expect("there is a level")
 }
 
 /// Samples of the finest level that the exemplar shows, per area.

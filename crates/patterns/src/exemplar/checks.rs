@@ -1,6 +1,6 @@
 //! Exemplars that nothing can be made of: what is there is told before any work is done.
 
-use arabesque_core::{Domain, Error, Exemplar, GridIndex, Result, Spread};
+use arabesque_core::{Domain, Error, Exemplar, GridIndex, Request, Result, Spread};
 
 use crate::exemplar::level_exemplar::LevelExemplar;
 
@@ -25,6 +25,15 @@ pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
             let problem = format!("{count} elements lie in one heap, around {:.4?}", place.0);
             Err(Error::input("exemplar", problem, advice))
         }
+        None => Ok(()),
+    }
+}
+
+/// Refuses frozen elements that are copies of nothing.
+pub(crate) fn frozen<const D: usize>(exemplar: &Exemplar<D>, request: &Request<D>) -> Result<()> {
+    let known = exemplar.elements.len();
+    match request.frozen.iter().find(|p| p.source >= known) {
+        Some(p) => Err(Error::parameter("frozen source", p.source, format!("below {known}, the number of elements"))),
         None => Ok(()),
     }
 }

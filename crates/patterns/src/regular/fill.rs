@@ -1,0 +1,204 @@
+//! Filling a domain from an exemplar that repeats.
+
+use arabesque_core::{
+    Border, Budget, Error, Exemplar, Forecast, Outcome, Request, Result, Role, Snapshot, Warning, Watch,
+};
+
+use crate::{
+    ending,
+    regular::{
+        choice::Cells,
+        elements::Elements,
+        grid::{Grid, Unfit},
+        joints::Cell,
+        strokes::Strokes,
+    },
+    repeat::{
+        Explains, Repeat, find,
+        orbits::{Orbit, orbits},
+    },
+};
+
+/// Elements that fit no place of the repeat, as a share of all, up to which the repeat explains the exemplar.
+const UNEXPLAINED: f64 = 0.1;
+
+/// Residuals that differ by this share of the shorter vector count half as much as different things.
+const RESIDUAL: f64 = 0.1;
+
+/// Stretching that nobody sees.
+const UNSEEN: f64 = 1e-3;
+
+/// Work for an element, for the forecast.
+const PER_ELEMENT: f64 = 2e3;
+
+/// An exemplar that repeats, ready for any number of runs.
+#[derive(Clone, Debug)]
+pub struct Regular {
+    pub(crate) repeat: Repeat,
+    orbits: Vec<Orbit>,
+    cells: Cells,
+    cell: Option<Cell>,
+    /// Whole elements that fit no place.
+    others: usize,
+}
+
+/// What came of a request.
+pub enum Filled<const D: usize> {
+    /// The result.
+    Done(Outcome<D>),
+    /// The lattice cannot serve it, and what to say about that.
+    Unfit(Vec<Warning>),
+}
+
+impl Regular {
+    /// Finds the repeat of an exemplar; `None` where it has none that explains it.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
+        let Some(repeat) = find(exemplar, budget)? else { return Ok(None) };
+        let has_lines = !exemplar.curves.is_empty();
+        if has_lines && repeat.explains == Explains::Places {
+            return Ok(None);
+        }
+        let (orbits, others) = orbits(exemplar, &repeat, budget)?;
+        let whole = exemplar.elements.iter().filter(|e| e.role == Role::Source).count();
+        if others.len() as f64 > UNEXPLAINED * whole as f64 || (orbits.is_empty() && !has_lines) {
+            return Ok(None);
+        }
+        let cell = if has_lines {
+            match Cell::new(exemplar, &repeat.lattice, budget)? {
+                Some(cell) => Some(cell),
+                None => return Ok(None),
+            }
+        } else {
+            None
+        };
+        let unit = RESIDUAL * repeat.lattice.vectors[0].norm().min(repeat.lattice.vectors[1].norm());
+        let cells = Cells::new(exemplar, &orbits, unit, budget)?;
+        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len() }))
+    }
+
+    /// Fills a domain.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when the output would be too large, or a limit is reached before there is anything;
+    /// [`Error::Stopped`] when somebody asks to stop so early; [`Error::NoResult`] when nothing fits into the domain.
+    pub(crate) fn fill(
+        &self,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Filled<2>> {
+        if self.cell.is_some() && (request.border == Border::Turn || !request.frozen_curves.is_empty()) {
+            return Ok(Filled::Unfit(Vec::new()));
+        }
+        let mut grid = match Grid::new(&self.repeat, exemplar, request) {
+            Ok(grid) => grid,
+            Err(Unfit::Fields) => return Ok(Filled::Unfit(Vec::new())),
+            Err(Unfit::Tile) => return Ok(Filled::Unfit(vec![self.unfit_tile(request)])),
+        };
+        self.foresee(&grid, request, watch)?;
+        let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
+        elements.join_kept(&mut grid, request);
+        let placed = elements.place(&grid, request, watch)?;
+        let (mut cut_short, mut curves) = (placed.ended.err(), Vec::new());
+        if let (Some(cell), None) = (&self.cell, &cut_short) {
+            match self.strokes(exemplar, cell, &grid, request) {
+                Ok(strokes) => curves = strokes,
+                Err(error) => cut_short = Some(error),
+            }
+        }
+        if placed.placements.is_empty() && curves.is_empty() {
+            return Err(cut_short.unwrap_or_else(|| {
+                let what = if self.cell.is_some() { "stroke" } else { "element" };
+                let advice = "make the domain larger, lower the scale, or allow elements to cross its border";
+                Error::no_result(format!("no {what} fits into the domain"), advice)
+            }));
+        }
+        let mut warnings = self.warnings(&grid, request);
+        let stopped = ending::reason(cut_short, &mut warnings)?;
+        let energy = Vec::new();
+        Ok(Filled::Done(Outcome { placements: placed.placements, curves, energy, warnings, stopped }))
+    }
+
+    fn strokes(
+        &self,
+        exemplar: &Exemplar<2>,
+        cell: &Cell,
+        grid: &Grid,
+        request: &Request<2>,
+    ) -> Result<Vec<arabesque_core::Drawn<2>>> {
+        let strokes = Strokes { exemplar, cell };
+        let margin = strokes.widest() * grid.scale();
+        let nodes = strokes.nodes(grid, request, margin);
+        strokes.draw(grid, &nodes, request)
+    }
+
+    /// Tells what the run will take, and refuses what is too much.
+    fn foresee(&self, grid: &Grid, request: &Request<2>, watch: &mut dyn Watch<Snapshot<2>>) -> Result<()> {
+        let cells = request.domain.measure() / grid.lattice.cell();
+        let parts = self.cell.as_ref().map_or(0, |cell| cell.parts.len());
+        let count = cells * (self.orbits.len() + parts) as f64;
+        let limit = request.budget.limits().output_elements;
+        if count.is_nan() || count > limit as f64 {
+            return Err(Error::Limit {
+                what: "elements of the result".into(),
+                found: format!("about {count:.0}"),
+                limit: limit.to_string(),
+                advice: "fill a smaller domain, or raise the scale".into(),
+            });
+        }
+        request.budget.allow_elements(count);
+        watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed: request.budget.allowed() as f64 });
+        Ok(())
+    }
+
+    fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if self.others > 0 {
+            warnings.push(Warning::new(
+                format!("elements that fit no place of the repeat left out: {}", self.others),
+                "set repeat=off to treat the pattern as irregular",
+            ));
+        }
+        if grid.stretch > UNSEEN {
+            warnings.push(Warning::new(
+                format!(
+                    "the tile does not suit the repeat, which is stretched by {:.1} % to fit",
+                    100.0 * grid.stretch
+                ),
+                self.suiting(request),
+            ));
+        }
+        warnings
+    }
+
+    fn unfit_tile(&self, request: &Request<2>) -> Warning {
+        Warning::new("the tile does not suit the repeat of the exemplar, which is not kept", self.suiting(request))
+    }
+
+    /// Advice on sizes of tiles.
+    fn suiting(&self, request: &Request<2>) -> String {
+        let size = request.domain.bounds().size();
+        match self.repeat.smallest_tile() {
+            Some(least) => {
+                let near = |k: usize| (size[k] / least[k]).round().max(1.0) * least[k];
+                format!(
+                    "the nearest tile that suits is {}x{}, the smallest {}x{} (--tile auto)",
+                    short(near(0)),
+                    short(near(1)),
+                    short(least[0]),
+                    short(least[1])
+                )
+            }
+            None => "no tile along the axes suits it: make the tile larger, so that less stretching does".into(),
+        }
+    }
+}
+
+/// A length with as many digits as tell it from a wrong one.
+fn short(length: f64) -> String {
+    let text = format!("{length:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

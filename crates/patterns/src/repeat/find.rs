@@ -1,0 +1,348 @@
+//! Finding the repeat of an exemplar.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Budget, Exemplar, Result, Vector};
+
+use crate::repeat::{
+    lattice::{Lattice, are_parallel},
+    lines::Lines,
+    marks::{Anchor, Kinds, Marks},
+    straight,
+    support::{LineIndex, is_supported},
+};
+
+/// What a lattice explains of an exemplar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Explains {
+    /// Everything: what is there, and where.
+    Everything,
+    /// Where elements are, but not which ones.
+    Places,
+}
+
+/// In which directions an exemplar repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// In two independent ones.
+    Plane,
+    /// In one; along the other, of this direction, nothing changes: stripes.
+    Stripes(Vector<2>),
+    /// In one: a frieze. The second vector is the height of the frame.
+    Frieze,
+}
+
+/// What an exemplar repeats by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repeat {
+    /// The translations that take it to itself.
+    pub lattice: Lattice,
+    /// What they explain.
+    pub explains: Explains,
+    /// Whether both vectors were found in the exemplar.
+    pub extent: Extent,
+    /// The point of an element that lies on the lattice.
+    pub anchor: Anchor,
+    /// Root mean square distance of the marks of the exemplar from where the lattice has them, in its units.
+    pub jitter: f64,
+    /// Share of the marks that the lattice takes to others of their kind, in [0, 1].
+    pub share: f64,
+}
+
+/// A way of comparing marks.
+#[derive(Clone, Copy, Debug)]
+struct Mode {
+    kinds: Kinds,
+    anchor: Anchor,
+    /// How far partners may lie off, in mean distances of marks.
+    tolerance: f64,
+    /// Fewest marks with which this can be trusted.
+    least: usize,
+    /// Fewest marks that a translation takes to others, as a number and as a share of all.
+    seen: (usize, f64),
+}
+
+/// So few partners are no chance where they have to be in place exactly.
+const FEW: (usize, f64) = (2, 0.12);
+/// Where they may be about there.
+const MANY: (usize, f64) = (10, 0.3);
+
+/// Rounding of coordinates, and drawing by hand.
+const EXACT: f64 = 0.02;
+const NEAR: f64 = 0.2;
+
+/// The ways of comparing, in the order of how much they explain.
+const MODES: [Mode; 6] = [
+    Mode { kinds: Kinds::Looks, anchor: Anchor::Centre, tolerance: EXACT, least: 3, seen: FEW },
+    Mode { kinds: Kinds::Looks, anchor: Anchor::Centre, tolerance: NEAR, least: 16, seen: MANY },
+    Mode { kinds: Kinds::Any, anchor: Anchor::Centre, tolerance: EXACT, least: 9, seen: FEW },
+    Mode { kinds: Kinds::Any, anchor: Anchor::Box, tolerance: EXACT, least: 9, seen: FEW },
+    Mode { kinds: Kinds::Classes, anchor: Anchor::Centre, tolerance: NEAR, least: 16, seen: MANY },
+    Mode { kinds: Kinds::Any, anchor: Anchor::Box, tolerance: NEAR, least: 16, seen: MANY },
+];
+
+/// Coordinates are taken to be rounded to this share of the side of the frame at worst.
+const ROUNDING: f64 = 4e-4;
+
+/// Marks from which offsets to all others are taken, at most, and so many of one kind.
+const ANCHORS: (usize, usize) = (96, 24);
+
+/// Offsets that are looked at more closely.
+const CANDIDATES: usize = 40_000;
+
+/// More jitter than this, in terms of the shorter vector, is no lattice.
+const JITTER: f64 = 0.12;
+
+/// Work for each offset.
+const OFFSET: u64 = 60;
+
+/// The repeat of an exemplar, where it has one.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub fn find(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
+    let budget = &budget.stage("finding the repeat");
+    let lines = Lines::new(exemplar, budget)?;
+    let index = LineIndex::new(&lines, exemplar.window, budget)?;
+    for mode in MODES {
+        // Lines either go over into themselves or they do not.
+        if mode.tolerance > EXACT && !lines.is_empty() {
+            continue;
+        }
+        let Some(marks) = Marks::new(exemplar, &lines, mode.kinds, mode.anchor, budget)? else { continue };
+        if marks.all.len() < mode.least {
+            continue;
+        }
+        let search = Search { marks: &marks, lines: &index, mode, side: exemplar.view().side(), budget };
+        if let Some(found) = search.lattice()? {
+            return Ok(Some(found));
+        }
+    }
+    if exemplar.elements.is_empty() {
+        return straight::stripes(&lines, &index, budget);
+    }
+    Ok(None)
+}
+
+/// The search in one way of comparing.
+struct Search<'a> {
+    marks: &'a Marks,
+    lines: &'a LineIndex<'a>,
+    mode: Mode,
+    side: f64,
+    budget: &'a Budget,
+}
+
+impl Search<'_> {
+    fn tolerance(&self) -> f64 {
+        (self.mode.tolerance * self.marks.unit).max(ROUNDING * self.side)
+    }
+
+    fn lattice(&self) -> Result<Option<Repeat>> {
+        let tolerance = self.tolerance();
+        let mut first: Option<Vector<2>> = None;
+        for by in self.candidates()? {
+            if first.is_some_and(|a| are_parallel(a, by)) {
+                continue;
+            }
+            let holds = is_supported(self.marks, by, tolerance, self.mode.seen, self.budget)?
+                && self.lines.supports(by, tolerance.min(0.01 * self.side), self.budget)?;
+            match (holds, first) {
+                (false, _) => {}
+                (true, None) => first = Some(by),
+                (true, Some(a)) => return self.refined(a, by, Extent::Plane),
+            }
+        }
+        match first.filter(|_| self.mode.kinds == Kinds::Looks && self.mode.tolerance <= EXACT) {
+            Some(a) => self.frieze(a),
+            None => Ok(None),
+        }
+    }
+
+    /// What repeats in one direction alone, along the frame and inside it.
+    fn frieze(&self, a: Vector<2>) -> Result<Option<Repeat>> {
+        let (window, size) = (self.marks.window, self.marks.window.size());
+        let axis = usize::from(a[1].abs() > a[0].abs());
+        let across = 1 - axis;
+        let slack = 1e-6 * size.norm();
+        let is_inside = |min: f64, max: f64| min >= window.min[across] - slack && max <= window.max[across] + slack;
+        let along = a[across].abs() <= 1e-3 * a.norm();
+        let marks_inside = self.marks.all.iter().all(|m| is_inside(m.extent.min[across], m.extent.max[across]));
+        if !(along && marks_inside && self.lines.are_within(across)) {
+            return Ok(None);
+        }
+        let mut b = Vector::ZERO;
+        b[across] = size[across];
+        self.refined(a, b, Extent::Frieze)
+    }
+
+    /// Offsets that several marks share, shortest first.
+    fn candidates(&self) -> Result<Vec<Vector<2>>> {
+        let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (i, mark) in self.marks.all.iter().enumerate() {
+            members.entry(mark.kind).or_default().push(i);
+        }
+        let mut kinds: Vec<_> = members.into_values().filter(|m| m.len() > 1).collect();
+        kinds.sort_by_key(|m| (m.len(), m[0]));
+        let centre = self.marks.window.centre();
+        let cell = self.tolerance();
+        let mut votes: BTreeMap<(i64, i64), (Vector<2>, u32)> = BTreeMap::new();
+        let mut anchors = 0;
+        for kind in &kinds {
+            if anchors >= ANCHORS.0 {
+                break;
+            }
+            let far = |i: usize| (self.marks.all[i].place - centre).norm2();
+            let mut from = kind.clone();
+            from.sort_by(|&i, &j| far(i).total_cmp(&far(j)).then(i.cmp(&j)));
+            from.truncate(ANCHORS.1);
+            anchors += from.len();
+            self.budget.spend(OFFSET * (from.len() * kind.len()) as u64)?;
+            for &i in &from {
+                for &j in kind.iter().filter(|&&j| j != i) {
+                    let offset = self.marks.all[j].place - self.marks.all[i].place;
+                    let offset = if (offset[1], offset[0]) < (0.0, 0.0) { -offset } else { offset };
+                    let key = ((offset[0] / cell).floor() as i64, (offset[1] / cell).floor() as i64);
+                    let entry = votes.entry(key).or_insert((Vector::ZERO, 0));
+                    *entry = (entry.0 + offset, entry.1 + 1);
+                }
+            }
+        }
+        let least = 0.02 * self.marks.unit;
+        let shared = votes.into_values().filter(|(_, count)| *count >= 2);
+        let mut offsets: Vec<_> = shared.map(|(sum, n)| (sum * (1.0 / f64::from(n)), n)).collect();
+        offsets.retain(|(offset, _)| offset.norm() > least.max(2.0 * cell));
+        if offsets.len() > CANDIDATES {
+            offsets.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
+            offsets.truncate(CANDIDATES);
+        }
+        offsets.sort_by(|(a, _), (b, _)| a.norm2().total_cmp(&b.norm2()));
+        Ok(offsets.into_iter().map(|(offset, _)| offset).collect())
+    }
+
+    /// The lattice of two vectors, fitted to all marks; `None` where they do not lie on it after all.
+    fn refined(&self, a: Vector<2>, b: Vector<2>, extent: Extent) -> Result<Option<Repeat>> {
+        let Some(mut lattice) = Lattice::new(a, b) else { return Ok(None) };
+        let mut fit = None;
+        for _ in 0..2 {
+            let next = self.fit(&lattice)?;
+            if extent == Extent::Plane {
+                lattice = Lattice::new(next.vectors[0], next.vectors[1]).unwrap_or(lattice);
+            } else {
+                // Only the vector that was found is fitted.
+                let k = usize::from(are_parallel(lattice.vectors[1], a));
+                lattice.vectors[k] = next.vectors[k];
+            }
+            fit = Some(next);
+        }
+        let Some(fit) = fit else { return Ok(None) };
+        let shorter = lattice.vectors[0].norm().min(lattice.vectors[1].norm());
+        let explains = if self.mode.kinds == Kinds::Any { Explains::Places } else { Explains::Everything };
+        let sound = fit.jitter <= JITTER * shorter;
+        let (anchor, jitter, share) = (self.mode.anchor, fit.jitter, fit.share);
+        Ok(sound.then_some(Repeat { lattice, explains, extent, anchor, jitter, share }))
+    }
+
+    /// Walks from mark to mark and fits the vectors to all of them by least squares.
+    fn fit(&self, lattice: &Lattice) -> Result<Fit> {
+        let marks = self.marks;
+        let window = marks.window.grown(1e-6 * self.side);
+        let tolerance = self.tolerance();
+        let mut node: Vec<Option<[i64; 2]>> = vec![None; marks.all.len()];
+        let mut sums = Sums::default();
+        let (mut seen, mut found, mut work) = (0_usize, 0_usize, 0);
+        for start in 0..marks.all.len() {
+            if node[start].is_some() || marks.all[start].is_context {
+                continue;
+            }
+            node[start] = Some([0, 0]);
+            let mut walk = vec![(start, [0_i64, 0])];
+            let mut next = 0;
+            while let Some(&(i, at)) = walk.get(next) {
+                next += 1;
+                let mark = marks.all[i];
+                if mark.is_context {
+                    continue;
+                }
+                for step in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
+                    let by = lattice.at(step);
+                    let (partner, looked) = marks.find(mark.place + by, mark.kind, tolerance);
+                    work += 8 * (4 + looked);
+                    if window.contains(mark.extent.min + by) && window.contains(mark.extent.max + by) {
+                        seen += 1;
+                        found += usize::from(partner.is_some());
+                    }
+                    let there = [at[0] + step[0], at[1] + step[1]];
+                    if let Some(j) = partner.filter(|&j| node[j].is_none()) {
+                        node[j] = Some(there);
+                        walk.push((j, there));
+                    }
+                }
+            }
+            sums.add(&walk.iter().map(|&(i, n)| (n, marks.all[i].place)).collect::<Vec<_>>());
+        }
+        self.budget.spend(work)?;
+        let vectors = sums.vectors().unwrap_or(lattice.vectors);
+        Ok(Fit { vectors, jitter: sums.jitter(&vectors), share: found as f64 / seen.max(1) as f64 })
+    }
+}
+
+/// Fitted vectors, and how well they fit.
+struct Fit {
+    vectors: [Vector<2>; 2],
+    jitter: f64,
+    share: f64,
+}
+
+/// Normal equations of the vectors, over groups of marks each of which has an unknown origin.
+#[derive(Default)]
+struct Sums {
+    /// Products of node coordinates.
+    nodes: [[f64; 2]; 2],
+    /// Products of node coordinates and places.
+    places: [[f64; 2]; 2],
+    /// Squares of places.
+    squares: f64,
+    count: f64,
+}
+
+impl Sums {
+    fn add(&mut self, group: &[([i64; 2], Vector<2>)]) {
+        let count = group.len() as f64;
+        let mean = |k: usize| group.iter().map(|(n, _)| n[k] as f64).sum::<f64>() / count;
+        let (m, origin) = ([mean(0), mean(1)], group[0].1);
+        let centre = group.iter().fold(Vector::ZERO, |sum, (_, p)| sum + (*p - origin)) * (1.0 / count);
+        for (n, p) in group {
+            let (n, p) = ([n[0] as f64 - m[0], n[1] as f64 - m[1]], *p - origin - centre);
+            for r in 0..2 {
+                for c in 0..2 {
+                    self.nodes[r][c] += n[r] * n[c];
+                    self.places[r][c] += n[r] * p[c];
+                }
+            }
+            self.squares += p.norm2();
+            self.count += 1.0;
+        }
+    }
+
+    fn vectors(&self) -> Option<[Vector<2>; 2]> {
+        let [[a, b], [c, d]] = self.nodes;
+        let measure = a * d - b * c;
+        let solved = |r: [f64; 2]| -> Vector<2> {
+            let of = |k: usize| (r[0] * self.places[0][k] + r[1] * self.places[1][k]) / measure;
+            Vector::xy(of(0), of(1))
+        };
+        (measure > 1e-9 * (a + d).powi(2)).then(|| [solved([d, -b]), solved([-c, a])])
+    }
+
+    /// Root mean square distance from where the vectors have the marks.
+    fn jitter(&self, vectors: &[Vector<2>; 2]) -> f64 {
+        let mut sum = self.squares;
+        for r in 0..2 {
+            let place = Vector::xy(self.places[r][0], self.places[r][1]);
+            sum -= 2.0 * vectors[r].dot(place);
+            sum += (0..2).map(|c| vectors[r].dot(vectors[c]) * self.nodes[r][c]).sum::<f64>();
+        }
+        (sum.max(0.0) / self.count.max(1.0)).sqrt()
+    }
+}

@@ -1,0 +1,119 @@
+//! Marks: what can be recognised again at another place of the exemplar.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Role, Vector};
+
+use crate::repeat::{
+    lines::{Feature, Lines},
+    looks,
+};
+
+/// Which elements count as one kind of mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kinds {
+    /// Those that look alike as they lie.
+    Looks,
+    /// Those of one class.
+    Classes,
+    /// All: what repeats are the places.
+    Any,
+}
+
+/// The point of an element that is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Its centre of area.
+    Centre,
+    /// The centre of the box around it: where people align different things.
+    Box,
+}
+
+/// Something that can be recognised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mark {
+    pub(crate) place: Vector<2>,
+    pub(crate) kind: u32,
+    /// What must lie in the frame for the mark to be seen.
+    pub(crate) extent: Bounds<2>,
+    /// The element that it is, `None` for a feature of a line.
+    pub(crate) element: Option<u32>,
+    /// Whether it is an element that may be cut at the frame: others may find it, it looks for none.
+    pub(crate) is_context: bool,
+}
+
+/// The marks of an exemplar.
+#[derive(Clone, Debug)]
+pub(crate) struct Marks {
+    pub(crate) all: Vec<Mark>,
+    pub(crate) window: Bounds<2>,
+    /// Mean distance of marks.
+    pub(crate) unit: f64,
+    index: GridIndex<2>,
+}
+
+/// The place of an element.
+pub(crate) fn place_of(element: &arabesque_core::Element<2>, anchor: Anchor) -> Vector<2> {
+    match anchor {
+        Anchor::Box if !element.outline.rings.is_empty() => element.outline.bounds().centre(),
+        Anchor::Box | Anchor::Centre => element.centre,
+    }
+}
+
+impl Marks {
+    /// The marks of an exemplar; `None` where elements of too many looks are to be told apart.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(
+        exemplar: &Exemplar<2>,
+        lines: &Lines,
+        kinds: Kinds,
+        anchor: Anchor,
+        budget: &Budget,
+    ) -> Result<Option<Self>> {
+        let looks = match kinds {
+            Kinds::Looks => match looks::looks(exemplar, budget)? {
+                Some(looks) => looks,
+                None => return Ok(None),
+            },
+            Kinds::Classes => exemplar.elements.iter().map(|e| e.class as u32).collect(),
+            Kinds::Any => vec![0; exemplar.elements.len()],
+        };
+        let mut number: BTreeMap<(Option<u32>, Option<Feature>), u32> = BTreeMap::new();
+        let mut kind = |key| {
+            let next = number.len() as u32;
+            *number.entry(key).or_insert(next)
+        };
+        let mut all = Vec::new();
+        for (e, (element, look)) in (0..).zip(exemplar.elements.iter().zip(looks)) {
+            let place = place_of(element, anchor);
+            let extent =
+                if element.outline.rings.is_empty() { Bounds::new(place, place) } else { element.outline.bounds() };
+            let is_context = element.role == Role::Context;
+            all.push(Mark { place, kind: kind((Some(look), None)), extent, element: Some(e), is_context });
+        }
+        for &(place, feature) in &lines.features {
+            let (kind, extent) = (kind((None, Some(feature))), Bounds::new(place, place));
+            all.push(Mark { place, kind, extent, element: None, is_context: false });
+        }
+        let window = exemplar.window;
+        let unit = (window.measure() / all.len().max(1) as f64).sqrt();
+        let places: Vec<_> = all.iter().map(|mark| mark.place).collect();
+        let index = GridIndex::new(&places, 0.25 * unit, &Domain::Box(window));
+        Ok(Some(Self { all, window, unit, index }))
+    }
+
+    /// The mark of this kind that is nearest to a place, within a distance.
+    pub(crate) fn find(&self, place: Vector<2>, kind: u32, within: f64) -> (Option<usize>, u64) {
+        let mut best: Option<(usize, f64)> = None;
+        let looked = self.index.within(place, within, |i, offset| {
+            let apart = offset.norm2();
+            let nearer = best.is_none_or(|(j, least)| (apart, i) < (least, j));
+            if self.all[i].kind == kind && nearer {
+                best = Some((i, apart));
+            }
+        });
+        (best.map(|(i, _)| i), looked)
+    }
+}

@@ -1,0 +1,22 @@
+//! The repeat of an exemplar: by which translations it goes over into itself.
+//!
+//! Everything that can be recognised again is a mark: whole elements, and on lines their ends, their crossings and the
+//! places where they pass through one of a few directions. Offsets of marks of one kind are votes for a translation;
+//! one that takes nearly every mark to another, wherever the frame shows what should be there, is a repeat. The two
+//! shortest that are independent span the lattice, which least squares over all marks then place exactly
+//! ([Pauly 2008] for voting in the space of transformations, [Liu 2004] for near-regular lattices).
+
+pub(crate) mod find;
+pub(crate) mod lattice;
+pub(crate) mod lines;
+pub(crate) mod looks;
+pub(crate) mod marks;
+pub(crate) mod orbits;
+pub(crate) mod straight;
+pub(crate) mod support;
+pub(crate) mod tile;
+
+pub use find::{Explains, Extent, Repeat, find};
+pub use lattice::Lattice;
+pub use marks::Anchor;
+pub use tile::TileFit;

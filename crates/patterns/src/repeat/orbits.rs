@@ -1,0 +1,163 @@
+//! Orbits: the places in a cell of the lattice where elements lie, and which elements of the exemplar lie there.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Bounds, Budget, Exemplar, Result, Role, Vector};
+
+use crate::repeat::{
+    find::Repeat,
+    lattice::{Lattice, Node},
+    marks::place_of,
+};
+
+/// Elements belong to one orbit when they are off by less than this share of the shorter vector, and by less than so
+/// many times the jitter.
+const TOLERANCE: (f64, f64) = (0.02, 4.0);
+
+/// A place of which fewer than this share of the nodes in the frame are taken is an exception, not a place.
+const TAKEN: f64 = 0.5;
+
+/// Work for each element and orbit that are compared.
+const COMPARE: u64 = 15;
+
+/// Most orbits: with more of them, a cell holds so much that there is nothing regular about it.
+const MOST: usize = 20_000;
+
+/// An element of the exemplar at a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instance {
+    pub(crate) element: u32,
+    pub(crate) node: Node,
+    /// From where the lattice has it to where it is.
+    pub(crate) residual: Vector<2>,
+}
+
+/// A place in the cell.
+#[derive(Clone, Debug)]
+pub(crate) struct Orbit {
+    /// Where it is at the node at the origin.
+    pub(crate) base: Vector<2>,
+    pub(crate) instances: Vec<Instance>,
+}
+
+/// The orbits of an exemplar, and the elements that lie on none.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -> Result<(Vec<Orbit>, Vec<u32>)> {
+    let lattice = &repeat.lattice;
+    let shorter = lattice.vectors[0].norm().min(lattice.vectors[1].norm());
+    let tolerance = (TOLERANCE.0 * shorter).max(TOLERANCE.1 * repeat.jitter).min(0.45 * shorter);
+    let mut found = Found { lattice, tolerance, orbits: Vec::new(), cells: BTreeMap::new(), budget };
+    let mut groups: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+    for (e, element) in (0..).zip(&exemplar.elements) {
+        if element.role == Role::Source {
+            groups.entry(element.class).or_default().push(e);
+        }
+    }
+    // Common classes first: an exception among them takes one of their nodes, and no orbit of its own.
+    let mut groups: Vec<_> = groups.into_iter().collect();
+    groups.sort_by_key(|(class, members)| (std::cmp::Reverse(members.len()), *class));
+    for (class, members) in groups {
+        for e in members {
+            let place = place_of(&exemplar.elements[e as usize], repeat.anchor);
+            found.add(e, class, place)?;
+        }
+    }
+    Ok(found.settled(exemplar))
+}
+
+struct Found<'a> {
+    lattice: &'a Lattice,
+    tolerance: f64,
+    /// Orbits with the class that began each, and the nodes that are taken.
+    orbits: Vec<(Orbit, usize, BTreeMap<Node, u32>)>,
+    /// Orbits by the square of the cell that their base lies in.
+    cells: BTreeMap<(i64, i64), Vec<usize>>,
+    budget: &'a Budget,
+}
+
+impl Found<'_> {
+    fn key(&self, p: Vector<2>) -> (i64, i64) {
+        let side = 2.0 * self.tolerance;
+        ((p[0] / side).floor() as i64, (p[1] / side).floor() as i64)
+    }
+
+    fn add(&mut self, element: u32, class: usize, place: Vector<2>) -> Result<()> {
+        let folded = self.lattice.folded(place);
+        let mut best: Option<(bool, f64, usize)> = None;
+        let mut looked = 0;
+        // At the sides of the cell, the same place lies on the other side too.
+        for step in [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, -1], [1, -1], [-1, 1]] {
+            let p = folded + self.lattice.at(step);
+            let (x, y) = self.key(p);
+            for key in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j))) {
+                for &o in self.cells.get(&key).map_or(&[][..], Vec::as_slice) {
+                    looked += 1;
+                    let (orbit, first, taken) = &self.orbits[o];
+                    let apart = (orbit.base - p).norm();
+                    let (node, _) = self.lattice.nearest(place - orbit.base);
+                    if apart > self.tolerance || taken.contains_key(&node) {
+                        continue;
+                    }
+                    let rank = (*first != class, apart, o);
+                    if best.is_none_or(|b| (rank.0, rank.1) < (b.0, b.1)) {
+                        best = Some(rank);
+                    }
+                }
+            }
+        }
+        self.budget.spend(COMPARE * (looked + 20))?;
+        let number = match best {
+            Some((_, _, o)) => o,
+            None => {
+                let key = self.key(folded);
+                self.cells.entry(key).or_default().push(self.orbits.len());
+                self.orbits.push((Orbit { base: folded, instances: Vec::new() }, class, BTreeMap::new()));
+                self.budget.within("places in one cell of the repeat", self.orbits.len(), ("elements", MOST))?;
+                self.orbits.len() - 1
+            }
+        };
+        let (orbit, _, taken) = &mut self.orbits[number];
+        let (node, residual) = self.lattice.nearest(place - orbit.base);
+        taken.insert(node, element);
+        orbit.instances.push(Instance { element, node, residual });
+        Ok(())
+    }
+
+    /// The orbits that hold, moved to the middle of their elements, and the elements of the others.
+    fn settled(self, exemplar: &Exemplar<2>) -> (Vec<Orbit>, Vec<u32>) {
+        let (lattice, window) = (*self.lattice, exemplar.window);
+        let (mut kept, mut others) = (Vec::new(), Vec::new());
+        for (mut orbit, _, taken) in self.orbits {
+            let count = orbit.instances.len() as f64;
+            let mean = orbit.instances.iter().fold(Vector::ZERO, |sum, i| sum + i.residual) * (1.0 / count);
+            orbit.base += mean;
+            orbit.instances.iter_mut().for_each(|i| i.residual -= mean);
+            let expected = expected_nodes(exemplar, &lattice, &orbit, &window);
+            let met = expected.iter().filter(|node| taken.contains_key(*node)).count();
+            if met as f64 >= TAKEN * expected.len() as f64 {
+                orbit.instances.sort_by_key(|i| i.element);
+                kept.push(orbit);
+            } else {
+                others.extend(orbit.instances.iter().map(|i| i.element));
+            }
+        }
+        kept.sort_by_key(|orbit| orbit.instances.first().map(|i| i.element));
+        others.sort_unstable();
+        (kept, others)
+    }
+}
+
+/// The nodes at which an element of the orbit would lie wholly in the frame.
+fn expected_nodes(exemplar: &Exemplar<2>, lattice: &Lattice, orbit: &Orbit, window: &Bounds<2>) -> Vec<Node> {
+    let Some(first) = orbit.instances.first() else { return Vec::new() };
+    let outline = &exemplar.elements[first.element as usize].outline;
+    let here = orbit.base + lattice.at(first.node) + first.residual;
+    let extent = if outline.rings.is_empty() { Bounds::new(here, here) } else { outline.bounds() };
+    let (low, high) = (here - extent.min, extent.max - here);
+    let room = Bounds::new(window.min + low, window.max - high).grown(1e-6 * window.size().norm());
+    let [rows, columns] = lattice.nodes_in(orbit.base, &room);
+    let nodes = rows.flat_map(|i| columns.clone().map(move |j| [i, j]));
+    nodes.filter(|node| room.contains(orbit.base + lattice.at(*node))).collect()
+}

@@ -1,0 +1,162 @@
+//! What a translation is supported by: the share of marks, and of the length of lines, that it takes to another of
+//! their kind.
+
+use arabesque_core::{Bounds, Budget, Domain, GridIndex, Result, Segment, Vector, segment};
+
+use crate::repeat::{lines::Lines, marks::Marks};
+
+/// A share of marks that must have a partner.
+const ENOUGH: f64 = 0.95;
+
+/// The same of the length of lines.
+const ENOUGH_LINE: f64 = 0.975;
+
+/// Marks that are looked at before a hopeless translation is given up, and the share of them that must have a partner.
+const FIRST: (usize, f64) = (12, 0.7);
+
+/// Places along the lines of an exemplar that are compared.
+const PLACES: f64 = 3000.0;
+
+/// Work for each entry of an index that is looked at.
+const LOOK: u64 = 8;
+
+/// Whether a translation takes nearly every mark to one of its kind, within `tolerance`. It tells nothing when fewer
+/// marks than `least` should be seen again, as a number and as a share of all.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn is_supported(
+    marks: &Marks,
+    by: Vector<2>,
+    tolerance: f64,
+    least: (usize, f64),
+    budget: &Budget,
+) -> Result<bool> {
+    let count = marks.all.len();
+    let window = marks.window.grown(1e-6 * marks.window.size().norm());
+    let (mut work, mut seen, mut found) = (0, [0_usize; 2], [0_usize; 2]);
+    // A stride that shares no factor with the count meets all of them, far apart from one another.
+    let stride = (1..).map(|k| (count * 21 / 34).max(1) + k).find(|s| coprime(*s, count)).unwrap_or(1);
+    for k in 0..count {
+        let mark = &marks.all[k * stride % count];
+        if mark.is_context {
+            continue;
+        }
+        for way in [by, -by] {
+            let there = Bounds::new(mark.extent.min + way, mark.extent.max + way);
+            if !(window.contains(there.min) && window.contains(there.max)) {
+                continue;
+            }
+            let group = usize::from(mark.element.is_none());
+            let (partner, looked) = marks.find(mark.place + way, mark.kind, tolerance);
+            work += LOOK * (4 + looked);
+            seen[group] += 1;
+            found[group] += usize::from(partner.is_some());
+        }
+        let (so_far, met) = (seen[0] + seen[1], found[0] + found[1]);
+        if so_far >= FIRST.0 && (met as f64) < FIRST.1 * so_far as f64 {
+            break;
+        }
+    }
+    budget.spend(work)?;
+    let least = least.0.max((least.1 * count as f64) as usize);
+    let holds = |g: usize| found[g] as f64 >= ENOUGH * seen[g] as f64;
+    Ok(seen[0] + seen[1] >= 2 * least && holds(0) && holds(1))
+}
+
+fn coprime(a: usize, b: usize) -> bool {
+    let (mut a, mut b) = (a, b);
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a == 1
+}
+
+/// Short pieces of all lines, to be asked what is near a place.
+pub(crate) struct LineIndex<'a> {
+    lines: &'a Lines,
+    window: Bounds<2>,
+    /// Ends of the pieces, and the styles of their lines.
+    pieces: Vec<(Segment<2>, usize)>,
+    index: GridIndex<2>,
+    /// Longest piece.
+    step: f64,
+}
+
+impl<'a> LineIndex<'a> {
+    /// Cuts the lines into pieces.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(lines: &'a Lines, window: Bounds<2>, budget: &Budget) -> Result<Self> {
+        let length: f64 = lines.tracks.iter().flat_map(|t| t.points.windows(2)).map(|w| (w[1] - w[0]).norm()).sum();
+        let step = (length / PLACES).max(1e-4 * window.size().norm());
+        let mut pieces = Vec::new();
+        for track in &lines.tracks {
+            let closing = track.closed.then(|| (track.points.last(), track.points.first()));
+            let closing = closing.and_then(|(a, b)| Some((*a?, *b?)));
+            for (a, b) in track.points.windows(2).map(|w| (w[0], w[1])).chain(closing).filter(|(a, b)| a != b) {
+                let count = ((b - a).norm() / step).ceil().clamp(1.0, 1e5);
+                budget.spend(30 * count as u64)?;
+                let at = |k: f64| a + (b - a) * (k / count);
+                pieces.extend((0..count as usize).map(|k| ((at(k as f64), at(k as f64 + 1.0)), track.style)));
+            }
+        }
+        let middles: Vec<_> = pieces.iter().map(|((a, b), _)| (*a + *b) * 0.5).collect();
+        let index = GridIndex::new(&middles, step, &Domain::Box(window));
+        Ok(Self { lines, window, pieces, index, step })
+    }
+
+    /// Whether no line reaches over the sides of the frame that lie across an axis.
+    pub(crate) fn are_within(&self, axis: usize) -> bool {
+        let slack = 1e-6 * self.window.size().norm();
+        let (low, high) = (self.window.min[axis] - slack, self.window.max[axis] + slack);
+        self.lines.tracks.iter().flat_map(|t| &t.points).all(|p| (low..=high).contains(&p[axis]))
+    }
+
+    /// Distance of a place from the nearest line of a style that runs about the same way, where there is one within `reach`.
+    fn distance(&self, place: Vector<2>, way: Vector<2>, style: usize, reach: f64) -> (Option<f64>, u64) {
+        let mut best: Option<f64> = None;
+        let looked = self.index.within(place, reach + 0.5 * self.step, |i, _| {
+            let (piece, other) = self.pieces[i];
+            let along = (piece.1 - piece.0).unit_or_zero();
+            if other == style && along.dot(way).abs() > 0.9 {
+                let apart = segment::distance(piece, place);
+                if apart <= reach && best.is_none_or(|b| apart < b) {
+                    best = Some(apart);
+                }
+            }
+        });
+        (best, looked)
+    }
+
+    /// Whether a translation takes nearly all of the lines on to lines of their style.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn supports(&self, by: Vector<2>, tolerance: f64, budget: &Budget) -> Result<bool> {
+        if self.lines.is_empty() {
+            return Ok(true);
+        }
+        let stride = (self.pieces.len() as f64 / PLACES).ceil().max(1.0) as usize;
+        let seen_in = self.window.grown(-2.0 * tolerance);
+        let (mut seen, mut found, mut work) = (0_usize, 0_usize, 0);
+        for ((a, b), style) in self.pieces.iter().step_by(stride) {
+            let (place, way) = ((*a + *b) * 0.5, (*b - *a).unit_or_zero());
+            for by in [by, -by] {
+                if !(self.window.contains(place) && seen_in.contains(place + by)) {
+                    continue;
+                }
+                let (near, looked) = self.distance(place + by, way, *style, tolerance);
+                work += LOOK * (8 + looked);
+                seen += 1;
+                found += usize::from(near.is_some());
+            }
+            if seen >= 60 && (found as f64) < 0.85 * seen as f64 {
+                break;
+            }
+        }
+        budget.spend(work)?;
+        Ok(seen > 0 && found as f64 >= ENOUGH_LINE * seen as f64)
+    }
+}

@@ -33,7 +33,7 @@ pub use curve::{
     spans_inside, straight,
 };
 pub use error::{Error, Result};
-pub use exemplar::{Class, Contents, Curve, Element, Exemplar, Role, View};
+pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
@@ -44,7 +44,7 @@ pub use region::{
     segment::{self, Segment},
 };
 pub use run::{
-    Border, Drawn, EnergyPoint, Forecast, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason,
+    Border, Covered, Drawn, EnergyPoint, Forecast, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason,
     Unobserved, Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};

@@ -4,10 +4,15 @@
 
 use arabesque_core::{Bounds, Budget, Class, Curve, Exemplar, Path, Stream, Vector};
 use arabesque_patterns::{
-    Params, Prepared,
+    Params, Prepared, Repeats,
     stages::{Setup, Stage},
 };
 use divan::Bencher;
+
+/// The engine alone: these patterns repeat, and would be continued by their repeat.
+fn irregular() -> Params {
+    Params { repeat: Repeats::Off, ..Params::default() }
+}
 
 /// Samples of the output at the finest level, about.
 const SIZES: [usize; 4] = [300, 1_300, 5_000, 20_000];
@@ -100,7 +105,7 @@ mod prepare {
     use super::*;
 
     fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
-        let params = Params::default();
+        let params = irregular();
         bencher.bench_local(|| Prepared::new(exemplar.clone(), &params, &Budget::default()));
     }
 

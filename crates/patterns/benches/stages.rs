@@ -7,10 +7,15 @@ use arabesque_core::{
     Vector,
 };
 use arabesque_patterns::{
-    Params, Prepared,
+    Params, Prepared, Repeats,
     stages::{Setup, Stage},
 };
 use divan::Bencher;
+
+/// The engine alone: these patterns repeat, and would be continued by their repeat.
+fn irregular() -> Params {
+    Params { repeat: Repeats::Off, ..Params::default() }
+}
 
 /// Elements of the output.
 const SIZES: [usize; 3] = [100, 1_000, 10_000];
@@ -76,7 +81,7 @@ fn page(exemplar: &Exemplar<2>, n: usize) -> Request<2> {
 }
 
 fn params(settings: &[(&str, &str)]) -> Params {
-    let mut params = Params::default();
+    let mut params = irregular();
     for (name, value) in settings {
         params.set(name, value).expect("the setting exists");
     }
@@ -124,7 +129,7 @@ mod prepare {
     use super::*;
 
     fn analyse(bencher: Bencher, exemplar: &Exemplar<2>) {
-        let params = Params::default();
+        let params = irregular();
         bencher.bench_local(|| Prepared::new(exemplar.clone(), &params, &Budget::default()));
     }
 

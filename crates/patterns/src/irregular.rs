@@ -156,7 +156,14 @@ where
             ));
         }
         let stopped = ending::reason(cut_short, &mut warnings)?;
-        Ok(Outcome { placements: found.placements, curves: found.curves, energy: trace, warnings, stopped })
+        Ok(Outcome {
+            placements: found.placements,
+            curves: found.curves,
+            areas: Vec::new(),
+            energy: trace,
+            warnings,
+            stopped,
+        })
     }
 
     /// What a run will take, by what its samples take in each iteration.
@@ -181,12 +188,7 @@ where
     fn exemplar_warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let giants = self.levels.first().map_or(0, |s| s.library.giants);
-        if giants > 0 {
-            warnings.push(Warning::new(
-                format!("elements far larger than the frame of the exemplar are not copied: {giants}"),
-                "draw them smaller, or make the frame larger",
-            ));
-        }
+        warnings.extend(checks::giants_left_out(giants));
         let Some(sampled) = self.levels.first().filter(|_| self.has_curves()) else { return warnings };
         let side = self.exemplar.view().side();
         if sampled.level.radius >= 0.5 * side {

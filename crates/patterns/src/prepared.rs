@@ -21,7 +21,7 @@ pub struct Prepared<const D: usize> {
     /// Its repeat, where it has one that is to be used.
     regular: Option<Arc<Regular>>,
     /// What the engine needs; where there is a repeat, worked out when a request first needs it.
-    irregular: OnceLock<Arc<Irregular<D>>>,
+    irregular: OnceLock<Irregular<D>>,
 }
 
 /// The engine for one dimension, compiled in this crate: left generic, it would be compiled again in every crate that calls it.
@@ -86,7 +86,8 @@ where
 
     fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Self> {
         params.check()?;
-        if exemplar.curves.is_empty() && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
+        let has_lines = !exemplar.curves.is_empty() || !exemplar.areas.is_empty();
+        if !has_lines && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
             let problem = "one element only, expected at least two";
             let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
             return Err(Error::input("exemplar", problem, advice));
@@ -122,7 +123,7 @@ where
             return Ok(known);
         }
         let made = Irregular::new(&self.exemplar, &self.params, budget)?;
-        Ok(self.irregular.get_or_init(|| Arc::new(made)))
+        Ok(self.irregular.get_or_init(|| made))
     }
 
     /// The repeat by which the exemplar is continued; `None` where it is treated as irregular.
@@ -169,8 +170,25 @@ where
                 return Err(Error::parameter("repeat", "exact", format!("auto: {why}")));
             }
         }
+        no_areas(&self.exemplar, "cannot be bent by fields, turn at a border, or fit this tile")?;
         let mut outcome = self.irregular(&request.budget)?.filled(request, watch)?;
         outcome.warnings.splice(0..0, told);
         Ok(outcome)
     }
+}
+
+/// Refuses areas that only a repeat could continue.
+fn no_areas<const D: usize>(exemplar: &Exemplar<D>, why: &str) -> Result<()> {
+    let count = exemplar.areas.len();
+    if count == 0 {
+        return Ok(());
+    }
+    let names: Vec<_> = exemplar.areas.iter().map(|a| exemplar.styles[a.style].name.as_str()).take(3).collect();
+    Err(Error::Unsupported {
+        what: format!("filled areas that run through the frame and {why}: {count} ({}{})", names.join(", "), if count > 3 { ", .." } else { "" }),
+        advice: "show two periods of the pattern or more, draw the lines as strokes or with one width, use --method \
+                 elements to treat every connected piece as one element, or mark items with data-arabesque=\"element\" or \
+                 \"ignore\""
+            .into(),
+    })
 }

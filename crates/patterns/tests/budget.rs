@@ -9,7 +9,7 @@ use arabesque_core::{
     Border, Bounds, Budget, Class, Contents, Curve, Domain, Element, Error, Exemplar, FillRule, Limits, Outcome,
     Outline, Path, Request, Role, Shape, Similarity, Stage, StopReason, Stream, Unobserved, Vector,
 };
-use arabesque_patterns::{Compiled, Initialisation, Params, Prepared, Search};
+use arabesque_patterns::{Compiled, Initialisation, Params, Prepared, Repeats, Search};
 
 /// No more checks of one run are tried than this; of more, an even selection.
 const TRIED: u64 = 40;
@@ -57,12 +57,18 @@ fn lines(n: usize) -> Vec<Curve<2>> {
 
 fn exemplar(elements: Vec<Element<2>>, curves: Vec<Curve<2>>, side: f64) -> Arc<Exemplar<2>> {
     let class = |name: &str| Class { name: name.into() };
-    let contents = Contents { elements, classes: vec![class("a"), class("b")], curves, styles: vec![class("line")] };
+    let contents = Contents {
+        elements,
+        classes: vec![class("a"), class("b")],
+        curves,
+        styles: vec![class("line")],
+        areas: Vec::new(),
+    };
     Arc::new(Exemplar::with_curves("t", contents, page(side, side)).unwrap())
 }
 
 fn small() -> Params {
-    Params { levels: 2, iterations: 2, ..Params::default() }
+    Params { repeat: Repeats::Off, levels: 2, iterations: 2, ..Params::default() }
 }
 
 fn elements() -> (Prepared<2>, Request<2>) {

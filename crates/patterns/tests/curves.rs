@@ -6,7 +6,12 @@ use arabesque_core::{
     Border, Bounds, Budget, Class, Curve, Domain, Drawn, Exemplar, Measured, Outcome, Path, Request, Stage, Stream,
     Unobserved, Vector,
 };
-use arabesque_patterns::{Params, Prepared};
+use arabesque_patterns::{Params, Prepared, Repeats};
+
+/// The engine alone: these patterns repeat, and would be continued by their repeat.
+fn irregular() -> Params {
+    Params { repeat: Repeats::Off, ..Params::default() }
+}
 
 fn page(w: f64, h: f64) -> Bounds<2> {
     Bounds::new(Vector::ZERO, Vector::xy(w, h))
@@ -26,6 +31,7 @@ fn exemplar(curves: Vec<Curve<2>>, window: Bounds<2>) -> Exemplar<2> {
         arabesque_core::Contents {
             curves,
             styles: vec![Class { name: "line".into() }],
+            areas: Vec::new(),
             ..arabesque_core::Contents::default()
         },
         window,
@@ -72,7 +78,7 @@ fn loose_ends(outcome: &Outcome<2>, domain: &Domain<2>, rim: f64) -> usize {
 #[test]
 fn a_grid_stays_a_grid_of_long_strokes() {
     let domain = Domain::Box(page(200.0, 160.0));
-    let outcome = fill(&grid(7, 0.6), &Params::default(), &Request::new(domain.clone()));
+    let outcome = fill(&grid(7, 0.6), &irregular(), &Request::new(domain.clone()));
     // 20 lines down and 16 across, each a single stroke from side to side; the border may leave a scrap or two.
     assert!((36..=40).contains(&outcome.curves.len()), "{}", outcome.curves.len());
     assert!(loose_ends(&outcome, &domain, 1.0) <= 2);
@@ -83,7 +89,7 @@ fn a_grid_stays_a_grid_of_long_strokes() {
 #[test]
 fn the_energy_falls_level_by_level() {
     // From disorder, where there is something to gain at every level.
-    let mut params = Params::default();
+    let mut params = irregular();
     params.set("initialisation", "random-copy").unwrap();
     params.set("regrowth", "off").unwrap();
     let outcome = fill(&grid(7, 0.6), &params, &Request::new(Domain::Box(page(150.0, 150.0))));
@@ -99,7 +105,7 @@ fn the_energy_falls_level_by_level() {
 #[test]
 fn a_torus_joins_its_strokes_exactly() {
     let domain = Domain::Torus(page(100.0, 80.0));
-    let outcome = fill(&grid(7, 0.5), &Params::default(), &Request::new(domain.clone()));
+    let outcome = fill(&grid(7, 0.5), &irregular(), &Request::new(domain.clone()));
     for drawn in outcome.curves.iter().filter(|d| !d.path.closed) {
         let (a, b) = (drawn.path.start().unwrap(), drawn.path.end().unwrap());
         assert!(domain.offset(a, b).norm() < 1e-9, "a stroke that ends on a torus of a grid: {a:?} {b:?}");
@@ -121,7 +127,7 @@ fn rings_stay_whole() {
     let rings = (0..49).map(|k| ring(f64::from(k % 7) * 12.0 + 6.0, f64::from(k / 7) * 12.0 + 6.0)).collect();
     let exemplar = exemplar(rings, page(84.0, 84.0));
     let request = Request { border: Border::Cross, ..Request::new(Domain::Box(page(150.0, 120.0))) };
-    let outcome = fill(&exemplar, &Params::default(), &request);
+    let outcome = fill(&exemplar, &irregular(), &request);
     let whole = outcome.curves.iter().filter(|d| d.path.closed).count();
     assert!(whole >= 100, "{whole} of {}", outcome.curves.len());
     for drawn in outcome.curves.iter().filter(|d| d.path.closed) {
@@ -137,7 +143,7 @@ fn corners_stay_corners() {
         curve(&points, false)
     };
     let exemplar = exemplar((0..10).map(|k| zigzag(f64::from(k) * 8.0 + 1.0)).collect(), page(80.0, 80.0));
-    let outcome = fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(160.0, 80.0))));
+    let outcome = fill(&exemplar, &irregular(), &Request::new(Domain::Box(page(160.0, 80.0))));
     let mut corners = 0;
     for drawn in &outcome.curves {
         for pair in drawn.path.cubics.windows(2) {
@@ -162,7 +168,7 @@ fn what_the_user_drew_stays_and_is_joined() {
     let frozen: Vec<_> = (0..6).map(|k| drawn(10.0 * f64::from(k) + 5.0)).collect();
     let domain = Domain::Box(Bounds::new(Vector::xy(60.0, 0.0), Vector::xy(140.0, 60.0)));
     let request = Request { frozen_curves: frozen.clone(), ..Request::new(domain) };
-    let outcome = fill(&exemplar, &Params::default(), &request);
+    let outcome = fill(&exemplar, &irregular(), &request);
     let kept: Vec<_> = outcome.curves.iter().filter(|d| d.frozen.is_some()).collect();
     assert_eq!(kept.len(), 6);
     assert!(kept.iter().zip(&frozen).all(|(a, b)| a.path == b.path));
@@ -210,7 +216,7 @@ fn mended(whole: &Exemplar<2>, hole: Bounds<2>, seed: u64) -> Outcome<2> {
     let request =
         Request { frozen_curves: kept.collect(), known: Some(whole.window), seed, ..Request::new(Domain::Box(hole)) };
     let exemplar = Exemplar { hole: Some(hole), ..exemplar(curves, whole.window) };
-    fill(&exemplar, &Params::default(), &request)
+    fill(&exemplar, &irregular(), &request)
 }
 
 #[test]
@@ -233,7 +239,7 @@ fn a_hole_is_filled_from_what_is_around_it() {
 #[test]
 fn ends_beside_one_another_make_no_endless_stroke() {
     // From disorder, where many ends come to lie beside others.
-    let mut params = Params::default();
+    let mut params = irregular();
     params.set("initialisation", "random-copy").unwrap();
     params.set("regrowth", "off").unwrap();
     let outcome = fill(&parquet(7), &params, &Request::new(Domain::Box(page(200.0, 200.0))));
@@ -247,7 +253,7 @@ fn the_number_of_threads_makes_no_difference() {
     let exemplar = grid(6, 0.6);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(120.0, 90.0)))).curves)
+        pool.install(|| fill(&exemplar, &irregular(), &Request::new(Domain::Box(page(120.0, 90.0)))).curves)
     };
     let one = run(1);
     assert_eq!(one, run(2));
@@ -272,7 +278,7 @@ fn every_component_can_be_left_out() {
         ("spacing", "6"),
     ];
     for (name, value) in settings {
-        let mut params = Params::default();
+        let mut params = irregular();
         params.set(name, value).unwrap();
         let outcome = fill(&exemplar, &params, &Request::new(Domain::Box(page(60.0, 60.0))));
         assert!(length(&outcome) > 250.0, "{name}={value}: {}", length(&outcome));
@@ -311,7 +317,7 @@ fn a_lattice_in_space_goes_on() {
     )
     .unwrap();
     let domain = Domain::Box(Bounds::new(Vector([0.0; 3]), Vector([60.0, 60.0, 40.0])));
-    let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
+    let prepared = Prepared::new(exemplar.clone(), &irregular(), &Budget::default()).unwrap();
     let outcome = prepared.run(&Request::new(domain), &mut Unobserved).unwrap();
     // 6 x 4 bars of 60 twice, 6 x 6 bars of 40.
     let total = 2.0 * 24.0 * 60.0 + 36.0 * 40.0;
@@ -323,7 +329,7 @@ fn curves_that_never_repeat_are_warned_of() {
     let mut random = Stream::new(3, Stage::TEST, 0);
     let points: Vec<_> = (0..12).map(|_| Vector::xy(random.range(5.0, 95.0), random.range(5.0, 95.0))).collect();
     let exemplar = exemplar(vec![curve(&points, false)], page(100.0, 100.0));
-    let outcome = fill(&exemplar, &Params::default(), &Request::new(Domain::Box(page(150.0, 150.0))));
+    let outcome = fill(&exemplar, &irregular(), &Request::new(Domain::Box(page(150.0, 150.0))));
     assert!(outcome.warnings.iter().any(|w| w.message.contains("nothing to repeat")), "{:?}", outcome.warnings);
 }
 
@@ -331,6 +337,6 @@ fn curves_that_never_repeat_are_warned_of() {
 fn curves_outside_the_frame_are_refused() {
     let exemplar =
         exemplar(vec![curve(&[Vector::xy(-50.0, -50.0), Vector::xy(-10.0, -20.0)], false)], page(10.0, 10.0));
-    let error = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap_err();
+    let error = Prepared::new(exemplar.clone(), &irregular(), &Budget::default()).unwrap_err();
     assert!(error.to_string().contains("outside the frame"), "{error}");
 }

@@ -7,7 +7,7 @@ use arabesque_core::{
     Bounds, Budget, Class, Contents, Curve, Domain, Element, Error, Exemplar, Limits, Outcome, Outline, Path, Request,
     Role, Similarity, StopReason, Unobserved, Vector,
 };
-use arabesque_patterns::{Params, Prepared};
+use arabesque_patterns::{Params, Prepared, Repeats};
 
 fn page(side: f64) -> Bounds<2> {
     Bounds::new(Vector::ZERO, Vector::splat(side))
@@ -30,12 +30,18 @@ fn drawing(elements: Vec<Element<2>>, curves: Vec<Curve<2>>, side: f64) -> Exemp
     let most = elements.iter().map(|e| e.class).max().unwrap_or(0);
     let classes = (0..=most).map(|c| Class { name: c.to_string() }).collect();
     let styles = vec![Class { name: "line".into() }];
-    Exemplar::with_curves("t", Contents { elements, classes, curves, styles }, page(side)).unwrap()
+    Exemplar::with_curves("t", Contents { elements, classes, curves, styles, ..Contents::default() }, page(side))
+        .unwrap()
 }
 
 fn line(points: &[(f64, f64)]) -> Curve<2> {
     let points: Vec<_> = points.iter().map(|&(x, y)| Vector::xy(x, y)).collect();
     Curve { path: Path::polyline(&points), style: 0, width: 0.5, colour: [0.0; 3] }
+}
+
+/// The engine alone: these patterns repeat, and would be continued by their repeat.
+fn irregular() -> Params {
+    Params { repeat: Repeats::Off, ..Params::default() }
 }
 
 fn analysed(exemplar: Exemplar<2>) -> Result<Prepared<2>, Error> {
@@ -106,7 +112,7 @@ fn elements_of_no_size_are_points() {
 fn every_element_may_be_a_class_of_its_own() {
     let elements = (0..3000).map(|k| square(k, Vector::xy((k % 60) as f64, (k / 60) as f64) * 2.0, 0.5)).collect();
     let budget = Budget::default();
-    let prepared = Prepared::new(drawing(elements, Vec::new(), 120.0), &Params::default(), &budget).unwrap();
+    let prepared = Prepared::new(drawing(elements, Vec::new(), 120.0), &irregular(), &budget).unwrap();
     assert_eq!(prepared.samples_per_element().len(), 3000);
     assert!(budget.work() < 5_000_000_000, "{}", budget.work());
 }
@@ -143,13 +149,8 @@ fn a_curve_that_crosses_itself_all_over_is_refused() {
 
 #[test]
 fn knobs_at_their_largest_end_with_a_warning() {
-    let params = Params {
-        samples: Some(64),
-        coarse_neighbours: 200.0,
-        fine_neighbours: 200.0,
-        iterations: 1000,
-        ..Params::default()
-    };
+    let params =
+        Params { samples: Some(64), coarse_neighbours: 200.0, fine_neighbours: 200.0, iterations: 1000, ..irregular() };
     let prepared = Prepared::new(drawing(dots(), Vec::new(), 120.0), &params, &Budget::default()).unwrap();
     let limits = Limits { work: 300, work_per_element: 0, ..Limits::default() };
     let outcome = filled(&prepared, limits).unwrap();
@@ -170,7 +171,7 @@ fn a_frame_far_larger_than_its_elements_is_handled() {
 #[test]
 fn too_many_neighbours_are_refused_before_the_memory_is_gone() {
     let limits = Limits { memory: 64 << 20, ..Limits::default() };
-    let params = Params { samples: Some(64), coarse_neighbours: 200.0, fine_neighbours: 200.0, ..Params::default() };
+    let params = Params { samples: Some(64), coarse_neighbours: 200.0, fine_neighbours: 200.0, ..irregular() };
     let made = Prepared::new(drawing(dots(), Vec::new(), 120.0), &params, &Budget::new(limits));
     let told = refused(made);
     assert!(told.contains("neighbourhoods of the exemplar") && told.contains("--limit memory="), "{told}");

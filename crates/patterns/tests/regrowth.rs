@@ -5,7 +5,12 @@
 use arabesque_core::{
     Bounds, Budget, Class, Curve, Domain, Drawn, Exemplar, Outcome, Path, Request, Stage, Stream, Unobserved, Vector,
 };
-use arabesque_patterns::{Params, Prepared};
+use arabesque_patterns::{Params, Prepared, Repeats};
+
+/// The engine alone: these patterns repeat, and would be continued by their repeat.
+fn irregular() -> Params {
+    Params { repeat: Repeats::Off, ..Params::default() }
+}
 
 fn page(w: f64, h: f64) -> Domain<2> {
     Domain::Box(Bounds::new(Vector::ZERO, Vector::xy(w, h)))
@@ -39,7 +44,7 @@ fn bricks() -> Exemplar<2> {
 }
 
 fn fill(settings: &[(&str, &str)], request: &Request<2>) -> Outcome<2> {
-    let mut params = Params::default();
+    let mut params = irregular();
     settings.iter().for_each(|(name, value)| params.set(name, value).unwrap());
     Prepared::new(bricks(), &params, &Budget::default()).unwrap().run(request, &mut Unobserved).unwrap()
 }
@@ -114,7 +119,7 @@ fn progress_never_goes_back() {
             std::ops::ControlFlow::Continue(())
         }
     }
-    let mut params = Params::default();
+    let mut params = irregular();
     params.set("initialisation", "white-noise").unwrap();
     let mut seen = Fractions(Vec::new());
     Prepared::new(bricks(), &params, &Budget::default())

@@ -8,7 +8,12 @@ use arabesque_core::{
     Border, Bounds, Budget, Domain, Exemplar, Fields, FillRule, Matrix, OrientationField, Outcome, Placement, Progress,
     Region, Request, ScalarField, Shape, Similarity, Snapshot, StopReason, Unobserved, Vector, Watch,
 };
-use arabesque_patterns::{Params, Prepared};
+use arabesque_patterns::{Params, Prepared, Repeats};
+
+/// The engine alone: these patterns repeat, and would be continued by their repeat.
+fn irregular() -> Params {
+    Params { repeat: Repeats::Off, ..Params::default() }
+}
 
 /// A square grid of `side` x `side` points at distance 1, classes by `class_of`.
 fn grid(side: usize, class_of: impl Fn(usize, usize) -> usize) -> Exemplar<2> {
@@ -24,10 +29,7 @@ fn page(w: f64, h: f64) -> Domain<2> {
 }
 
 fn fill(exemplar: &Exemplar<2>, request: &Request<2>) -> Outcome<2> {
-    Prepared::new(exemplar.clone(), &Params::default(), &Budget::default())
-        .unwrap()
-        .run(request, &mut Unobserved)
-        .unwrap()
+    Prepared::new(exemplar.clone(), &irregular(), &Budget::default()).unwrap().run(request, &mut Unobserved).unwrap()
 }
 
 fn centres(exemplar: &Exemplar<2>, outcome: &Outcome<2>) -> Vec<(usize, Vector<2>)> {
@@ -174,7 +176,7 @@ fn a_lattice_in_space_stays_a_lattice() {
         (0..216).map(|i| Vector([f64::from(i % 6), f64::from(i / 6 % 6), f64::from(i / 36)])).collect();
     let exemplar = Exemplar::from_points("lattice", &points, &[0; 216], &["a".into()]).unwrap();
     let domain = Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(9.0)));
-    let outcome = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default())
+    let outcome = Prepared::new(exemplar.clone(), &irregular(), &Budget::default())
         .unwrap()
         .run(&Request::new(domain), &mut Unobserved)
         .unwrap();
@@ -207,7 +209,7 @@ impl Watch<Snapshot<2>> for Stopper {
 fn an_observer_sees_previews_and_may_stop() {
     let exemplar = grid(8, |_, _| 0);
     let mut observer = Stopper { steps: 0, preview: 0 };
-    let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
+    let prepared = Prepared::new(exemplar.clone(), &irregular(), &Budget::default()).unwrap();
     let outcome = prepared.run(&Request::new(page(15.0, 15.0)), &mut observer).unwrap();
     assert_eq!(outcome.stopped, StopReason::Stopped);
     assert!(observer.steps > 1 && observer.preview > 100);
@@ -231,7 +233,7 @@ fn every_preset_and_component_gives_a_result() {
     let request = Request::new(page(14.0, 14.0));
     let mut all: Vec<Params> = Params::PRESETS.iter().map(|preset| Params::preset(preset.name).unwrap()).collect();
     for (name, value) in settings {
-        let mut params = Params::default();
+        let mut params = irregular();
         params.set(name, value).unwrap();
         all.push(params);
     }
@@ -247,7 +249,7 @@ fn every_preset_and_component_gives_a_result() {
 #[test]
 fn a_grid_grows_out_of_white_noise() {
     let exemplar = grid(8, |_, _| 0);
-    let mut params = Params::default();
+    let mut params = irregular();
     params.set("initialisation", "white-noise").unwrap();
     let request = Request::new(page(20.0, 20.0));
     let outcome =
@@ -263,11 +265,11 @@ fn a_grid_grows_out_of_white_noise() {
 #[test]
 fn what_cannot_work_is_refused() {
     let one = Exemplar::from_points("one", &[Vector::xy(1.0, 1.0)], &[0], &["a".into()]);
-    assert!(one.and_then(|e| Prepared::new(e, &Params::default(), &Budget::default())).is_err());
+    assert!(one.and_then(|e| Prepared::new(e, &irregular(), &Budget::default())).is_err());
     let exemplar = grid(5, |_, _| 0);
-    let wide = Params { radius: Some(50.0), ..Params::default() };
+    let wide = Params { radius: Some(50.0), ..irregular() };
     assert!(Prepared::new(exemplar.clone(), &wide, &Budget::default()).unwrap_err().to_string().contains("radius"));
-    let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
+    let prepared = Prepared::new(exemplar.clone(), &irregular(), &Budget::default()).unwrap();
     let error = prepared.run(&Request::new(page(1e7, 1e7)), &mut Unobserved).unwrap_err();
     assert!(error.to_string().contains("over the limit"), "{error}");
 }

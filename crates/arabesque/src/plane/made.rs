@@ -96,6 +96,7 @@ pub(crate) fn unfinished<const D: usize>(snapshot: Snapshot<D>) -> Outcome<D> {
     Outcome {
         placements: snapshot.placements,
         curves: snapshot.curves,
+        areas: snapshot.areas,
         energy: Vec::new(),
         warnings: Vec::new(),
         stopped: StopReason::Stopped,
@@ -183,5 +184,6 @@ impl Made for PlaneMade {
 
 /// The geometry of an outcome.
 pub(crate) fn snapshot<const D: usize>(outcome: &Outcome<D>) -> Snapshot<D> {
-    Snapshot { placements: outcome.placements.clone(), curves: outcome.curves.clone(), patches: Vec::new() }
+    let (placements, curves, areas) = (outcome.placements.clone(), outcome.curves.clone(), outcome.areas.clone());
+    Snapshot { placements, curves, areas, patches: Vec::new() }
 }

@@ -52,16 +52,28 @@ pub struct Curve<const D: usize> {
     pub colour: [f64; 3],
 }
 
-/// Elements that count as the same kind of thing, or curves painted alike.
+/// A filled area that runs through the frame: a band of varying width, a net with broad meshes. It goes on beyond the frame as the
+/// pattern repeats, and may be cut anywhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Area<const D: usize> {
+    /// What is filled.
+    pub outline: Outline<D>,
+    /// Index into [`Exemplar::styles`].
+    pub style: usize,
+    /// Mean colour of the fill, sRGB in [0, 1].
+    pub colour: [f64; 3],
+}
+
+/// Elements that count as the same kind of thing, or curves and areas painted alike.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Class {
     /// Name for people: from the file where it has one, else made up (`class 3`).
     pub name: String,
 }
 
-/// A set of elements and curves in a window.
+/// A set of elements, curves and areas in a window.
 ///
-/// Promises: at least one element with [`Role::Source`] or one curve; every coordinate finite; every class and style index valid.
+/// Promises: at least one element with [`Role::Source`], one curve or one area; every coordinate finite; every class and style index valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exemplar<const D: usize> {
     /// The elements, in drawing order.
@@ -70,7 +82,9 @@ pub struct Exemplar<const D: usize> {
     pub classes: Vec<Class>,
     /// The curves, in drawing order.
     pub curves: Vec<Curve<D>>,
-    /// Ways in which curves are painted.
+    /// The areas that run through the window, in drawing order.
+    pub areas: Vec<Area<D>>,
+    /// Ways in which curves and areas are painted.
     pub styles: Vec<Class>,
     /// The frame: inside it every element is known, outside it nothing is, except elements that reach in.
     pub window: Bounds<D>,
@@ -87,13 +101,16 @@ pub struct Contents<const D: usize> {
     pub classes: Vec<Class>,
     /// The curves, in drawing order.
     pub curves: Vec<Curve<D>>,
-    /// The styles that they refer to.
+    /// The areas, in drawing order.
+    pub areas: Vec<Area<D>>,
+    /// The styles that curves and areas refer to.
     pub styles: Vec<Class>,
 }
 
 impl<const D: usize> Default for Contents<D> {
     fn default() -> Self {
-        Self { elements: Vec::new(), classes: Vec::new(), curves: Vec::new(), styles: Vec::new() }
+        let (elements, classes) = (Vec::new(), Vec::new());
+        Self { elements, classes, curves: Vec::new(), areas: Vec::new(), styles: Vec::new() }
     }
 }
 
@@ -111,9 +128,9 @@ impl<const D: usize> Exemplar<D> {
     /// # Errors
     /// [`Error::Input`] with `place` when a promise is broken.
     pub fn with_curves(place: &str, contents: Contents<D>, window: Bounds<D>) -> Result<Self> {
-        let Contents { elements, classes, curves, styles } = contents;
+        let Contents { elements, classes, curves, areas, styles } = contents;
         let fail = |problem: &str, advice: &str| Err(Error::input(place, problem, advice));
-        if elements.is_empty() && curves.is_empty() {
+        if elements.is_empty() && curves.is_empty() && areas.is_empty() {
             return fail("no element found", "draw a few shapes or groups that should be repeated");
         }
         let broken = |c: &Curve<D>| {
@@ -123,7 +140,11 @@ impl<const D: usize> Exemplar<D> {
         if curves.iter().any(broken) {
             return fail("a curve has no length or no style", "remove curves with NaN or infinite coordinates");
         }
-        if curves.is_empty() && elements.iter().all(|e| e.role == Role::Context) {
+        let bad = |a: &Area<D>| a.outline.points().any(|p| !p.is_finite()) || a.style >= styles.len();
+        if areas.iter().any(bad) {
+            return fail("an area has no sound outline or no style", "remove areas with NaN or infinite coordinates");
+        }
+        if curves.is_empty() && areas.is_empty() && elements.iter().all(|e| e.role == Role::Context) {
             return fail(
                 "every element is cut by the frame",
                 "make the frame larger, or leave at least one element whole",
@@ -135,7 +156,7 @@ impl<const D: usize> Exemplar<D> {
         if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
             return fail("the frame has no area", "give the exemplar a width and a height");
         }
-        Ok(Self { elements, classes, curves, styles, window, hole: None })
+        Ok(Self { elements, classes, curves, areas, styles, window, hole: None })
     }
 
     /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::{
     curve::Path,
+    region::Outline,
     space::{Similarity, Vector},
 };
 
@@ -32,6 +33,16 @@ pub struct Drawn<const D: usize> {
     pub scale: f64,
     /// Index into [`crate::Request::frozen_curves`] when this is a stroke that the user drew.
     pub frozen: Option<usize>,
+}
+
+/// One filled area of the output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Covered<const D: usize> {
+    /// What is filled, in output coordinates, by the even-odd rule. On a torus it may reach beyond the box: what lies there is drawn on
+    /// the other side.
+    pub outline: Outline<D>,
+    /// Index into [`crate::Exemplar::areas`]: how the area is painted.
+    pub source: usize,
 }
 
 /// Mean energy after one step, for the trace.
@@ -81,6 +92,8 @@ pub struct Outcome<const D: usize> {
     pub placements: Vec<Placement<D>>,
     /// The output strokes, frozen ones included.
     pub curves: Vec<Drawn<D>>,
+    /// The output areas.
+    pub areas: Vec<Covered<D>>,
     /// Mean energy after each iteration.
     pub energy: Vec<EnergyPoint>,
     /// What the user should know.

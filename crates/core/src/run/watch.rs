@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, fmt, ops::ControlFlow};
 
-use crate::run::{Drawn, Patch, Placement};
+use crate::run::{Covered, Drawn, Patch, Placement};
 
 /// Where a run stands, whatever the method and the dimension.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,13 +50,15 @@ pub struct Snapshot<const D: usize> {
     pub placements: Vec<Placement<D>>,
     /// Strokes.
     pub curves: Vec<Drawn<D>>,
+    /// Filled areas.
+    pub areas: Vec<Covered<D>>,
     /// Pieces of pictures.
     pub patches: Vec<Patch<D>>,
 }
 
 impl<const D: usize> Default for Snapshot<D> {
     fn default() -> Self {
-        Self { placements: Vec::new(), curves: Vec::new(), patches: Vec::new() }
+        Self { placements: Vec::new(), curves: Vec::new(), areas: Vec::new(), patches: Vec::new() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Exemplars that nothing can be made of: what is there is told before any work is done.
 
-use arabesque_core::{Domain, Error, Exemplar, GridIndex, Request, Result, Spread};
+use arabesque_core::{Domain, Error, Exemplar, GridIndex, Request, Result, Spread, Warning};
 
 use crate::exemplar::level_exemplar::LevelExemplar;
 
@@ -15,7 +15,7 @@ const MAX_NODES: f64 = 10_000.0;
 pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
     let centres: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
     let advice = "draw them apart, so that the exemplar shows distances and directions";
-    if exemplar.curves.is_empty() && Spread::of(centres.iter().copied()) == Spread::Place {
+    if exemplar.curves.is_empty() && exemplar.areas.is_empty() && Spread::of(centres.iter().copied()) == Spread::Place {
         let problem = format!("all {} elements lie at one place", centres.len());
         return Err(Error::input("exemplar", problem, advice));
     }
@@ -49,6 +49,12 @@ pub(crate) fn sizes<const D: usize>(exemplar: &Exemplar<D>, levels: &[LevelExemp
     }
     let problem = "every element is far larger than the frame";
     Err(Error::input("exemplar", problem, "make the frame larger, or draw the elements smaller"))
+}
+
+/// What to say about elements that are out of proportion, among others.
+pub(crate) fn giants_left_out(count: usize) -> Option<Warning> {
+    let message = format!("elements far larger than the frame of the exemplar are not copied: {count}");
+    (count > 0).then(|| Warning::new(message, "draw them smaller, or make the frame larger"))
 }
 
 /// Refuses curves that lie so densely that every neighbourhood holds hundreds of samples.

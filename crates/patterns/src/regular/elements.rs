@@ -50,7 +50,7 @@ impl Elements<'_> {
         let mut placements: Vec<_> = kept(request);
         let (taken, others) = self.taken(grid, request);
         let admission = Admission::new(request, others)?;
-        let nodes = self.nodes(grid, request);
+        let nodes = self.nodes(grid, request)?;
         let number: BTreeMap<Node, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
         let beside = |node: Node| number.get(&grid.wrap(node)).copied();
         let budget = request.budget.stage("laying out");
@@ -81,9 +81,11 @@ impl Elements<'_> {
     }
 
     /// The nodes of a tile, or all whose elements may show.
-    fn nodes(&self, grid: &Grid, request: &Request<2>) -> Vec<Node> {
-        let radius = self.exemplar.elements.iter().map(|e| e.outline.radius(e.centre)).fold(0.0, f64::max);
-        grid.nodes(Vector::ZERO, &request.domain.bounds().grown(radius * grid.element_scale))
+    fn nodes(&self, grid: &Grid, request: &Request<2>) -> Result<Vec<Node>> {
+        let sources = self.orbits.iter().flat_map(|orbit| &orbit.instances);
+        let elements = sources.map(|instance| &self.exemplar.elements[instance.element as usize]);
+        let radius = elements.map(|e| e.outline.radius(e.centre)).fold(0.0, f64::max);
+        grid.nodes(Vector::ZERO, &request.domain.bounds().grown(radius * grid.element_scale), &request.budget)
     }
 
     fn placement(

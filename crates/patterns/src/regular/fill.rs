@@ -1,12 +1,15 @@
 //! Filling a domain from an exemplar that repeats.
 
 use arabesque_core::{
-    Border, Budget, Error, Exemplar, Forecast, Outcome, Request, Result, Role, Snapshot, Warning, Watch,
+    Border, Budget, Covered, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role, Snapshot,
+    Warning, Watch,
 };
 
 use crate::{
     ending,
+    exemplar::{checks::giants_left_out, library::farthest},
     regular::{
+        areas,
         choice::Cells,
         elements::Elements,
         grid::{Grid, Unfit},
@@ -40,6 +43,8 @@ pub struct Regular {
     cell: Option<Cell>,
     /// Whole elements that fit no place.
     others: usize,
+    /// Elements out of all proportion to the frame.
+    giants: usize,
 }
 
 /// What came of a request.
@@ -57,12 +62,14 @@ impl Regular {
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
         let Some(repeat) = find(exemplar, budget)? else { return Ok(None) };
-        let has_lines = !exemplar.curves.is_empty();
+        let has_lines = !exemplar.curves.is_empty() || !exemplar.areas.is_empty();
         if has_lines && repeat.explains == Explains::Places {
             return Ok(None);
         }
         let (orbits, others) = orbits(exemplar, &repeat, budget)?;
+        let is_giant = |e: &&Element<2>| e.outline.radius(e.centre) > farthest(&exemplar.window);
         let whole = exemplar.elements.iter().filter(|e| e.role == Role::Source).count();
+        let giants = exemplar.elements.iter().filter(|e| e.role == Role::Source).filter(is_giant).count();
         if others.len() as f64 > UNEXPLAINED * whole as f64 || (orbits.is_empty() && !has_lines) {
             return Ok(None);
         }
@@ -76,7 +83,7 @@ impl Regular {
         };
         let unit = RESIDUAL * repeat.lattice.vectors[0].norm().min(repeat.lattice.vectors[1].norm());
         let cells = Cells::new(exemplar, &orbits, unit, budget)?;
-        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len() }))
+        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants }))
     }
 
     /// Fills a domain.
@@ -102,14 +109,14 @@ impl Regular {
         let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
         elements.join_kept(&mut grid, request);
         let placed = elements.place(&grid, request, watch)?;
-        let (mut cut_short, mut curves) = (placed.ended.err(), Vec::new());
+        let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), Vec::new(), Vec::new());
         if let (Some(cell), None) = (&self.cell, &cut_short) {
             match self.strokes(exemplar, cell, &grid, request) {
-                Ok(strokes) => curves = strokes,
+                Ok(made) => (curves, areas) = made,
                 Err(error) => cut_short = Some(error),
             }
         }
-        if placed.placements.is_empty() && curves.is_empty() {
+        if placed.placements.is_empty() && curves.is_empty() && areas.is_empty() {
             return Err(cut_short.unwrap_or_else(|| {
                 let what = if self.cell.is_some() { "stroke" } else { "element" };
                 let advice = "make the domain larger, lower the scale, or allow elements to cross its border";
@@ -119,7 +126,7 @@ impl Regular {
         let mut warnings = self.warnings(&grid, request);
         let stopped = ending::reason(cut_short, &mut warnings)?;
         let energy = Vec::new();
-        Ok(Filled::Done(Outcome { placements: placed.placements, curves, energy, warnings, stopped }))
+        Ok(Filled::Done(Outcome { placements: placed.placements, curves, areas, energy, warnings, stopped }))
     }
 
     fn strokes(
@@ -128,17 +135,18 @@ impl Regular {
         cell: &Cell,
         grid: &Grid,
         request: &Request<2>,
-    ) -> Result<Vec<arabesque_core::Drawn<2>>> {
+    ) -> Result<(Vec<Drawn<2>>, Vec<Covered<2>>)> {
         let strokes = Strokes { exemplar, cell };
         let margin = strokes.widest() * grid.scale();
-        let nodes = strokes.nodes(grid, request, margin);
-        strokes.draw(grid, &nodes, request)
+        let nodes = strokes.nodes(grid, request, margin)?;
+        let drawn = strokes.draw(grid, &nodes, request)?;
+        Ok((drawn, areas::draw(&cell.areas, grid, &nodes, request)?))
     }
 
     /// Tells what the run will take, and refuses what is too much.
     fn foresee(&self, grid: &Grid, request: &Request<2>, watch: &mut dyn Watch<Snapshot<2>>) -> Result<()> {
         let cells = request.domain.measure() / grid.lattice.cell();
-        let parts = self.cell.as_ref().map_or(0, |cell| cell.parts.len());
+        let parts = self.cell.as_ref().map_or(0, |cell| cell.parts.len() + cell.areas.len());
         let count = cells * (self.orbits.len() + parts) as f64;
         let limit = request.budget.limits().output_elements;
         if count.is_nan() || count > limit as f64 {
@@ -155,7 +163,7 @@ impl Regular {
     }
 
     fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<_> = giants_left_out(self.giants).into_iter().collect();
         if self.others > 0 {
             warnings.push(Warning::new(
                 format!("elements that fit no place of the repeat left out: {}", self.others),

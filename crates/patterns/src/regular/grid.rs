@@ -1,6 +1,8 @@
 //! How the lattice of an exemplar lies in the output.
 
-use arabesque_core::{Bounds, Domain, Exemplar, Fields, Matrix, OrientationField, Request, ScalarField, Vector};
+use arabesque_core::{
+    Bounds, Budget, Domain, Exemplar, Fields, Matrix, OrientationField, Request, Result, ScalarField, Vector,
+};
 
 use crate::repeat::{
     Extent, Repeat,
@@ -13,6 +15,9 @@ pub(crate) const MOST_STRETCH: f64 = 0.08;
 /// Cells this near to a box, in terms of their own size, may show in it: places that were rounded or drawn by hand lie
 /// just outside of their cell.
 const NEAR: f64 = 0.1;
+
+/// Work for each cell that is asked about.
+const ASK: f64 = 20.0;
 
 /// The lattice in the output.
 #[derive(Clone, Debug)]
@@ -56,7 +61,11 @@ fn constant(fields: &Fields<2>) -> Option<(Matrix<2>, f64, f64)> {
 
 impl Grid {
     /// The lattice for a request.
-    pub(crate) fn new(repeat: &Repeat, exemplar: &Exemplar<2>, request: &Request<2>) -> Result<Self, Unfit> {
+    pub(crate) fn new(
+        repeat: &Repeat,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+    ) -> std::result::Result<Self, Unfit> {
         let Some((rotation, element_scale, spacing)) = constant(&request.fields) else { return Err(Unfit::Fields) };
         let straight = |v: Vector<2>| rotation.apply(v) * spacing;
         let mut grid = Self {
@@ -118,9 +127,12 @@ impl Grid {
 
     /// The nodes of a tile, or all of which the cell may reach into a box. `corner`: of the cell at the origin, in the
     /// exemplar.
-    pub(crate) fn nodes(&self, corner: Vector<2>, bounds: &Bounds<2>) -> Vec<Node> {
+    ///
+    /// # Errors
+    /// When there are more than may be asked about.
+    pub(crate) fn nodes(&self, corner: Vector<2>, bounds: &Bounds<2>, budget: &Budget) -> Result<Vec<Node>> {
         if let Some(tiling) = &self.tiling {
-            return tiling.nodes();
+            return Ok(tiling.nodes());
         }
         let [rows, columns] = self.lattice.nodes_in(self.place(corner, [0, 0]), bounds);
         let [a, b] = self.lattice.vectors;
@@ -129,9 +141,12 @@ impl Grid {
             let cell = Bounds::around([corner, corner + a, corner + b, corner + a + b]);
             cell.grown(NEAR * (a.norm() + b.norm())).intersects(bounds)
         };
+        let count = (rows.end() - rows.start() + 3) as f64 * (columns.end() - columns.start() + 3) as f64;
+        budget.spend((ASK * count) as u64)?;
+        budget.within("cells of the repeat", count as usize, ("output-elements", budget.limits().output_elements))?;
         let rows = rows.start() - 1..=rows.end() + 1;
         let all = (columns.start() - 1..=columns.end() + 1).flat_map(|j| rows.clone().map(move |i| [i, j]));
-        all.filter(near).collect()
+        Ok(all.filter(near).collect())
     }
 
     /// Mean factor by which lengths grow.

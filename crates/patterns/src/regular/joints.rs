@@ -1,9 +1,12 @@
-//! What one cell holds of the strokes, and how its pieces go on in the cells around it.
+//! What one cell holds of strokes and areas, and how its pieces go on in the cells around it.
 
 use arabesque_core::{Bounds, Budget, Exemplar, Path, Result, Vector};
 
 use crate::{
-    regular::cut::pieces,
+    regular::{
+        areas::{CellArea, cell_areas},
+        cut::pieces,
+    },
     repeat::lattice::{Lattice, Node},
 };
 
@@ -37,16 +40,17 @@ pub(crate) struct Next {
     pub(crate) step: Node,
 }
 
-/// The strokes of one cell.
+/// The strokes and areas of one cell.
 #[derive(Clone, Debug)]
 pub(crate) struct Cell {
     /// A corner of it in the exemplar.
     pub(crate) origin: Vector<2>,
     pub(crate) parts: Vec<Part>,
+    pub(crate) areas: Vec<CellArea>,
 }
 
 impl Cell {
-    /// The strokes of the cell, at a place in the frame where every stroke that leaves it comes back in on the other
+    /// The strokes and areas of the cell, at a place in the frame where every stroke that leaves it comes back in on the other
     /// side; `None` where there is no such place.
     ///
     /// # Errors
@@ -60,7 +64,9 @@ impl Cell {
                 best = Some((quality, cell));
             }
         }
-        Ok(best.map(|(_, cell)| cell))
+        let Some((_, mut cell)) = best else { return Ok(None) };
+        cell.areas = cell_areas(exemplar, lattice, cell.origin, budget)?;
+        Ok(Some(cell))
     }
 
     /// The cell at `origin`, and how well it is placed: how squarely the strokes pass its sides.
@@ -94,7 +100,7 @@ impl Cell {
             let (from, to) = (&ends[a], &ends[b]);
             parts[from.part].next[from.end] = Some(Next { part: to.part, end: to.end, step });
         }
-        Ok(Some((quality, Self { origin, parts })))
+        Ok(Some((quality, Self { origin, parts, areas: Vec::new() })))
     }
 }
 

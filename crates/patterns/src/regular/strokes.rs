@@ -50,8 +50,11 @@ impl Strokes<'_> {
     }
 
     /// The cells of a tile, or all that may show.
-    pub(crate) fn nodes(&self, grid: &Grid, request: &Request<2>, margin: f64) -> Vec<Node> {
-        grid.nodes(self.cell.origin, &request.domain.bounds().grown(margin))
+    ///
+    /// # Errors
+    /// When there are too many.
+    pub(crate) fn nodes(&self, grid: &Grid, request: &Request<2>, margin: f64) -> Result<Vec<Node>> {
+        grid.nodes(self.cell.origin, &request.domain.bounds().grown(margin), &request.budget)
     }
 
     /// The strokes in the cells `nodes`, cut at the border of the domain.

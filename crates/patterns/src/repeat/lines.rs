@@ -71,6 +71,12 @@ impl Lines {
             budget.spend(WORK.0 * points.len() as u64)?;
             tracks.push(Track { points, closed: curve.path.closed, style: curve.style });
         }
+        for area in &exemplar.areas {
+            for ring in &area.outline.rings {
+                budget.spend(WORK.0 * ring.len() as u64)?;
+                tracks.push(Track { points: ring.clone(), closed: true, style: area.style });
+            }
+        }
         let mut lines = Self { tracks, features: Vec::new(), stretches: Vec::new() };
         let seen = window.grown(-AT_FRAME * side);
         for k in 0..lines.tracks.len() {

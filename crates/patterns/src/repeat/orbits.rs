@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Bounds, Budget, Exemplar, Result, Role, Vector};
 
-use crate::repeat::{
-    find::Repeat,
-    lattice::{Lattice, Node},
-    marks::place_of,
+use crate::{
+    exemplar::library::farthest,
+    repeat::{
+        find::Repeat,
+        lattice::{Lattice, Node},
+        marks::place_of,
+    },
 };
 
 /// Elements belong to one orbit when they are off by less than this share of the shorter vector, and by less than so
@@ -16,6 +19,9 @@ const TOLERANCE: (f64, f64) = (0.02, 4.0);
 
 /// A place of which fewer than this share of the nodes in the frame are taken is an exception, not a place.
 const TAKEN: f64 = 0.5;
+
+/// So many times more nodes than elements are not looked at one by one.
+const FAR_MORE: f64 = 100.0;
 
 /// Work for each element and orbit that are compared.
 const COMPARE: u64 = 15;
@@ -51,7 +57,7 @@ pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -
     let mut found = Found { lattice, tolerance, orbits: Vec::new(), cells: BTreeMap::new(), budget };
     let mut groups: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
     for (e, element) in (0..).zip(&exemplar.elements) {
-        if element.role == Role::Source {
+        if element.role == Role::Source && element.outline.radius(element.centre) <= farthest(&exemplar.window) {
             groups.entry(element.class).or_default().push(e);
         }
     }
@@ -135,8 +141,11 @@ impl Found<'_> {
             orbit.base += mean;
             orbit.instances.iter_mut().for_each(|i| i.residual -= mean);
             let expected = expected_nodes(exemplar, &lattice, &orbit, &window);
-            let met = expected.iter().filter(|node| taken.contains_key(*node)).count();
-            if met as f64 >= TAKEN * expected.len() as f64 {
+            let is_taken = expected.is_some_and(|expected| {
+                let met = expected.iter().filter(|node| taken.contains_key(*node)).count();
+                met as f64 >= TAKEN * expected.len() as f64
+            });
+            if is_taken {
                 orbit.instances.sort_by_key(|i| i.element);
                 kept.push(orbit);
             } else {
@@ -150,14 +159,19 @@ impl Found<'_> {
 }
 
 /// The nodes at which an element of the orbit would lie wholly in the frame.
-fn expected_nodes(exemplar: &Exemplar<2>, lattice: &Lattice, orbit: &Orbit, window: &Bounds<2>) -> Vec<Node> {
-    let Some(first) = orbit.instances.first() else { return Vec::new() };
+fn expected_nodes(exemplar: &Exemplar<2>, lattice: &Lattice, orbit: &Orbit, window: &Bounds<2>) -> Option<Vec<Node>> {
+    let first = orbit.instances.first()?;
     let outline = &exemplar.elements[first.element as usize].outline;
     let here = orbit.base + lattice.at(first.node) + first.residual;
     let extent = if outline.rings.is_empty() { Bounds::new(here, here) } else { outline.bounds() };
     let (low, high) = (here - extent.min, extent.max - here);
     let room = Bounds::new(window.min + low, window.max - high).grown(1e-6 * window.size().norm());
     let [rows, columns] = lattice.nodes_in(orbit.base, &room);
+    let count = (rows.end() - rows.start() + 1) as f64 * (columns.end() - columns.start() + 1) as f64;
+    // Where so many more are missing than are there, the rest of the frame is empty.
+    if count > FAR_MORE * orbit.instances.len() as f64 {
+        return None;
+    }
     let nodes = rows.flat_map(|i| columns.clone().map(move |j| [i, j]));
-    nodes.filter(|node| room.contains(orbit.base + lattice.at(*node))).collect()
+    Some(nodes.filter(|node| room.contains(orbit.base + lattice.at(*node))).collect())
 }

@@ -39,7 +39,11 @@ impl Drawing {
         let styles = renumbered(styles, curves.iter_mut().map(|c| &mut c.style));
         let exemplar = Exemplar {
             hole,
-            ..Exemplar::with_curves(place, Contents { elements: kept, classes, curves, styles }, window)?
+            ..Exemplar::with_curves(
+                place,
+                Contents { elements: kept, classes, curves, styles, ..Contents::default() },
+                window,
+            )?
         };
         Ok(Self { exemplar: Arc::new(exemplar), fragments, strokes, ..self })
     }

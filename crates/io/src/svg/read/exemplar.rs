@@ -77,7 +77,7 @@ impl Document<'_> {
         }
         let exemplar = Exemplar::with_curves(
             source.name,
-            Contents { elements, classes: classes.classes, curves, styles },
+            Contents { elements, classes: classes.classes, curves, styles, ..Contents::default() },
             window,
         )?;
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();

@@ -1,0 +1,128 @@
+//! Filled areas on a lattice: the part of them in one cell, copied to all cells and united again.
+
+use arabesque_core::{
+    Border, Budget, Covered, Domain, Exemplar, FillRule, Outline, Request, Result, Ring, Shape, Vector,
+};
+
+use crate::{
+    regular::grid::Grid,
+    repeat::lattice::{Lattice, Node},
+};
+
+/// Cells overlap by this share of the shorter vector, so that no hair line is left between them.
+const OVERLAP: f64 = 1e-4;
+
+/// Cells that are united at once; what comes of them is united again.
+const AT_ONCE: usize = 64;
+
+/// What one cell holds of the areas of one style.
+#[derive(Clone, Debug)]
+pub(crate) struct CellArea {
+    /// The first area of the style, as which it is painted.
+    source: usize,
+    /// The part in the cell, which is a little larger than the cell.
+    rings: Vec<Ring<2>>,
+}
+
+/// The areas of a cell of the lattice with its corner at `origin`, style by style in drawing order.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn cell_areas(
+    exemplar: &Exemplar<2>,
+    lattice: &Lattice,
+    origin: Vector<2>,
+    budget: &Budget,
+) -> Result<Vec<CellArea>> {
+    let mut made: Vec<CellArea> = Vec::new();
+    let cell = Outline { rings: vec![parallelogram(origin, lattice)] };
+    for (source, area) in exemplar.areas.iter().enumerate() {
+        let part = area.outline.try_intersection(&cell, budget)?;
+        match made.iter_mut().find(|m| exemplar.areas[m.source].style == area.style) {
+            // Areas of one style that overlap are seen as two where the paint is translucent.
+            Some(known) if !overlap(&known.rings, &part, budget)? => known.rings.extend(part.rings),
+            _ => made.push(CellArea { source, rings: part.rings }),
+        }
+    }
+    made.retain(|area| !area.rings.is_empty());
+    Ok(made)
+}
+
+fn overlap(rings: &[Ring<2>], other: &Outline<2>, budget: &Budget) -> Result<bool> {
+    let common = Outline { rings: rings.to_vec() }.try_intersection(other, budget)?;
+    Ok(common.area() > 1e-3 * other.area())
+}
+
+/// The cell, and a little of the cells around it.
+fn parallelogram(origin: Vector<2>, lattice: &Lattice) -> Ring<2> {
+    let [a, b] = lattice.vectors;
+    let shorter = a.norm().min(b.norm());
+    let (p, q) = (a.unit_or_zero() * (OVERLAP * shorter), b.unit_or_zero() * (OVERLAP * shorter));
+    let corner = origin - p - q;
+    let (a, b) = (a + p * 2.0, b + q * 2.0);
+    vec![corner, corner + a, corner + a + b, corner + b]
+}
+
+/// The areas in the cells `nodes`, cut at the border of the domain.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn draw(areas: &[CellArea], grid: &Grid, nodes: &[Node], request: &Request<2>) -> Result<Vec<Covered<2>>> {
+    let budget = &request.budget.stage("filling areas");
+    let cut = Cut::new(request, budget)?;
+    let mut made = Vec::new();
+    for area in areas {
+        let whole = united(area, grid, nodes, budget)?;
+        let outline = cut.apply(whole, budget)?;
+        if !outline.rings.is_empty() {
+            made.push(Covered { outline, source: area.source });
+        }
+    }
+    Ok(made)
+}
+
+/// The copies of a part in all cells, as one.
+fn united(area: &CellArea, grid: &Grid, nodes: &[Node], budget: &Budget) -> Result<Outline<2>> {
+    let copy = |node: Node| area.rings.iter().map(move |ring| ring.iter().map(|&p| grid.place(p, node)).collect());
+    let mut parts: Vec<Outline<2>> = Vec::new();
+    for cells in nodes.chunks(AT_ONCE) {
+        let rings: Vec<Ring<2>> = cells.iter().flat_map(|&node| copy(node)).collect();
+        parts.push(Outline::try_union(&rings, FillRule::NonZero, budget)?);
+    }
+    while parts.len() > 1 {
+        let mut fewer = Vec::with_capacity(parts.len().div_ceil(AT_ONCE));
+        for group in parts.chunks(AT_ONCE) {
+            let rings: Vec<Ring<2>> = group.iter().flat_map(|part| part.rings.iter().cloned()).collect();
+            fewer.push(Outline::try_union(&rings, FillRule::NonZero, budget)?);
+        }
+        parts = fewer;
+    }
+    Ok(parts.pop().unwrap_or_default())
+}
+
+/// Cutting areas at the border and at what is in the way.
+struct Cut {
+    domain: Option<Outline<2>>,
+    obstacles: Option<Shape>,
+}
+
+impl Cut {
+    fn new(request: &Request<2>, budget: &Budget) -> Result<Self> {
+        let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+        let obstacles = Shape::try_new(&rings, FillRule::NonZero, budget)?;
+        let endless = matches!(request.domain, Domain::Torus(_)) || request.border == Border::Cross;
+        let domain = if endless { None } else { request.domain.outline() };
+        Ok(Self { domain, obstacles })
+    }
+
+    fn apply(&self, outline: Outline<2>, budget: &Budget) -> Result<Outline<2>> {
+        let inside = match &self.domain {
+            Some(domain) => outline.try_intersection(domain, budget)?,
+            None => outline,
+        };
+        match &self.obstacles {
+            Some(obstacles) => inside.try_difference(obstacles.outline(), budget),
+            None => Ok(inside),
+        }
+    }
+}

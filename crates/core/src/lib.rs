@@ -37,7 +37,10 @@ pub use exemplar::{Class, Contents, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
-pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
+pub use numerics::{
+    DisjointSets, Equations, NormalEquations, Precedence, Prediction, Pull, Vote, conjugate_gradients, pairing,
+    precedence,
+};
 pub use random::{Stage, Stream};
 pub use region::{
     Domain, FillRule, Outline, Region, Ring, Shape, ring,

@@ -47,7 +47,7 @@ pub use region::{
     segment::{self, Segment},
 };
 pub use run::{
-    Border, Drawn, EnergyPoint, Forecast, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason,
+    Border, Drawn, EnergyPoint, Forecast, Instance, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason,
     Unobserved, Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};

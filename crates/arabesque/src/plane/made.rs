@@ -95,6 +95,7 @@ impl PlaneMade {
 pub(crate) fn unfinished<const D: usize>(snapshot: Snapshot<D>) -> Outcome<D> {
     Outcome {
         placements: snapshot.placements,
+        sequence: Vec::new(),
         curves: snapshot.curves,
         energy: Vec::new(),
         warnings: Vec::new(),

@@ -179,6 +179,7 @@ mod tests {
         let transform = Similarity { rotation: quarter, scale: 2.0, translation: Vector::xy(5.0, 6.0) };
         let outcome = Outcome {
             curves: Vec::new(),
+            sequence: Vec::new(),
             placements: vec![Placement { source: 1, transform, control: Vec::new(), frozen: None }],
             energy: vec![EnergyPoint { level: 0, iteration: 1, energy: 0.5, elements: 1 }],
             warnings: Vec::new(),

@@ -119,7 +119,14 @@ impl Regular {
         let mut warnings = self.warnings(&grid, request);
         let stopped = ending::reason(cut_short, &mut warnings)?;
         let energy = Vec::new();
-        Ok(Filled::Done(Outcome { placements: placed.placements, curves, energy, warnings, stopped }))
+        Ok(Filled::Done(Outcome {
+            placements: placed.placements,
+            sequence: Vec::new(),
+            curves,
+            energy,
+            warnings,
+            stopped,
+        }))
     }
 
     fn strokes(

@@ -6,7 +6,7 @@ use arabesque_core::{Budget, Error, Exemplar, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
-    svg::{self, Drawing, Fragment, Job, PALETTE, Page, ReadOptions, Stacking, Unit},
+    svg::{self, Drawing, Fragment, Job, Layer, PALETTE, Page, ReadOptions, Unit},
     table::csv::{self, Points},
 };
 
@@ -94,7 +94,7 @@ pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
     Drawing {
         fragments: fragments.collect(),
         strokes: Vec::new(),
-        stacking: Stacking::default(),
+        layers: vec![Layer::all_elements(&exemplar)],
         background: None,
         definitions: String::new(),
         page: Page { view: exemplar.window, unit: Unit::Px, unit_per_user: DOT_SPACING_PIXELS / spacing },

@@ -37,15 +37,18 @@ pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
-pub use numerics::{DisjointSets, Equations, NormalEquations, Prediction, Pull, conjugate_gradients, pairing};
+pub use numerics::{
+    DisjointSets, Equations, NormalEquations, Precedence, Prediction, Pull, Vote, conjugate_gradients, pairing,
+    precedence,
+};
 pub use random::{Stage, Stream};
 pub use region::{
     Domain, FillRule, Outline, Region, Ring, Shape, ring,
     segment::{self, Segment},
 };
 pub use run::{
-    Border, Covered, Drawn, EnergyPoint, Forecast, Outcome, Patch, Placement, Progress, Request, Snapshot, StopReason,
-    Unobserved, Warning, Watch,
+    Border, Covered, Drawn, EnergyPoint, Forecast, Instance, Outcome, Patch, Placement, Progress, Request, Snapshot,
+    StopReason, Unobserved, Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};
 pub use text::Decimals;

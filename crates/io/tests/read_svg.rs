@@ -2,9 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Budget, Error, Limits, Region, Role, Vector};
-use arabesque_io::svg::{
-    Drawing, Method, ReadOptions, Stacking, Unit, read_exemplar, read_flow, read_placed, read_shape,
-};
+use arabesque_io::svg::{Drawing, Layer, Method, ReadOptions, Unit, read_exemplar, read_flow, read_placed, read_shape};
 
 const NAMESPACES: &str = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
      xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'";
@@ -217,7 +215,7 @@ fn open_strokes_are_curves() {
         d.exemplar.curves[0].path.cubics,
         [[(34., 12.), (34., 30.), (36., 50.), (34., 95.)].map(|(x, y)| Vector::xy(x, y))]
     );
-    assert_eq!(d.stacking, Stacking::CurvesAbove);
+    assert!(matches!(d.layers.as_slice(), [Layer::Elements(_), Layer::Strokes { .. }, ..]));
     assert_eq!(read_with(&page(&body), Method::Elements).unwrap().exemplar.elements.len(), 8);
 }
 
@@ -236,7 +234,7 @@ fn transforms_go_into_the_line_and_its_lengths() {
     );
     let path = &d.exemplar.curves[0].path;
     assert_eq!((path.start(), path.end()), (Some(Vector::xy(10.0, 20.0)), Some(Vector::xy(80.0, 30.0))));
-    let stroke = &d.strokes[0];
+    let stroke = &d.strokes[0][0];
     assert_eq!((stroke.width, stroke.dashes.as_slice(), stroke.dash_offset), (3.0, &[6.0, 2.0][..], 2.0));
     assert_eq!(stroke.paint, " fill=\"none\" stroke=\"#0000ff\" stroke-linecap=\"round\"");
     assert_eq!(stroke.effects, " opacity=\"0.5\"");
@@ -300,7 +298,7 @@ fn outlines_of_lines_of_one_width_are_taken_for_strokes() {
     let d = read_with(&outline_of_a_net([20, 20]), Method::Auto).unwrap();
     assert!(d.exemplar.curves.len() >= 6 && d.exemplar.elements.is_empty());
     assert!(d.exemplar.curves.iter().all(|c| (c.width - 4.0).abs() < 0.1));
-    assert!(d.strokes[0].paint.contains("stroke=\"#112233\"") && d.strokes[0].paint.contains("fill=\"none\""));
+    assert!(d.strokes[0][0].paint.contains("stroke=\"#112233\"") && d.strokes[0][0].paint.contains("fill=\"none\""));
     assert!(warns(&d, "taken for strokes"));
 }
 
@@ -601,7 +599,7 @@ fn kept_strokes_are_known_by_their_paint() {
     assert_eq!(placed.curves.iter().map(|c| (c.source, c.scale)).collect::<Vec<_>>(), [(0, 1.0), (0, 1.0)]);
     assert_eq!(placed.curves[1].path.start(), Some(Vector::xy(30.0, 27.0)));
     assert_eq!((placed.curve_fragments.len(), placed.obstacles.len()), (1, 2));
-    let markup = &placed.curve_fragments[0].0.markup;
+    let markup = &placed.curve_fragments[0].fragment.markup;
     assert!(markup.contains("d=\"M0,20 h 20 m5 7 h40\""), "not as it was drawn: {markup}");
 }
 

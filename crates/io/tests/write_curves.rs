@@ -29,6 +29,7 @@ fn written(drawing: &Drawing, curves: &[Drawn<2>], domain: &Domain<2>, shape: Op
     let sheet = Sheet {
         drawing,
         placements: &[],
+        sequence: &[],
         curves,
         kept: None,
         host: None,
@@ -61,7 +62,7 @@ fn what_is_written_reads_as_the_same_curves() {
         let middle = |p: &Path<2>| p.flatten(0.01)[p.flatten(0.01).len() / 2];
         assert!((middle(&a.path) - middle(&b.path)).norm() < 0.5, "{a:?} {b:?}");
     }
-    for (a, b) in drawing.strokes.iter().zip(&again.strokes) {
+    for (a, b) in drawing.strokes.iter().flatten().zip(again.strokes.iter().flatten()) {
         assert_eq!((&a.paint, &a.effects, &a.dashes), (&b.paint, &b.effects, &b.dashes));
     }
 }

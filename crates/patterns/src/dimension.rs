@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Drawn, Exemplar, Placement, Region, Request, Result, Snapshot, Vector, Watch};
+use arabesque_core::{Domain, Drawn, Exemplar, Placement, Region, Request, Result, Snapshot, Vector, Watch};
 
 use crate::regular::{Filled, Regular};
 
@@ -22,6 +22,9 @@ pub trait Dimension<const D: usize>: sealed::Sealed {
 
     /// A request for the plane.
     fn plane_request(request: &Request<D>) -> Option<&Request<2>>;
+
+    /// A domain of the plane.
+    fn plane_domain(domain: &Domain<D>) -> Option<&Domain<2>>;
 
     /// Placements in the plane.
     fn plane_placements(placements: &mut Vec<Placement<D>>) -> Option<&mut Vec<Placement<2>>>;
@@ -60,6 +63,10 @@ impl Dimension<2> for Vector<2> {
         Some(request)
     }
 
+    fn plane_domain(domain: &Domain<2>) -> Option<&Domain<2>> {
+        Some(domain)
+    }
+
     fn plane_placements(placements: &mut Vec<Placement<2>>) -> Option<&mut Vec<Placement<2>>> {
         Some(placements)
     }
@@ -91,6 +98,10 @@ impl Dimension<3> for Vector<3> {
     }
 
     fn plane_request(_: &Request<3>) -> Option<&Request<2>> {
+        None
+    }
+
+    fn plane_domain(_: &Domain<3>) -> Option<&Domain<2>> {
         None
     }
 

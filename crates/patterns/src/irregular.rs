@@ -15,10 +15,7 @@ use crate::{
         graph::{crowding, skeleton::Skeleton},
         level_exemplar::{LevelExemplar, expected_nodes, level_exemplars, shortest},
     },
-    finish::{
-        clearance::{self, ExemplarClearance},
-        placements,
-    },
+    finish::{clearance::ExemplarClearance, placements},
     optimise::{search, targets::class_targets},
     params::Params,
     run::{LevelContext, Made, Run},
@@ -45,7 +42,7 @@ const PER_SAMPLE: f64 = 4e4;
 #[derive(Clone, Debug)]
 pub(crate) struct Irregular<const D: usize> {
     exemplar: Arc<Exemplar<D>>,
-    clearance: Option<ExemplarClearance>,
+    clearance: Option<Arc<ExemplarClearance>>,
     pub(crate) levels: Vec<LevelExemplar<D>>,
     params: Params,
     /// See [`search::dissimilarity`]; `None` without curves.
@@ -56,11 +53,16 @@ impl<const D: usize> Irregular<D>
 where
     Vector<D>: Dimension<D>,
 {
-    /// Analyses the exemplar.
+    /// Analyses the exemplar, whose `clearance` is known.
     ///
     /// # Errors
     /// As [`crate::Prepared::new`].
-    pub(crate) fn new(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Self> {
+    pub(crate) fn new(
+        exemplar: &Arc<Exemplar<D>>,
+        clearance: Option<Arc<ExemplarClearance>>,
+        params: &Params,
+        budget: &Budget,
+    ) -> Result<Self> {
         let budget = &budget.stage("analysing the exemplar");
         budget.check()?;
         let skeleton = match exemplar.curves.as_slice() {
@@ -79,13 +81,7 @@ where
             Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
             None => None,
         };
-        Ok(Self {
-            exemplar: Arc::clone(exemplar),
-            clearance: clearance::measure(exemplar, budget)?,
-            dissimilarity,
-            levels,
-            params: params.clone(),
-        })
+        Ok(Self { exemplar: Arc::clone(exemplar), clearance, dissimilarity, levels, params: params.clone() })
     }
 
     /// Neighbourhood radius of each level, coarsest first, in the exemplar's units.
@@ -138,7 +134,7 @@ where
         }
         let last = &extents[extents.len() - 1];
         let budget = if cut_short.is_some() { ending::last_touches(&request.budget) } else { request.budget.clone() };
-        match placements::mend(&mut found.placements, self.clearance.as_ref(), last, &self.params, &budget) {
+        match placements::mend(&mut found.placements, self.clearance.as_deref(), last, &self.params, &budget) {
             Ok(mended) => warnings.extend(mended),
             Err(error) => {
                 found.placements.retain(|p| p.frozen.is_some() || last.keeps_rule(p));
@@ -156,14 +152,8 @@ where
             ));
         }
         let stopped = ending::reason(cut_short, &mut warnings)?;
-        Ok(Outcome {
-            placements: found.placements,
-            curves: found.curves,
-            areas: Vec::new(),
-            energy: trace,
-            warnings,
-            stopped,
-        })
+        let Snapshot { placements, curves, .. } = found;
+        Ok(Outcome { placements, sequence: Vec::new(), curves, areas: Vec::new(), energy: trace, warnings, stopped })
     }
 
     /// What a run will take, by what its samples take in each iteration.

@@ -2,11 +2,16 @@
 
 use std::sync::{Arc, OnceLock};
 
-use arabesque_core::{Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, Vector, Watch};
+use arabesque_core::{Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Watch};
 
 use crate::{
     dimension::Dimension,
+    ending,
     exemplar::checks,
+    finish::{
+        clearance::{self, ExemplarClearance},
+        order::{self, ExemplarOrder},
+    },
     irregular::Irregular,
     params::{Params, Repeats},
     regular::{Filled, Regular},
@@ -17,6 +22,10 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Prepared<const D: usize> {
     exemplar: Arc<Exemplar<D>>,
+    /// How its elements lie to one another; `None` where that has no meaning.
+    clearance: Option<Arc<ExemplarClearance>>,
+    /// Which of its elements lie on which; `None` where none overlap.
+    order: Option<Arc<ExemplarOrder>>,
     pub(crate) params: Params,
     /// Its repeat, where it has one that is to be used.
     regular: Option<Arc<Regular>>,
@@ -109,8 +118,16 @@ where
             let expected = "auto or off: the exemplar shows no repeat that explains it";
             return Err(Error::parameter("repeat", "exact", expected));
         }
-        let prepared =
-            Self { exemplar: Arc::clone(exemplar), params: params.clone(), regular, irregular: OnceLock::new() };
+        let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
+        let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
+        let prepared = Self {
+            exemplar: Arc::clone(exemplar),
+            clearance,
+            order,
+            params: params.clone(),
+            regular,
+            irregular: OnceLock::new(),
+        };
         if prepared.regular.is_none() {
             prepared.irregular(budget)?;
         }
@@ -122,7 +139,7 @@ where
         if let Some(known) = self.irregular.get() {
             return Ok(known);
         }
-        let made = Irregular::new(&self.exemplar, &self.params, budget)?;
+        let made = Irregular::new(&self.exemplar, self.clearance.clone(), &self.params, budget)?;
         Ok(self.irregular.get_or_init(|| made))
     }
 
@@ -157,6 +174,29 @@ where
     }
 
     fn filled(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
+        let mut outcome = self.laid_out(request, watch)?;
+        self.stack(&mut outcome, request)?;
+        Ok(outcome)
+    }
+
+    /// Sorts the elements of an outcome from bottom to top; where there is no time or work left, they stay as they are.
+    fn stack(&self, outcome: &mut Outcome<D>, request: &Request<D>) -> Result<()> {
+        let is_finished = outcome.stopped == StopReason::Finished;
+        let budget = if is_finished { request.budget.clone() } else { ending::last_touches(&request.budget) };
+        let (order, clearance) = (self.order.as_deref(), self.clearance.as_deref());
+        match order::sort(&mut outcome.placements, order, clearance, &request.domain, &budget) {
+            Ok(sorted) => {
+                outcome.warnings.extend(sorted.warning);
+                outcome.sequence = sorted.sequence;
+            }
+            Err(error) if is_finished => outcome.stopped = ending::reason(Some(error), &mut outcome.warnings)?,
+            Err(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Everything but the order of painting.
+    fn laid_out(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
         checks::frozen(&self.exemplar, request)?;
         let mut told = Vec::new();
         if let Some(regular) = &self.regular {

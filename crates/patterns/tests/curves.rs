@@ -31,7 +31,6 @@ fn exemplar(curves: Vec<Curve<2>>, window: Bounds<2>) -> Exemplar<2> {
         arabesque_core::Contents {
             curves,
             styles: vec![Class { name: "line".into() }],
-            areas: Vec::new(),
             ..arabesque_core::Contents::default()
         },
         window,

@@ -76,6 +76,7 @@ impl PlaneMade {
         write_svg(&SvgSheet {
             drawing: &self.exemplar.drawing,
             placements,
+            sequence: &self.outcome.sequence,
             curves: &self.outcome.curves,
             kept: self.request.kept.as_ref(),
             host: self.exemplar.region.as_ref().map(|region| &region.rest),
@@ -95,6 +96,7 @@ impl PlaneMade {
 pub(crate) fn unfinished<const D: usize>(snapshot: Snapshot<D>) -> Outcome<D> {
     Outcome {
         placements: snapshot.placements,
+        sequence: Vec::new(),
         curves: snapshot.curves,
         areas: snapshot.areas,
         energy: Vec::new(),

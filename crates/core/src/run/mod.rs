@@ -5,7 +5,7 @@ mod patch;
 mod request;
 mod watch;
 
-pub use outcome::{Covered, Drawn, EnergyPoint, Outcome, Placement, StopReason, Warning};
+pub use outcome::{Covered, Drawn, EnergyPoint, Instance, Outcome, Placement, StopReason, Warning};
 pub use patch::Patch;
 pub use request::{Border, Request};
 pub use watch::{Forecast, Progress, Snapshot, Unobserved, Watch};

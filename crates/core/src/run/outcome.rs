@@ -45,6 +45,15 @@ pub struct Covered<const D: usize> {
     pub source: usize,
 }
 
+/// A placement as it is drawn: itself, or a copy of it that is seen across an edge of a torus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instance<const D: usize> {
+    /// Index into [`Outcome::placements`].
+    pub placement: usize,
+    /// How many periods of the torus it is moved along each coordinate.
+    pub around: [i32; D],
+}
+
 /// Mean energy after one step, for the trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyPoint {
@@ -88,8 +97,12 @@ impl Warning {
 /// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome<const D: usize> {
-    /// The output elements, frozen ones included, in drawing order. On a torus each element appears once.
+    /// The output elements, frozen ones included, from bottom to top. On a torus each element appears once.
     pub placements: Vec<Placement<D>>,
+    /// Elements and their copies on a torus from bottom to top, where those of one element do not follow one another:
+    /// rows over rows close up around the seam when a row that is cut by it lies below what is beside it at one edge and
+    /// above at the other. Empty where the copies of each element may be drawn with it.
+    pub sequence: Vec<Instance<D>>,
     /// The output strokes, frozen ones included.
     pub curves: Vec<Drawn<D>>,
     /// The output areas.

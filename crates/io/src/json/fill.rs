@@ -180,6 +180,7 @@ mod tests {
         let outcome = Outcome {
             curves: Vec::new(),
             areas: Vec::new(),
+            sequence: Vec::new(),
             placements: vec![Placement { source: 1, transform, control: Vec::new(), frozen: None }],
             energy: vec![EnergyPoint { level: 0, iteration: 1, energy: 0.5, elements: 1 }],
             warnings: Vec::new(),

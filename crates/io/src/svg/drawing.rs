@@ -1,7 +1,7 @@
 //! What reading an SVG gives and writing one takes: pages, looks of elements and strokes, exemplars, what is placed
 //! already.
 
-use std::fmt::Write as _;
+use std::{collections::BTreeSet, fmt::Write as _};
 
 use std::sync::Arc;
 
@@ -105,14 +105,25 @@ fn without_prefixes(text: &str) -> String {
     out
 }
 
-/// Which of the two lies above the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Stacking {
-    /// Elements lie on the curves.
-    #[default]
-    ElementsAbove,
-    /// Curves lie on the elements.
-    CurvesAbove,
+/// What is painted together, before anything of the next layer is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// One of the paints of all curves of a style.
+    Strokes {
+        /// Index into [`Exemplar::styles`].
+        style: usize,
+        /// Which of their paints, counted from the bottom.
+        paint: usize,
+    },
+    /// The elements of some classes: indices into [`Exemplar::classes`].
+    Elements(BTreeSet<usize>),
+}
+
+impl Layer {
+    /// A layer of all elements.
+    pub fn all_elements(exemplar: &Exemplar<2>) -> Self {
+        Self::Elements((0..exemplar.classes.len()).collect())
+    }
 }
 
 /// The other parts of a file that is a whole job: what layers labelled Domain, Avoid, Flow and Keep hold.
@@ -133,10 +144,12 @@ pub struct Drawing {
     pub exemplar: Arc<Exemplar<2>>,
     /// How element `i` of the exemplar looks.
     pub fragments: Vec<Fragment>,
-    /// How curve `i` of the exemplar is painted.
-    pub strokes: Vec<Stroke>,
-    /// Whether the exemplar draws curves or elements first.
-    pub stacking: Stacking,
+    /// How curve `i` of the exemplar is painted: a stroke for each paint from bottom to top, such as a casing and the
+    /// core on it; at least one.
+    pub strokes: Vec<Vec<Stroke>>,
+    /// What is painted before what, from bottom to top, the background aside: every paint of every style and every
+    /// class is in one of them.
+    pub layers: Vec<Layer>,
     /// Markup that fills the frame behind everything, in exemplar coordinates: repeated over the output page as it is
     /// where it is a plain colour. `None` without a background.
     pub background: Option<String>,
@@ -162,8 +175,8 @@ pub struct Placed {
     pub obstacles: Vec<Outline<2>>,
     /// Looks of placement `i`, to be drawn unchanged: markup in the coordinates of the kept file.
     pub fragments: Vec<Fragment>,
-    /// Looks of the strokes with the boxes around them, in the same way; several strokes of one path share one.
-    pub curve_fragments: Vec<(Fragment, Bounds<2>)>,
+    /// Looks of the strokes, in the same way; several strokes of one path share one.
+    pub curve_fragments: Vec<KeptStrokes>,
     /// Looks of obstacle `i`, in the same way.
     pub obstacle_fragments: Vec<Fragment>,
     /// Content of `<defs>` that both kinds of fragments refer to; its ids do not clash with those of the exemplar.
@@ -172,6 +185,17 @@ pub struct Placed {
     pub page: Page,
     /// What was noticed while reading.
     pub warnings: Vec<Warning>,
+}
+
+/// The looks of strokes that were drawn already.
+#[derive(Clone, Debug)]
+pub struct KeptStrokes {
+    /// What draws them.
+    pub fragment: Fragment,
+    /// Box around their ink.
+    pub extent: Bounds<2>,
+    /// Style of the exemplar in which they are painted, and which of its paints they are, counted from the bottom.
+    pub paint: Option<(usize, usize)>,
 }
 
 /// A drawing of which a part is refilled: what stays, and the text of the file around that part.

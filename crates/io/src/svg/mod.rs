@@ -1,11 +1,12 @@
 //! SVG: exemplars, jobs and results.
 //!
 //! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area
-//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`). `read` holds
-//! what callers ask for, `write` the way back to text; both speak of a [`Drawing`].
+//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`); what lies on
+//! what makes strokes with several paints and the layers of the result (`layers`). `read` holds what callers ask for, `write` the way back to text; both speak of a [`Drawing`].
 
 mod centreline;
 mod drawing;
+mod layers;
 mod namespace;
 mod options;
 mod palette;
@@ -16,7 +17,7 @@ mod understand;
 mod write;
 
 pub use crate::text::unit::Unit;
-pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke};
+pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page, Placed, Stroke};
 pub use namespace::NAMESPACE;
 pub use options::{Method, ReadOptions};
 pub use palette::PALETTE;

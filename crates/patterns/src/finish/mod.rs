@@ -1,4 +1,6 @@
-//! From the optimised output to placements, and the last check of exact outlines.
+//! From the optimised output to placements, the last check of exact outlines, and the order of
+//! painting.
 
 pub(crate) mod clearance;
+pub(crate) mod order;
 pub(crate) mod placements;

@@ -126,7 +126,8 @@ impl Regular {
         let mut warnings = self.warnings(&grid, request);
         let stopped = ending::reason(cut_short, &mut warnings)?;
         let energy = Vec::new();
-        Ok(Filled::Done(Outcome { placements: placed.placements, curves, areas, energy, warnings, stopped }))
+        let (placements, sequence) = (placed.placements, Vec::new());
+        Ok(Filled::Done(Outcome { placements, sequence, curves, areas, energy, warnings, stopped }))
     }
 
     fn strokes(

@@ -59,6 +59,10 @@ pub(crate) enum Note {
     NoWidth,
     /// A stroke on top of one like it.
     Duplicate,
+    /// Strokes and what is drawn with them cover one another in turn.
+    Weaving,
+    /// More strokes on one geometry than one stroke may have paints.
+    ManyPaints,
     /// A stroke whose transform stretches it unevenly.
     UnevenWidth,
     /// The fill of a shape that is marked as a curve.
@@ -119,6 +123,14 @@ impl Note {
             Self::ZeroLength => ("stroke without length ignored", "delete it, or draw a dot as a filled circle"),
             Self::NoWidth => ("stroke of no width ignored", "give it a stroke-width above 0"),
             Self::Duplicate => ("stroke exactly on top of one like it ignored", "delete one of the two"),
+            Self::Weaving => (
+                "strokes go over and under something in turn; the result has all strokes of one look in one layer",
+                "draw what goes over as a shape of its own, with a gap in what goes under",
+            ),
+            Self::ManyPaints => (
+                "stroke left out that lies under more than thirty others on the same line",
+                "draw the line with fewer strokes",
+            ),
             Self::UnevenWidth => (
                 "stroke that is stretched more one way than the other; its mean width is used",
                 "apply the transform to the path, or convert the stroke to a path",

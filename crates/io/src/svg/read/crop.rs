@@ -1,10 +1,10 @@
 //! A part of a drawing as an exemplar of its own.
 
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use arabesque_core::{Bounds, Class, Contents, Exemplar, Result, Role};
 
-use crate::svg::drawing::Drawing;
+use crate::svg::drawing::{Drawing, Layer};
 
 impl Drawing {
     /// The drawing seen through a smaller window: elements with their centre in it, those that reach in as context
@@ -35,8 +35,9 @@ impl Drawing {
         };
         let (mut curves, strokes): (Vec<_>, Vec<_>) =
             curves.into_iter().zip(self.strokes).filter(|(curve, _)| meets(curve)).unzip();
-        let classes = renumbered(classes, kept.iter_mut().map(|e| &mut e.class));
-        let styles = renumbered(styles, curves.iter_mut().map(|c| &mut c.style));
+        let (classes, class_of) = renumbered(classes, kept.iter_mut().map(|e| &mut e.class));
+        let (styles, style_of) = renumbered(styles, curves.iter_mut().map(|c| &mut c.style));
+        let layers = self.layers.iter().filter_map(|layer| still_there(layer, &class_of, &style_of)).collect();
         let exemplar = Exemplar {
             hole,
             ..Exemplar::with_curves(
@@ -45,12 +46,29 @@ impl Drawing {
                 window,
             )?
         };
-        Ok(Self { exemplar: Arc::new(exemplar), fragments, strokes, ..self })
+        Ok(Self { exemplar: Arc::new(exemplar), fragments, strokes, layers, ..self })
     }
 }
 
-/// The classes that are still in use, and the indices into them.
-fn renumbered<'i>(classes: Vec<Class>, indices: impl Iterator<Item = &'i mut usize>) -> Vec<Class> {
+/// A layer by the new numbers of classes and styles; `None` where nothing of it is left.
+fn still_there(layer: &Layer, class_of: &[Option<usize>], style_of: &[Option<usize>]) -> Option<Layer> {
+    match layer {
+        Layer::Strokes { style, paint } => {
+            let style = style_of.get(*style).copied().flatten()?;
+            Some(Layer::Strokes { style, paint: *paint })
+        }
+        Layer::Elements(classes) => {
+            let left: BTreeSet<_> = classes.iter().filter_map(|&c| class_of.get(c).copied().flatten()).collect();
+            (!left.is_empty()).then_some(Layer::Elements(left))
+        }
+    }
+}
+
+/// The classes that are still in use, with the indices into them, and the new number of each.
+fn renumbered<'i>(
+    classes: Vec<Class>,
+    indices: impl Iterator<Item = &'i mut usize>,
+) -> (Vec<Class>, Vec<Option<usize>>) {
     let mut new_of = vec![None; classes.len()];
     let mut used = Vec::new();
     for index in indices {
@@ -60,7 +78,7 @@ fn renumbered<'i>(classes: Vec<Class>, indices: impl Iterator<Item = &'i mut usi
             used.len() - 1
         });
     }
-    used
+    (used, new_of)
 }
 
 #[cfg(test)]
@@ -80,6 +98,7 @@ mod tests {
         let roles: Vec<_> = part.exemplar.elements.iter().map(|e| (e.class, e.role)).collect();
         assert_eq!(roles, [(0, Role::Source), (0, Role::Context)]);
         assert_eq!((part.exemplar.classes.len(), part.exemplar.styles.len(), part.strokes.len()), (1, 1, 1));
-        assert!(part.strokes[0].paint.contains("#0000ff"));
+        assert!(part.strokes[0][0].paint.contains("#0000ff"));
+        assert_eq!(part.layers, [Layer::Elements([0].into()), Layer::Strokes { style: 0, paint: 0 }]);
     }
 }

@@ -8,7 +8,12 @@ use kurbo::Affine;
 
 use crate::{
     svg::{
-        drawing::{Drawing, Job, Page, Stacking},
+        drawing::{Drawing, Job, Layer, Page},
+        layers::{
+            covering::{Counts, Painted, counts},
+            order::{Kinds, Layered, layered},
+            stacks::{Stacked, stacked},
+        },
         options::{Method, ReadOptions},
         parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
         read::{
@@ -22,7 +27,7 @@ use crate::{
         },
         understand::{
             classes::{self, Classes},
-            curves::{Curves, Gatherer},
+            curves::Gatherer,
             fragment::{fragment, push_placed},
             frame::{self, frame_mark, is_frame_mark},
             item::{Item, Kind, Origin, Selection},
@@ -65,16 +70,23 @@ impl Document<'_> {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
         let is_curve = |item: &Item| item.kind == Kind::Curve && self.options.method != Method::Elements;
-        let stacking = stacking(&found.items, is_curve);
+        let is_line: Vec<bool> = found.items.iter().map(is_curve).collect();
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
         let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
-        lines.iter().try_for_each(|item| gatherer.add(item))?;
-        let Curves { curves, styles, strokes } = gatherer.finish();
+        let styles_of = lines.iter().map(|item| gathered(&mut gatherer, item)).collect::<Result<Vec<_>>>()?;
+        let found_curves = gatherer.finish();
+        let paints = found_curves.styles.len();
+        let stack = stacked(found_curves, &window, source.budget)?;
+        (0..stack.doubled).for_each(|_| source.notes.add(Note::Duplicate, String::new));
+        (0..stack.surplus).for_each(|_| source.notes.add(Note::ManyPaints, String::new));
         let (elements, classes) = elements(source, &items, scope.window.as_ref())?;
-        if elements.is_empty() && curves.is_empty() {
+        if elements.is_empty() && stack.curves.is_empty() {
             return Err(nothing_found(source, &found));
         }
+        let drawn = Drawn { is_line: &is_line, lines: &lines, styles_of: &styles_of, items: &items, classes: &classes };
+        let layers = layers(source, &drawn, (paints, &stack.paints), &window)?;
+        let Stacked { curves, styles, strokes, .. } = stack;
         let exemplar = Exemplar::with_curves(
             source.name,
             Contents { elements, classes: classes.classes, curves, styles, ..Contents::default() },
@@ -89,7 +101,7 @@ impl Document<'_> {
             exemplar: Arc::new(exemplar),
             fragments,
             strokes,
-            stacking,
+            layers,
             background,
             definitions,
             page,
@@ -99,10 +111,51 @@ impl Document<'_> {
     }
 }
 
-fn stacking(items: &[Item], is_curve: impl Fn(&Item) -> bool) -> Stacking {
-    let curve = items.iter().position(&is_curve);
-    let element = items.iter().position(|item| !is_curve(item));
-    if element < curve && element.is_some() { Stacking::CurvesAbove } else { Stacking::ElementsAbove }
+/// Adds the strokes of an item. Returns their styles.
+fn gathered(gatherer: &mut Gatherer<'_, '_, '_, '_>, item: &Item) -> Result<Vec<usize>> {
+    let before = gatherer.count();
+    gatherer.add(item)?;
+    Ok(gatherer.styles_from(before))
+}
+
+/// What a drawing shows, sorted into strokes and elements.
+struct Drawn<'a> {
+    /// Of each item in drawing order, whether it is strokes.
+    is_line: &'a [bool],
+    lines: &'a [Item],
+    /// The styles of each of the lines.
+    styles_of: &'a [Vec<usize>],
+    items: &'a [Item],
+    classes: &'a Classes,
+}
+
+/// The layers of a drawing, given how many paints there are and those of each style.
+fn layers(
+    source: &Source<'_>,
+    drawn: &Drawn<'_>,
+    (paints, styles): (usize, &[Vec<usize>]),
+    window: &Bounds<2>,
+) -> Result<Vec<Layer>> {
+    let element = drawn.is_line.iter().position(|is_line| !is_line);
+    let elements_first = element.is_some() && element < drawn.is_line.iter().position(|&is_line| is_line);
+    let kinds = Kinds { paints, classes: drawn.classes.classes.len(), styles, elements_first };
+    let seen = if paints > 1 || paints == 1 && element.is_some() {
+        let lines = drawn.lines.iter().zip(drawn.styles_of).map(|(item, styles)| (item, styles.clone()));
+        let elements = drawn.items.iter().zip(&drawn.classes.members).map(|(item, m)| (item, vec![paints + m.0]));
+        let (mut lines, mut elements) = (lines, elements);
+        let next = |&is_line: &bool| {
+            let next = if is_line { lines.next() } else { elements.next() };
+            next.map(|(item, kinds)| Painted { outline: &item.outline, kinds, is_strokes: is_line })
+        };
+        counts(&drawn.is_line.iter().filter_map(next).collect::<Vec<_>>(), window, source.budget)?
+    } else {
+        Counts::new()
+    };
+    let Layered { layers, weaving } = layered(&kinds, &seen, source.budget)?;
+    if weaving > 0 {
+        source.notes.add(Note::Weaving, String::new);
+    }
+    Ok(layers)
 }
 
 /// Where the elements are looked for.

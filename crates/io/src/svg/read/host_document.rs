@@ -65,16 +65,16 @@ impl Document<'_> {
         if self.options.method != Method::Elements {
             trace(source, &mut found.items, &page.view)?;
         }
-        let mut sorter = Sorter {
+        let sorter = Sorter {
             painter: &painter,
             matcher: Matcher::of_itself(drawing),
             area: Some(area),
             window: content.union(&page.view),
         };
         let mut definitions = Definitions::new(source, "kept");
-        let kept = found.items.iter().map(|item| sorter.sort(item, &mut definitions)).collect::<Result<Vec<_>>>()?;
+        let kept = sorter.sort(&found.items, &mut definitions)?;
         let affected = affected(source, &found.items, &kept)?;
-        let (moved, definitions) = rewritten(source, &mut sorter, &found.items, &affected)?;
+        let (moved, definitions) = rewritten(source, &sorter, &found.items, &affected)?;
         let replaced = kept.iter().filter(|k| is_changed(k)).count();
         let mut placed = Placed::on(page);
         kept.into_iter().for_each(|kept| placed.freeze(kept));
@@ -146,18 +146,14 @@ fn affected(source: &Source<'_>, items: &[Item], kept: &[Sorted]) -> Result<BTre
 /// Markup of what is left of affected items, with the definitions that it refers to.
 fn rewritten<'a, 's>(
     source: &'s Source<'a>,
-    sorter: &mut Sorter<'a, 's, '_, '_>,
+    sorter: &Sorter<'a, 's, '_, '_>,
     items: &[Item],
     affected: &BTreeSet<u32>,
 ) -> Result<(String, String)> {
     let mut definitions = Definitions::new(source, "kept");
     let mut moved = String::new();
     for item in items.iter().filter(|item| item.parts.iter().any(|(_, node)| affected.contains(&node.meta.xml.get()))) {
-        let cut = match sorter.sort(item, &mut definitions)? {
-            Sorted::Removed => continue,
-            Sorted::Element(_) => None,
-            Sorted::Strokes { cut, .. } | Sorted::Obstacle { cut, .. } => cut,
-        };
+        let Some(cut) = sorter.rest(item, &mut definitions)? else { continue };
         moved.push_str(&cut.unwrap_or_else(|| fragment(item, &mut definitions).markup));
         moved.push('\n');
     }

@@ -9,7 +9,8 @@ use kurbo::Affine;
 
 use crate::{
     svg::{
-        drawing::{Drawing, Fragment, Page, Placed, Stroke},
+        drawing::{Drawing, Fragment, KeptStrokes, Page, Placed, Stroke},
+        layers::stacks::{Stack, nearness, paints_of, stacks},
         options::{Method, ReadOptions},
         parse::{definitions::Definitions, meta::Meta},
         read::document::{Document, Opened},
@@ -69,14 +70,14 @@ impl Document<'_> {
         if page.view.measure() > 0.0 && page.view.size().is_finite() {
             let method = if drawing.exemplar.curves.is_empty() { Method::Elements } else { Method::Curves };
             let found = select(&painter, page.view, method, &[(Surroundings::new(Affine::IDENTITY), root)])?;
-            let mut sorter = Sorter {
+            let sorter = Sorter {
                 painter: &painter,
                 matcher: Matcher::new(drawing),
                 area: None,
                 window: content.union(&page.view),
             };
-            for item in &found.items {
-                let kept = sorter.sort(item, &mut definitions)?;
+            let sorted = sorter.sort(&found.items, &mut definitions)?;
+            for (item, kept) in found.items.iter().zip(sorted) {
                 placed.add(item, kept, &mut definitions);
             }
         }
@@ -119,13 +120,14 @@ impl Placed {
                 self.placements.push(placement);
                 self.fragments.push(fragment(item, definitions));
             }
-            Sorted::Strokes { drawn, cut, .. } => {
+            Sorted::Strokes { drawn, paint, cut, .. } => {
                 let extent = drawn.iter().fold(Bounds::EMPTY, |all, d| all.union(&d.path.bounds()));
                 self.curves.extend(drawn);
                 let whole = fragment(item, definitions);
                 let markup = cut.unwrap_or_else(|| whole.markup.clone());
                 let width = item.outline.bounds();
-                self.curve_fragments.push((Fragment { markup, ..whole }, extent.union(&width)));
+                let fragment = Fragment { markup, ..whole };
+                self.curve_fragments.push(KeptStrokes { fragment, extent: extent.union(&width), paint });
             }
             Sorted::Obstacle { outline, .. } => {
                 self.obstacles.push(outline);
@@ -141,11 +143,35 @@ pub(crate) enum Sorted {
     Removed,
     /// It is an element of the exemplar.
     Element(Placement<2>),
-    /// It is one or more strokes of the exemplar's styles; `cut` is their markup where they are not whole, and
-    /// `is_touched` says whether what is refilled takes something away from them.
-    Strokes { drawn: Vec<Drawn<2>>, cut: Option<String>, is_touched: bool },
-    /// It is nothing that the exemplar knows; the rest as for strokes.
-    Obstacle { outline: Outline<2>, cut: Option<String>, is_touched: bool },
+    /// It is strokes in paints of the exemplar's styles, `paint` the first of them; `drawn` has those of which it is the
+    /// lowest paint, `cut` is their markup where they are not whole, and `is_touched` says whether what is refilled
+    /// takes something away from them.
+    Strokes { drawn: Vec<Drawn<2>>, paint: Option<(usize, usize)>, cut: Option<String>, is_touched: bool },
+    /// It is nothing that the exemplar knows; `is_touched` as for strokes.
+    Obstacle { outline: Outline<2>, is_touched: bool },
+}
+
+/// What is left of the strokes of an item.
+#[derive(Default)]
+struct Remains {
+    parts: Vec<Part>,
+    /// What draws it where it is not whole.
+    cut: Option<String>,
+    is_touched: bool,
+}
+
+/// A line that is left, with its paint.
+struct Part {
+    path: Path<2>,
+    width: f64,
+    stroke: Stroke,
+}
+
+/// What the exemplar knows of a part: the strokes of which it is the lowest paint, and which paint of which style it is.
+#[derive(Clone, Default)]
+struct Known {
+    drawn: Vec<Drawn<2>>,
+    paint: (usize, usize),
 }
 
 /// Decides what becomes of items.
@@ -159,53 +185,124 @@ pub(crate) struct Sorter<'a, 's, 'i, 'd> {
 }
 
 impl<'a, 's> Sorter<'a, 's, '_, '_> {
-    pub(crate) fn sort(&mut self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
-        if item.kind == Kind::Curve && !self.matcher.drawing.exemplar.curves.is_empty() {
-            return self.strokes(item, definitions);
+    /// What becomes of all items of a drawing: strokes on one geometry are looked at together.
+    pub(crate) fn sort(&self, items: &[Item], definitions: &mut Definitions<'a, 's>) -> Result<Vec<Sorted>> {
+        let mut remains = Vec::with_capacity(items.len());
+        for item in items {
+            remains.push(if self.is_strokes(item) { Some(self.remains(item, definitions)?) } else { None });
         }
+        let mut known = self.known(items, &remains)?.into_iter();
+        let mut sorted = Vec::with_capacity(items.len());
+        for (item, remains) in items.iter().zip(remains) {
+            sorted.push(match remains {
+                None => self.element(item)?,
+                Some(Remains { parts, .. }) if parts.is_empty() => Sorted::Removed,
+                Some(Remains { parts, cut, is_touched }) => {
+                    let known: Option<Vec<Known>> = known.by_ref().take(parts.len()).collect();
+                    match known {
+                        Some(known) => {
+                            let paint = known.first().map(|k| k.paint);
+                            let drawn = known.into_iter().flat_map(|k| k.drawn).collect();
+                            Sorted::Strokes { drawn, paint, cut, is_touched }
+                        }
+                        None => Sorted::Obstacle { outline: self.outside(item)?, is_touched },
+                    }
+                }
+            });
+        }
+        Ok(sorted)
+    }
+
+    /// Markup of what is left of an item; `None` where nothing is, and inside of it where it is whole.
+    pub(crate) fn rest(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Option<Option<String>>> {
+        if self.is_strokes(item) {
+            let remains = self.remains(item, definitions)?;
+            return Ok((!remains.parts.is_empty()).then_some(remains.cut));
+        }
+        Ok((!self.is_refilled(item)).then_some(None))
+    }
+
+    fn is_strokes(&self, item: &Item) -> bool {
+        item.kind == Kind::Curve && !self.matcher.drawing.exemplar.curves.is_empty()
+    }
+
+    fn is_refilled(&self, item: &Item) -> bool {
         let centre = item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre());
-        if self.area.is_some_and(|area| area.contains(centre)) {
+        self.area.is_some_and(|area| area.contains(centre))
+    }
+
+    fn element(&self, item: &Item) -> Result<Sorted> {
+        if self.is_refilled(item) {
             return Ok(Sorted::Removed);
         }
         let names = classes::names_of(&item.meta, &self.painter.source.sheet);
         Ok(match self.matcher.place(item, &names, self.painter.source.budget)? {
             Some(placement) => Sorted::Element(placement),
-            None => Sorted::Obstacle { outline: item.outline.clone(), cut: None, is_touched: false },
+            None => Sorted::Obstacle { outline: item.outline.clone(), is_touched: false },
         })
     }
 
-    fn strokes(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
+    /// The painted area of an item without what is refilled.
+    fn outside(&self, item: &Item) -> Result<Outline<2>> {
+        match self.area {
+            Some(area) => item.outline.try_difference(area, self.painter.source.budget),
+            None => Ok(item.outline.clone()),
+        }
+    }
+
+    fn remains(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Remains> {
         let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
         gatherer.add(item)?;
         let Curves { curves, strokes, .. } = gatherer.finish();
         // A clip takes something away as well: then the line alone is not what the file shows.
         let (mut is_touched, mut rest) = (false, Vec::new());
-        for (curve, stroke) in curves.iter().zip(&strokes) {
+        for (curve, stroke) in curves.iter().zip(strokes) {
             self.painter.source.budget.spend(LOOK * self.area.map_or(0, |area| area.points().count()) as u64)?;
             let parts = self.area.and_then(|area| cut(&curve.path, area, Side::Outside));
             is_touched |= parts.is_some();
-            rest.extend(
-                parts.unwrap_or_else(|| vec![curve.path.clone()]).into_iter().map(|path| (path, curve, stroke)),
-            );
-        }
-        if rest.is_empty() {
-            return Ok(Sorted::Removed);
+            let parts = parts.unwrap_or_else(|| vec![curve.path.clone()]);
+            rest.extend(parts.into_iter().map(|path| Part { path, width: curve.width, stroke: stroke.clone() }));
         }
         let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1]));
-        let markup = rest.iter().map(|(path, _, stroke)| stroke.markup(path, decimals)).collect::<String>();
+        let markup = rest.iter().map(|part| part.stroke.markup(&part.path, decimals)).collect::<String>();
         let markup =
             (is_touched || item.is_cut).then(|| if rest.len() == 1 { markup } else { format!("<g>{markup}</g>") });
-        let drawn = rest.iter().map(|(path, curve, stroke)| self.matcher.stroke(path, curve.width, stroke, &item.meta));
-        match drawn.collect::<Option<Vec<_>>>() {
-            Some(drawn) => Ok(Sorted::Strokes { drawn, cut: markup, is_touched }),
-            None => {
-                let outline = match self.area {
-                    Some(area) => item.outline.try_difference(area, self.painter.source.budget)?,
-                    None => item.outline.clone(),
-                };
-                Ok(Sorted::Obstacle { outline, cut: markup, is_touched })
+        Ok(Remains { parts: rest, cut: markup, is_touched })
+    }
+
+    /// What the exemplar knows of all parts, in their order.
+    fn known(&self, items: &[Item], remains: &[Option<Remains>]) -> Result<Vec<Option<Known>>> {
+        let of_items = items.iter().zip(remains);
+        let parts: Vec<(&Item, &Part)> =
+            of_items.flat_map(|(item, r)| r.iter().flat_map(move |r| r.parts.iter().map(move |p| (item, p)))).collect();
+        let lines = parts.iter().map(|(_, part)| part.path.clone());
+        let exemplar = &self.matcher.drawing.exemplar;
+        let stacks = if self.matcher.drawing.strokes.iter().any(|paints| paints.len() > 1) {
+            let strokes: Vec<Stroke> = parts.iter().map(|(_, part)| part.stroke.clone()).collect();
+            let near = nearness(&self.window, exemplar.curves.iter().map(|c| &c.width));
+            stacks(lines.zip(paints_of(&strokes)).collect(), near, self.painter.source.budget)?
+        } else {
+            lines.enumerate().map(|(k, path)| Stack::of_one(path, k)).collect()
+        };
+        // A second line in the same paint is as good as the first.
+        let mut all: Vec<Option<Known>> = vec![Some(Known::default()); parts.len()];
+        for Stack { path, members, .. } in stacks {
+            let paints: Vec<(&Stroke, f64)> = members.iter().map(|&m| (&parts[m].1.stroke, parts[m].1.width)).collect();
+            let meta = members.first().map(|&m| &*parts[m].0.meta);
+            let mut drawn = meta.and_then(|meta| self.matcher.stroke(&path, &paints, meta));
+            let style = drawn.as_ref().map(|d| exemplar.curves[d.source].style);
+            for (paint, &m) in members.iter().enumerate() {
+                match (style, &mut all[m]) {
+                    (None, known) => *known = None,
+                    (Some(style), Some(known)) => {
+                        known.drawn.extend(drawn.take());
+                        known.paint = (style, paint);
+                    }
+                    (Some(_), None) => {}
+                }
             }
         }
+        Ok(all)
     }
 }
 
@@ -234,8 +331,8 @@ impl<'d> Matcher<'d> {
         let signature = |e: &Element<2>| (e.role == Role::Source).then(|| Signature::new(&e.outline)).flatten();
         let class_names = drawing.exemplar.classes.iter().map(|c| c.name.as_str()).collect();
         let mut painted = BTreeMap::new();
-        for (k, stroke) in drawing.strokes.iter().enumerate() {
-            painted.entry(stroke.key()).or_insert(k);
+        for (k, strokes) in drawing.strokes.iter().enumerate() {
+            painted.entry(joint_key(strokes.iter(), 1.0)).or_insert(k);
         }
         Self {
             drawing,
@@ -247,15 +344,17 @@ impl<'d> Matcher<'d> {
         }
     }
 
-    /// The stroke as one painted like a curve of the exemplar: the one that it says where that is painted so except for
-    /// its width, else the first that is painted exactly so.
-    fn stroke(&self, path: &Path<2>, width: f64, stroke: &Stroke, meta: &Meta) -> Option<Drawn<2>> {
+    /// A line in several paints, from bottom to top, as one painted like a curve of the exemplar: the one that it says
+    /// where that is painted so except for its width, else the first that is painted exactly so.
+    fn stroke(&self, path: &Path<2>, paints: &[(&Stroke, f64)], meta: &Meta) -> Option<Drawn<2>> {
+        let key = joint_key(paints.iter().map(|(stroke, _)| *stroke), 1.0);
+        let width = paints.first()?.1;
         let stated = meta.curve.filter(|_| self.is_origin).filter(|&k| {
-            let known = self.drawing.strokes.get(k);
-            known.is_some_and(|known| known.scaled(width / known.width).key() == stroke.key())
+            let known = self.drawing.strokes.get(k).filter(|known| known.len() == paints.len());
+            known.is_some_and(|known| joint_key(known.iter(), width / known[0].width) == key)
         });
-        let source = stated.or_else(|| self.painted.get(&stroke.key()).copied())?;
-        let scale = width / self.drawing.strokes.get(source)?.width;
+        let source = stated.or_else(|| self.painted.get(&key).copied())?;
+        let scale = width / self.drawing.strokes.get(source)?.first()?.width;
         let scale = if (scale - 1.0).abs() < 1e-3 { 1.0 } else { scale };
         Some(Drawn { path: path.clone(), source, scale, frozen: None })
     }
@@ -315,6 +414,12 @@ impl<'d> Matcher<'d> {
         }
         Ok(best.map(|(_, i, pose)| (i, pose)))
     }
+}
+
+/// A text that is the same for lines whose paints, all lengths times `factor`, look the same.
+fn joint_key<'a>(strokes: impl Iterator<Item = &'a Stroke>, factor: f64) -> String {
+    let key = |stroke: &Stroke| if factor == 1.0 { stroke.key() } else { stroke.scaled(factor).key() };
+    strokes.map(key).collect::<Vec<_>>().join("\n")
 }
 
 /// A transform as turn, scale and shift; `None` when it mirrors or distorts.

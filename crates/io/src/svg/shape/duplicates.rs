@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use arabesque_core::{Bounds, Budget, Measured, Path, Result, Vector, segment};
 
 /// Strokes nearer to each other than this share of the diagonal of the window lie on top of each other.
-const NEAR: f64 = 1e-4;
+pub(crate) const NEAR: f64 = 1e-4;
 
 /// Places along a stroke at which it is compared.
 const PLACES: usize = 24;
@@ -23,6 +23,8 @@ type ByLength = BTreeMap<u64, Vec<Known>>;
 /// A stroke, with the box around it.
 #[derive(Debug)]
 struct Known {
+    /// How many were there before it.
+    number: usize,
     bounds: Bounds<2>,
     line: Measured<2>,
 }
@@ -31,6 +33,7 @@ struct Known {
 #[derive(Debug)]
 pub(crate) struct Seen {
     near: f64,
+    count: usize,
     /// By style and by the cell in which a corner of the box around them lies.
     cells: BTreeMap<GridCell, ByLength>,
 }
@@ -38,7 +41,12 @@ pub(crate) struct Seen {
 impl Seen {
     /// None, in a drawing of this size.
     pub(crate) fn new(window: &Bounds<2>) -> Self {
-        Self { near: NEAR * window.size().norm().max(f64::MIN_POSITIVE), cells: BTreeMap::new() }
+        Self::nearer_than(NEAR * window.size().norm())
+    }
+
+    /// None, where strokes nearer to each other than `near` lie on top of each other.
+    pub(crate) fn nearer_than(near: f64) -> Self {
+        Self { near: near.max(f64::MIN_POSITIVE), count: 0, cells: BTreeMap::new() }
     }
 
     /// Adds a stroke. Returns whether none like it was there.
@@ -46,6 +54,14 @@ impl Seen {
     /// # Errors
     /// As [`Budget::spend`].
     pub(crate) fn insert(&mut self, style: usize, path: &Path<2>, budget: &Budget) -> Result<bool> {
+        Ok(self.find_or_add(style, path, budget)?.is_none())
+    }
+
+    /// The number of a stroke like this, counted from 0 as they were added; where there is none, adds it.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub(crate) fn find_or_add(&mut self, style: usize, path: &Path<2>, budget: &Budget) -> Result<Option<usize>> {
         let measured = Measured::new(path.clone(), 0.2 * self.near);
         let bounds = Bounds::around(measured.points().iter().copied());
         let corner = Vector::xy(bounds.min[0], bounds.max[1]) * (1.0 / (2.0 * self.near));
@@ -57,19 +73,20 @@ impl Seen {
             (-1..=1).flat_map(|x| (-1..=1).map(move |y| [cell[0].saturating_add(x), cell[1].saturating_add(y)]));
         let known = around.filter_map(|cell| self.cells.get(&(style, cell)));
         let known = known.flat_map(|cell| cell.range(lengths.clone())).flat_map(|(_, alike)| alike);
-        let new = Known { bounds, line: measured };
+        let new = Known { number: self.count, bounds, line: measured };
         for other in known {
             budget.spend(LOOK)?;
             if self.may_be_same(other, &new) {
                 budget
                     .spend(PER_PLACE * PLACES as u64 * (other.line.points().len() + new.line.points().len()) as u64)?;
                 if self.is_same(other, &new) {
-                    return Ok(false);
+                    return Ok(Some(other.number));
                 }
             }
         }
+        self.count += 1;
         self.cells.entry((style, cell)).or_default().entry(length.to_bits()).or_default().push(new);
-        Ok(true)
+        Ok(None)
     }
 
     /// Whether two strokes have the same extent and length.

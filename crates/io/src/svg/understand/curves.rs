@@ -34,7 +34,7 @@ use crate::{
 /// Work for each edge of a clip that a stroke may cross.
 const PER_EDGE: u64 = 5;
 
-/// The curves of a drawing.
+/// The curves of a drawing, each in one paint.
 #[derive(Debug, Default)]
 pub(crate) struct Curves {
     pub(crate) curves: Vec<Curve<2>>,
@@ -119,6 +119,22 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
             self.push(Curve { path: path.clone(), style, width: lines.width, colour }, &stroke, item)?;
         }
         self.check_count()
+    }
+
+    /// Number of the curves so far.
+    pub(crate) fn count(&self) -> usize {
+        self.found.curves.len()
+    }
+
+    /// The styles of the curves from number `from` on, each once.
+    pub(crate) fn styles_from(&self, from: usize) -> Vec<usize> {
+        let mut styles: Vec<usize> = Vec::new();
+        for curve in &self.found.curves[from..] {
+            if !styles.contains(&curve.style) {
+                styles.push(curve.style);
+            }
+        }
+        styles
     }
 
     pub(crate) fn finish(self) -> Curves {

@@ -2,20 +2,28 @@
 
 use std::fmt::Write as _;
 
-use crate::svg::write::writer::Writer;
+use crate::svg::{drawing::KeptStrokes, write::writer::Writer};
 
 impl Writer<'_> {
     /// The strokes that the user drew, unchanged and whole.
     pub(crate) fn kept_strokes(&mut self) {
-        let Some(kept) = self.sheet.kept.filter(|k| !k.curve_fragments.is_empty()) else { return };
+        let all = self.sheet.kept.iter().flat_map(|k| &k.curve_fragments).collect::<Vec<_>>();
+        self.kept_group(&all, "");
+    }
+
+    /// Some of them in a group whose id ends in `suffix`; nothing without any.
+    pub(crate) fn kept_group(&mut self, strokes: &[&KeptStrokes], suffix: &str) {
+        if strokes.is_empty() {
+            return;
+        }
         let _ = writeln!(
             self.out,
-            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept strokes\" id=\"{}-kept-strokes\">",
+            "<g inkscape:groupmode=\"layer\" inkscape:label=\"Kept strokes\" id=\"{}-kept-strokes{suffix}\">",
             self.prefix
         );
-        for (fragment, extent) in &kept.curve_fragments {
-            for shift in self.shifts(extent) {
-                let _ = writeln!(self.out, "<g{}>{}</g>", self.shifted(shift), fragment.markup);
+        for strokes in strokes {
+            for shift in self.shifts(&strokes.extent) {
+                let _ = writeln!(self.out, "<g{}>{}</g>", self.shifted(shift), strokes.fragment.markup);
             }
         }
         self.out.push_str("</g>\n");

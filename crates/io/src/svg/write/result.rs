@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use arabesque_core::Result;
 
 use crate::svg::{
-    drawing::{HostDocument, Stacking},
+    drawing::HostDocument,
     write::{
         background::background,
         document::{DECLARATION, PREFIXES, Root, length_decimals},
@@ -39,14 +39,7 @@ impl Writer<'_> {
         self.metadata();
         self.definitions();
         self.background()?;
-        let strokes_above = self.sheet.drawing.stacking == Stacking::CurvesAbove;
-        if !strokes_above {
-            self.kept_strokes();
-        }
-        self.elements()?;
-        if strokes_above {
-            self.kept_strokes();
-        }
+        self.output()?;
         self.obstacles();
         self.out.push_str("</svg>\n");
         Ok(())
@@ -78,7 +71,7 @@ impl Writer<'_> {
                 self.prefix, host.moved
             );
         }
-        self.elements()?;
+        self.output()?;
         self.out.push_str(&host.tail);
         Ok(())
     }
@@ -103,7 +96,7 @@ mod tests {
     use super::*;
     use crate::{
         svg::{
-            drawing::{Drawing, Fragment, Job, Page},
+            drawing::{Drawing, Fragment, Job, Layer, Page},
             write::{document::recipe_of, sheet::Style, text::rectangle},
         },
         text::unit::Unit,
@@ -129,7 +122,7 @@ mod tests {
         Drawing {
             fragments: centres.iter().map(dot).collect(),
             strokes: Vec::new(),
-            stacking: Stacking::default(),
+            layers: vec![Layer::all_elements(&exemplar)],
             background: Some("<rect width=\"10\" height=\"10\" fill=\"#fed\"/>".into()),
             definitions: String::new(),
             page: Page { view: exemplar.window, unit: Unit::Mm, unit_per_user: 2.0 },
@@ -151,6 +144,7 @@ mod tests {
         let sheet = Sheet {
             drawing: &drawing,
             placements: &[at(0, -2.0, 8.0), at(0, 5.0, 5.0)],
+            sequence: &[],
             curves: &[],
             kept: None,
             host: None,

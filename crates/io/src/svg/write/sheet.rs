@@ -1,6 +1,6 @@
 //! Everything that one SVG file of a result is made of.
 
-use arabesque_core::{Border, Budget, Domain, Drawn, Outline, Placement, Vector, Warning};
+use arabesque_core::{Border, Budget, Domain, Drawn, Instance, Outline, Placement, Vector, Warning};
 
 use crate::svg::drawing::{Drawing, HostDocument, Page, Placed};
 
@@ -23,6 +23,8 @@ pub struct Sheet<'a> {
     pub drawing: &'a Drawing,
     /// Where they lie.
     pub placements: &'a [Placement<2>],
+    /// The order of placements and their copies on a torus, where copies do not follow what they are copies of.
+    pub sequence: &'a [Instance<2>],
     /// The strokes.
     pub curves: &'a [Drawn<2>],
     /// The looks of frozen placements and of what else is kept.

@@ -6,7 +6,7 @@ use arabesque_core::{Decimals, Role};
 
 use crate::{
     svg::{
-        drawing::{Drawing, Page},
+        drawing::{Drawing, Layer, Page},
         palette::PALETTE,
         write::{
             document::{PREFIXES, Root},
@@ -59,11 +59,19 @@ fn elements(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
     }
 }
 
-/// The curves as the file has them.
+/// The curves as the file has them, in all their paints.
 fn faded_curves(out: &mut String, drawing: &Drawing, d: Decimals) {
-    for (curve, stroke) in drawing.exemplar.curves.iter().zip(&drawing.strokes) {
-        let (paint, width) = (&stroke.paint, d.plus(2).format(stroke.width));
-        let _ = writeln!(out, "<path d=\"{}\"{paint} stroke-width=\"{width}\"/>", path_data(&curve.path, d));
+    let mut of_style = vec![Vec::new(); drawing.exemplar.styles.len()];
+    for (curve, strokes) in drawing.exemplar.curves.iter().zip(&drawing.strokes) {
+        of_style[curve.style].push((curve, strokes));
+    }
+    for layer in &drawing.layers {
+        let &Layer::Strokes { style, paint } = layer else { continue };
+        let curves = of_style.get(style).into_iter().flatten();
+        for (curve, stroke) in curves.filter_map(|(curve, strokes)| Some((curve, strokes.get(paint)?))) {
+            let (paint, width) = (&stroke.paint, d.plus(2).format(stroke.width));
+            let _ = writeln!(out, "<path d=\"{}\"{paint} stroke-width=\"{width}\"/>", path_data(&curve.path, d));
+        }
     }
 }
 

@@ -113,7 +113,7 @@ pub(crate) fn free_prefix(sheet: &Sheet<'_>) -> String {
         k.fragments
             .iter()
             .chain(&k.obstacle_fragments)
-            .chain(k.curve_fragments.iter().map(|(f, _)| f))
+            .chain(k.curve_fragments.iter().map(|k| &k.fragment))
             .map(|f| &f.markup)
             .chain(std::iter::once(&k.definitions))
     });

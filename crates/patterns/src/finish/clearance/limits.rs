@@ -44,7 +44,10 @@ struct Allowance {
 pub(crate) struct ExemplarClearance {
     /// One figure per element.
     pub(crate) figures: Vec<Figure>,
-    class: Vec<usize>,
+    /// The class of each.
+    pub(crate) class: Vec<usize>,
+    /// All pairs of elements that share area.
+    pub(crate) overlaps: Vec<Overlap>,
     /// Elements that may be copied, by class, largest first.
     sources: Vec<Vec<usize>>,
     /// Mean element spacing.
@@ -75,7 +78,8 @@ impl ExemplarClearance {
         let sources = sources(exemplar, &figures);
         let spacing = exemplar.spacing();
         let allowed = BTreeMap::new();
-        let mut clearance = Self { figures, class, sources, spacing, allowed, ratio: 0.0, _held: held };
+        let mut clearance =
+            Self { figures, class, overlaps: Vec::new(), sources, spacing, allowed, ratio: 0.0, _held: held };
         clearance.measure(&Domain::Box(exemplar.window), &budget)?;
         Ok(Some(clearance))
     }
@@ -97,6 +101,7 @@ impl ExemplarClearance {
             |this: &Self| this.unlayered_area(&arrangement, &overlaps) / ink(&arrangement).max(f64::MIN_POSITIVE);
         self.allowed.clone_from(&allowed);
         self.ratio = ratio(self);
+        self.overlaps = overlaps;
         Ok(())
     }
 

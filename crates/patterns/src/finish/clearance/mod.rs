@@ -18,7 +18,7 @@ mod tests;
 use arabesque_core::{Budget, Domain, Exemplar, Placement, Request, Result, Vector};
 
 use crate::dimension::Dimension;
-use arrangement::Arrangement;
+pub(crate) use arrangement::{Arrangement, PlacedFigure};
 pub(crate) use limits::ExemplarClearance;
 use summary::Summary;
 

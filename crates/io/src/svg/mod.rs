@@ -11,6 +11,7 @@ mod options;
 mod palette;
 mod parse;
 mod read;
+mod reason;
 mod shape;
 mod understand;
 mod write;
@@ -30,6 +31,7 @@ pub use read::{
     painted_areas::{Area, Areas, read_areas},
     placed::read_placed,
 };
+pub use reason::{Reason, Understood};
 pub use shape::{
     cut_path::{Side, cut},
     simplify::simplified,

@@ -17,6 +17,12 @@ pub(crate) fn is_all_closed(path: &BezPath) -> bool {
     path.subpaths().all(|elements: &[PathEl]| is_closed(elements))
 }
 
+/// Whether a path leads nowhere: SVG draws its caps alone.
+pub(crate) fn has_no_length(path: &BezPath) -> bool {
+    let extent = path.control_box();
+    !path.is_empty() && extent.width() <= 0.0 && extent.height() <= 0.0
+}
+
 /// A subpath as cubics; segments no longer than `least` are left out.
 pub(crate) fn line(path: &BezPath, closed: bool, least: f64) -> Path<2> {
     let at = |p: kurbo::Point| Vector::xy(p.x, p.y);

@@ -12,6 +12,7 @@ use crate::svg::{
         scene::{Content, Node},
         source::Source,
     },
+    reason::Reason,
     understand::item::{Item, Kind, Origin},
 };
 
@@ -54,7 +55,7 @@ fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> Result<bo
         item.lines = centrelines(&item.outline, Some(window), source.budget)?.map(Rc::new);
     }
     if item.lines.is_some() {
-        item.kind = Kind::Curve;
+        (item.kind, item.reason) = (Kind::Curve, Reason::Traced);
         source.notes.add(Note::Traced, || item.name(source));
     }
     Ok(item.lines.is_some())

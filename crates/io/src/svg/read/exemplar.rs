@@ -19,6 +19,7 @@ use crate::{
         reason::{Reason, Understood},
         shape::{
             extent::{self, bounds},
+            idle::without_idle_clips,
             painted_area::Painter,
         },
         understand::{
@@ -57,6 +58,11 @@ impl Document<'_> {
         painter.check_all(&root, Affine::IDENTITY)?;
         let mut scope = scope(&painter, &root, page.as_ref())?;
         scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
+        if let Some(window) = &scope.window {
+            for (context, root) in &mut scope.roots {
+                *root = without_idle_clips(&painter, root, context.parent, window)?;
+            }
+        }
         let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
@@ -71,7 +77,7 @@ impl Document<'_> {
         let mut definitions = Definitions::new(source, "exemplar");
         let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
         lines.iter().try_for_each(|item| gatherer.add(item))?;
-        let Curves { curves, styles, strokes } = gatherer.finish();
+        let Curves { curves, styles, strokes } = gatherer.finish()?;
         let (elements, classes) = elements(source, &items, scope.window.as_ref())?;
         if elements.is_empty() && curves.is_empty() {
             return Err(nothing_found(source, &found));

@@ -16,6 +16,7 @@ use crate::{
         shape::{
             cut_path::{Side, cut},
             extent::bounds,
+            idle::without_idle_clips,
             painted_area::Painter,
         },
         understand::{
@@ -67,7 +68,12 @@ impl Document<'_> {
         let mut definitions = Definitions::new(source, "kept");
         let mut placed = Placed::on(page);
         if page.view.measure() > 0.0 && page.view.size().is_finite() {
-            let method = if drawing.exemplar.curves.is_empty() { Method::Elements } else { Method::Curves };
+            let method = match (drawing.exemplar.elements.is_empty(), drawing.exemplar.curves.is_empty()) {
+                (_, true) => Method::Elements,
+                (true, false) => Method::Curves,
+                (false, false) => Method::Auto,
+            };
+            let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
             let found = select(&painter, page.view, method, &[(Surroundings::new(Affine::IDENTITY), root)])?;
             let mut sorter = Sorter {
                 painter: &painter,
@@ -168,7 +174,13 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
             return Ok(Sorted::Removed);
         }
         let names = classes::names_of(&item.meta, &self.painter.source.sheet);
-        Ok(match self.matcher.place(item, &names, self.painter.source.budget)? {
+        let placement = self.matcher.place(item, &names, self.painter.source.budget)?;
+        // A few strokes of a net look like things of their own.
+        let may_be_net = item.reason.is_loose() && !self.matcher.drawing.exemplar.curves.is_empty();
+        if placement.is_none() && may_be_net {
+            return self.strokes(item, definitions);
+        }
+        Ok(match placement {
             Some(placement) => Sorted::Element(placement),
             None => Sorted::Obstacle { outline: item.outline.clone(), cut: None, is_touched: false },
         })
@@ -177,7 +189,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
     fn strokes(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
         let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
         gatherer.add(item)?;
-        let Curves { curves, strokes, .. } = gatherer.finish();
+        let Curves { curves, strokes, .. } = gatherer.finish()?;
         // A clip takes something away as well: then the line alone is not what the file shows.
         let (mut is_touched, mut rest) = (false, Vec::new());
         for (curve, stroke) in curves.iter().zip(&strokes) {

@@ -13,7 +13,7 @@ use crate::svg::{
         stroke::growth,
         subpath::{has_no_length, is_closed},
     },
-    understand::item::{Item, Kind},
+    understand::item::{HALF, Item, Kind},
 };
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
@@ -53,8 +53,13 @@ fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
 }
 
 /// Whether a stroke ends on a side of the frame, or runs along it, as one does that a file has cut there, and nothing of
-/// the item reaches over that side. A copy by `<use>` is as whole as what it shows.
+/// the item reaches over that side. A copy by `<use>` is as whole as what it shows, and what is too large for an element
+/// but taken for one is asked for.
 fn ends_on(item: &Item, frame: &Bounds<2>) -> bool {
+    let extent = item.outline.bounds();
+    if (0..2).any(|k| extent.size()[k] >= HALF * frame.size()[k]) {
+        return false;
+    }
     let mut all: Vec<(Affine, &Node)> = item.parts.iter().map(|(parent, node)| (*parent, &**node)).collect();
     let mut cut = [false; 4];
     let mut width = 0.0_f64;
@@ -70,7 +75,6 @@ fn ends_on(item: &Item, frame: &Bounds<2>) -> bool {
             Content::Shape(_) => {}
         }
     }
-    let extent = item.outline.bounds();
     let over = [
         frame.min[0] - extent.min[0],
         extent.max[0] - frame.max[0],

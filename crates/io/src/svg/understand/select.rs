@@ -259,7 +259,7 @@ impl Selector<'_, '_, '_> {
         let is_curve = node.meta.curve.or(only.leaf.meta.curve).is_some();
         let compound = match self.method {
             Method::Curves => None,
-            _ if is_curve => None,
+            _ if is_curve || !only.leaf.style.strokes() => None,
             _ => Compound::of_stroke(self.painter, node, only, at)?,
         };
         let Some(compound) = compound else { return self.line(node, only, at, is_curve) };
@@ -281,7 +281,7 @@ impl Selector<'_, '_, '_> {
         if is_curve {
             return self.take(node, at, MARKED_CURVE);
         }
-        if has_no_length(&geometry.path) {
+        if has_no_length(&geometry.path) && only.leaf.style.strokes() {
             if only.leaf.style.get(P::StrokeLinecap) == "butt" {
                 self.painter.source.notes.add(Note::ZeroLength, || node.meta.id.clone().unwrap_or_default());
                 return Ok(());

@@ -1,6 +1,6 @@
 //! Pieces that leave no clear space between them: most of the border of each runs along others.
 
-use arabesque_core::{Bounds, Budget, DisjointSets, Outline, Result, Vector, segment};
+use arabesque_core::{Bounds, Budget, DisjointSets, Outline, Result, Vector, ring, segment};
 
 use crate::svg::shape::{
     adjacency::{Edge, meeting},
@@ -25,7 +25,7 @@ pub(crate) fn crowds(pieces: &[Vec<&Outline<2>>], budget: &Budget) -> Result<Vec
     let boxes: Vec<_> = pieces.iter().map(extent).collect();
     let reach: Vec<f64> = boxes.iter().map(|b| GAP * longer(b)).collect();
     let edges: Vec<Vec<Edge>> = pieces.iter().map(|piece| piece.iter().flat_map(|o| o.edges()).collect()).collect();
-    let places: Vec<Vec<Vector<2>>> = edges.iter().map(|edges| along(edges)).collect();
+    let places: Vec<Vec<Vector<2>>> = pieces.iter().map(|piece| along(&outer(piece))).collect();
     let mut beside: Vec<Vec<bool>> = places.iter().map(|places| vec![false; places.len()]).collect();
     let (mut pairs, mut failed) = (Vec::new(), None);
     let mut meter = budget.meter();
@@ -53,6 +53,12 @@ pub(crate) fn crowds(pieces: &[Vec<&Outline<2>>], budget: &Budget) -> Result<Vec
     let mut sets = DisjointSets::new(pieces.len());
     pairs.into_iter().filter(|&(i, j)| is_crowded[i] && is_crowded[j]).for_each(|(i, j)| sets.join(i, j));
     Ok(sets.groups().into_iter().filter(|group| group.len() > 1).collect())
+}
+
+/// The edges of outlines without those of their holes.
+fn outer(outlines: &[&Outline<2>]) -> Vec<Edge> {
+    let rings = outlines.iter().flat_map(|outline| &outline.rings).filter(|r| ring::area(r) > 0.0);
+    rings.flat_map(|r| ring::edges(r)).collect()
 }
 
 /// The places within `reach` of edges, and the pairs looked at.

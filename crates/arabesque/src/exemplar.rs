@@ -99,6 +99,7 @@ pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
         definitions: String::new(),
         page: Page { view: exemplar.window, unit: Unit::Px, unit_per_user: DOT_SPACING_PIXELS / spacing },
         job: Job::default(),
+        understood: Vec::new(),
         warnings: Vec::<Warning>::new(),
         exemplar: Arc::new(exemplar),
     }

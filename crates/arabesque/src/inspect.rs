@@ -1,10 +1,12 @@
 //! What was understood of an exemplar.
 
+use std::fmt;
+
 use arabesque_core::{Budget, Error, Exemplar, Result, Role, Warning};
 use arabesque_io::{
     mesh::obj::junctions,
     raster::png::{RenderJob, Resolution, write_png},
-    svg::{Drawing, write_survey},
+    svg::{Drawing, Understood, write_survey},
 };
 use serde::Serialize;
 
@@ -49,6 +51,8 @@ pub struct Report {
     pub spacing: f64,
     /// Neighbourhood radius that a run would use by default on its finest level, in user units.
     pub suggested_radius: f64,
+    /// What everything in the file was taken for, and why; empty for points.
+    pub understood: Vec<UnderstoodReport>,
     /// Layers that make the file a whole job.
     pub layers: Vec<&'static str>,
     /// What was noticed while reading.
@@ -56,6 +60,54 @@ pub struct Report {
     /// The picture of what was understood.
     #[serde(skip)]
     drawing: Option<Drawing>,
+}
+
+/// Things that were taken for the same for one reason.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UnderstoodReport {
+    /// `elements`, `curves`, `background` or `left out`.
+    pub taken_for: &'static str,
+    /// Why.
+    pub why: &'static str,
+    /// How many there are.
+    pub count: usize,
+    /// What the first of them are called in the file.
+    pub names: Vec<String>,
+}
+
+impl UnderstoodReport {
+    /// What was understood of a drawing.
+    pub fn of(drawing: &Drawing) -> Vec<Self> {
+        let one = |known: &Understood| Self {
+            taken_for: known.reason.taken_for(),
+            why: known.reason.why(),
+            count: known.count,
+            names: known.names.clone(),
+        };
+        drawing.understood.iter().map(one).collect()
+    }
+}
+
+impl fmt::Display for UnderstoodReport {
+    /// One line, with as many names as fit.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = format!("{}: {}, {}", self.taken_for, self.count, self.why);
+        let (mut named, mut shown) = (String::new(), 0);
+        for name in &self.names {
+            let separator = if shown > 0 { ", " } else { "" };
+            if line.len() + named.len() + separator.len() + name.len() > LINE {
+                break;
+            }
+            named.push_str(separator);
+            named.push_str(name);
+            shown += 1;
+        }
+        if shown > 0 {
+            let more = if shown < self.count { ", ..." } else { "" };
+            line = format!("{line} ({named}{more})");
+        }
+        f.write_str(&line)
+    }
 }
 
 /// One class of elements.
@@ -86,6 +138,9 @@ pub struct StyleReport {
     pub width: f64,
 }
 
+/// Length up to which names are added to a line on what was understood.
+const LINE: usize = 110;
+
 /// Neighbours that a neighbourhood of the suggested radius holds on average.
 const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 
@@ -100,6 +155,7 @@ pub fn inspect(input: &Input, method: Method, resources: &Resources) -> Result<R
             let mut report = describe(input, "drawing", &drawing.exemplar);
             report.unit = Some(drawing.page.unit.name());
             report.unit_per_user = Some(drawing.page.unit_per_user);
+            report.understood = UnderstoodReport::of(&drawing);
             report.layers = layers(&drawing);
             report.warnings = drawing.warnings.clone();
             report.drawing = Some(*drawing);
@@ -153,6 +209,7 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
         unit_per_user: None,
         spacing,
         suggested_radius: spacing * (SUGGESTED_NEIGHBOURS / ball).powf(1.0 / D as f64),
+        understood: Vec::new(),
         layers: Vec::new(),
         warnings: Vec::new(),
         drawing: None,

@@ -79,7 +79,7 @@ pub use arabesque_core::{
 pub use arabesque_ribbons::Closing;
 pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
-pub use inspect::{ClassReport, Report, StyleReport, inspect};
+pub use inspect::{ClassReport, Report, StyleReport, UnderstoodReport, inspect};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{

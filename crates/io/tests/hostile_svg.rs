@@ -178,7 +178,8 @@ fn fifty_thousand_elements_take_their_share() {
     let circles = |attributes: &str| {
         times(MANY, |k| format!("<circle cx='{}' cy='{}' r='.3' {attributes}/>", place(k).0, place(k).1))
     };
-    assert_eq!(reads(&circles(""), 6000).exemplar.elements.len(), MANY);
+    // The last ten thousand lie exactly on others.
+    assert_eq!(reads(&circles(""), 6000).exemplar.elements.len(), MANY - 10_000);
     let off = times(MANY, |k| format!("<circle cx='{}' cy='1e6' r='3'/>", k * 1000));
     let drawing = reads(&format!("{}{off}", dots("")), 6000);
     assert!(drawing.exemplar.elements.len() == 64 && warned(&drawing, "outside the frame"));

@@ -21,6 +21,7 @@ use arabesque_patterns::Prepared as Engine;
 use crate::{
     artwork::Artwork,
     exemplar::{LoadedExemplar, points_as_drawing, understood},
+    inspect::UnderstoodReport,
     method::{Preparation, Ready, RunContext, Show},
     recipe::{Fill, Parameters, Redo},
 };
@@ -74,7 +75,9 @@ impl Plane {
 
 impl Ready for Plane {
     fn understood(&self) -> String {
-        understood(&self.exemplar.drawing.exemplar)
+        let drawing = &self.exemplar.drawing;
+        let reasons = UnderstoodReport::of(drawing).into_iter().map(|known| format!("\n  {known}"));
+        understood(&drawing.exemplar) + &reasons.collect::<String>()
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {

@@ -128,6 +128,9 @@ fn print(report: &Report) -> Result<(), Failure> {
             style.name, style.curves, style.closed, style.ends, style.length, style.width
         )?;
     }
+    for known in &report.understood {
+        writeln!(out, "  {known}")?;
+    }
     out.flush()?;
     Ok(())
 }

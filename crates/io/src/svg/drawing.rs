@@ -7,7 +7,10 @@ use std::sync::Arc;
 
 use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
 
-use crate::text::{path_data::path_data, unit::Unit};
+use crate::{
+    svg::reason::Understood,
+    text::{path_data::path_data, unit::Unit},
+};
 
 /// Size and coordinate system of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,6 +162,8 @@ pub struct Drawing {
     pub page: Page,
     /// Layers beside the exemplar.
     pub job: Job,
+    /// What everything in the file was taken for, and why.
+    pub understood: Vec<Understood>,
     /// What was noticed while reading.
     pub warnings: Vec<Warning>,
 }

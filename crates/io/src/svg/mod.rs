@@ -12,6 +12,7 @@ mod options;
 mod palette;
 mod parse;
 mod read;
+mod reason;
 mod shape;
 mod understand;
 mod write;
@@ -31,6 +32,7 @@ pub use read::{
     painted_areas::{Area, Areas, read_areas},
     placed::read_placed,
 };
+pub use reason::{Reason, Understood};
 pub use shape::{
     cut_path::{Side, cut},
     simplify::simplified,

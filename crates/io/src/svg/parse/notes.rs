@@ -120,7 +120,7 @@ impl Note {
                 "resize the page to the drawing, or draw a rectangle with the id \"frame\"",
             ),
             Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
-            Self::ZeroLength => ("stroke without length ignored", "delete it, or draw a dot as a filled circle"),
+            Self::ZeroLength => ("stroke without length ignored", "delete it, or give it round caps if it is a dot"),
             Self::NoWidth => ("stroke of no width ignored", "give it a stroke-width above 0"),
             Self::Duplicate => ("stroke exactly on top of one like it ignored", "delete one of the two"),
             Self::Weaving => (

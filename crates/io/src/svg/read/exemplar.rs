@@ -3,7 +3,7 @@
 
 use std::{rc::Rc, sync::Arc};
 
-use arabesque_core::{Bounds, Contents, Element, Error, Exemplar, Result, Role};
+use arabesque_core::{Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role};
 use kurbo::Affine;
 
 use crate::{
@@ -21,8 +21,10 @@ use crate::{
             domain::shape,
             flow::strokes,
         },
+        reason::{Reason, Understood},
         shape::{
             extent::{self, bounds},
+            idle::without_idle_clips,
             painted_area::Painter,
         },
         understand::{
@@ -61,10 +63,15 @@ impl Document<'_> {
         painter.check_all(&root, Affine::IDENTITY)?;
         let mut scope = scope(&painter, &root, page.as_ref())?;
         scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
+        if let Some(window) = &scope.window {
+            for (context, root) in &mut scope.roots {
+                *root = without_idle_clips(&painter, root, context.parent, window)?;
+            }
+        }
         let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
-        settle(source, &mut found.items, window, self.options.method)?;
+        settle(source, &mut found, window, self.options.method)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
@@ -75,7 +82,7 @@ impl Document<'_> {
         let mut definitions = Definitions::new(source, "exemplar");
         let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
         let styles_of = lines.iter().map(|item| gathered(&mut gatherer, item)).collect::<Result<Vec<_>>>()?;
-        let found_curves = gatherer.finish();
+        let found_curves = gatherer.finish()?;
         let paints = found_curves.styles.len();
         let stack = stacked(found_curves, &window, source.budget)?;
         (0..stack.doubled).for_each(|_| source.notes.add(Note::Duplicate, String::new));
@@ -94,6 +101,7 @@ impl Document<'_> {
         )?;
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
         let background = background(&found, &mut definitions);
+        let understood = understood(source, &items, &lines, found.left_out);
         let definitions = definitions.finish()?;
         let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
         let warnings = source.notes.warnings(source.name);
@@ -106,6 +114,7 @@ impl Document<'_> {
             definitions,
             page,
             job,
+            understood,
             warnings,
         })
     }
@@ -158,6 +167,24 @@ fn layers(
     Ok(layers)
 }
 
+/// What everything was taken for, by reasons.
+fn understood(
+    source: &Source<'_>,
+    items: &[Item],
+    lines: &[Item],
+    left_out: Vec<(Reason, String, Outline<2>)>,
+) -> Vec<Understood> {
+    let mut all = Vec::new();
+    for item in items.iter().chain(lines) {
+        Understood::add(&mut all, item.reason, || item.name(source), None);
+    }
+    for (reason, name, outline) in left_out {
+        Understood::add(&mut all, reason, || name, Some(outline));
+    }
+    all.sort_by_key(|known| known.reason);
+    all
+}
+
 /// Where the elements are looked for.
 struct Scope {
     roots: Vec<(Surroundings, Rc<Node>)>,
@@ -207,11 +234,13 @@ fn content(node: &Node, parent: Affine) -> Bounds<2> {
 }
 
 /// Drops what lies outside, and refuses what cannot be handled.
-fn settle(source: &Source<'_>, items: &mut Vec<Item>, window: Bounds<2>, method: Method) -> Result<()> {
+fn settle(source: &Source<'_>, found: &mut Selection, window: Bounds<2>, method: Method) -> Result<()> {
+    let Selection { items, left_out, .. } = found;
     items.retain(|item| {
         let inside = item.outline.bounds().intersects(&window);
         if !inside {
             source.notes.add(Note::Outside, || item.meta.id.clone().unwrap_or_default());
+            left_out.push((Reason::Outside, item.name(source), Outline::default()));
         }
         inside
     });

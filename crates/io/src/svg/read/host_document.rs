@@ -5,7 +5,6 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     fmt::Write as _,
     ops::Range,
-    rc::Rc,
 };
 
 use arabesque_core::{Error, Outline, Result};
@@ -22,7 +21,7 @@ use crate::{
             document::{Document, Opened},
             placed::{Matcher, Sorted, Sorter},
         },
-        shape::{extent::bounds, painted_area::Painter},
+        shape::{extent::bounds, idle::without_idle_clips, painted_area::Painter},
         understand::{
             fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
             surroundings::Surroundings,
@@ -59,7 +58,8 @@ impl Document<'_> {
         painter.check_all(&root, Affine::IDENTITY)?;
         let content = bounds(&root, Affine::IDENTITY);
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
-        let roots = [(Surroundings::new(Affine::IDENTITY).without(&self.options.without), Rc::clone(&root))];
+        let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
+        let roots = [(Surroundings::new(Affine::IDENTITY).without(&self.options.without), root)];
         let mut found = select(&painter, page.view, self.options.method, &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         if self.options.method != Method::Elements {

@@ -17,6 +17,7 @@ use crate::{
         shape::{
             cut_path::{Side, cut},
             extent::bounds,
+            idle::without_idle_clips,
             painted_area::Painter,
         },
         understand::{
@@ -68,7 +69,12 @@ impl Document<'_> {
         let mut definitions = Definitions::new(source, "kept");
         let mut placed = Placed::on(page);
         if page.view.measure() > 0.0 && page.view.size().is_finite() {
-            let method = if drawing.exemplar.curves.is_empty() { Method::Elements } else { Method::Curves };
+            let method = match (drawing.exemplar.elements.is_empty(), drawing.exemplar.curves.is_empty()) {
+                (_, true) => Method::Elements,
+                (true, false) => Method::Curves,
+                (false, false) => Method::Auto,
+            };
+            let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
             let found = select(&painter, page.view, method, &[(Surroundings::new(Affine::IDENTITY), root)])?;
             let sorter = Sorter {
                 painter: &painter,
@@ -189,7 +195,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
     pub(crate) fn sort(&self, items: &[Item], definitions: &mut Definitions<'a, 's>) -> Result<Vec<Sorted>> {
         let mut remains = Vec::with_capacity(items.len());
         for item in items {
-            remains.push(if self.is_strokes(item) { Some(self.remains(item, definitions)?) } else { None });
+            remains.push(if self.is_strokes(item)? { Some(self.remains(item, definitions)?) } else { None });
         }
         let mut known = self.known(items, &remains)?.into_iter();
         let mut sorted = Vec::with_capacity(items.len());
@@ -215,15 +221,27 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
 
     /// Markup of what is left of an item; `None` where nothing is, and inside of it where it is whole.
     pub(crate) fn rest(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Option<Option<String>>> {
-        if self.is_strokes(item) {
+        if self.is_strokes(item)? {
             let remains = self.remains(item, definitions)?;
             return Ok((!remains.parts.is_empty()).then_some(remains.cut));
         }
         Ok((!self.is_refilled(item)).then_some(None))
     }
 
-    fn is_strokes(&self, item: &Item) -> bool {
-        item.kind == Kind::Curve && !self.matcher.drawing.exemplar.curves.is_empty()
+    fn is_strokes(&self, item: &Item) -> Result<bool> {
+        if self.matcher.drawing.exemplar.curves.is_empty() {
+            return Ok(false);
+        }
+        if item.kind == Kind::Curve {
+            return Ok(true);
+        }
+        // A few strokes of a net look like things of their own.
+        Ok(item.reason.is_loose() && !self.is_refilled(item) && self.placement(item)?.is_none())
+    }
+
+    fn placement(&self, item: &Item) -> Result<Option<Placement<2>>> {
+        let names = classes::names_of(&item.meta, &self.painter.source.sheet);
+        self.matcher.place(item, &names, self.painter.source.budget)
     }
 
     fn is_refilled(&self, item: &Item) -> bool {
@@ -235,8 +253,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         if self.is_refilled(item) {
             return Ok(Sorted::Removed);
         }
-        let names = classes::names_of(&item.meta, &self.painter.source.sheet);
-        Ok(match self.matcher.place(item, &names, self.painter.source.budget)? {
+        Ok(match self.placement(item)? {
             Some(placement) => Sorted::Element(placement),
             None => Sorted::Obstacle { outline: item.outline.clone(), is_touched: false },
         })
@@ -253,7 +270,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
     fn remains(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Remains> {
         let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
         gatherer.add(item)?;
-        let Curves { curves, strokes, .. } = gatherer.finish();
+        let Curves { curves, strokes, .. } = gatherer.finish()?;
         // A clip takes something away as well: then the line alone is not what the file shows.
         let (mut is_touched, mut rest) = (false, Vec::new());
         for (curve, stroke) in curves.iter().zip(strokes) {

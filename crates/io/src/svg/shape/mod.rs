@@ -5,6 +5,7 @@ pub(crate) mod cut_path;
 pub(crate) mod duplicates;
 pub(crate) mod extent;
 pub(crate) mod flatten;
+pub(crate) mod idle;
 pub(crate) mod painted_area;
 pub(crate) mod simplify;
 pub(crate) mod stroke;

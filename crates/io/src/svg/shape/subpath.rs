@@ -3,6 +3,8 @@
 use arabesque_core::{Path, Vector, straight};
 use kurbo::{BezPath, PathEl, PathSeg};
 
+use crate::svg::shape::flatten::control_box;
+
 /// Whether a subpath ends where it starts.
 pub(crate) fn is_closed(elements: &[kurbo::PathEl]) -> bool {
     if matches!(elements.last(), Some(kurbo::PathEl::ClosePath)) {
@@ -15,6 +17,12 @@ pub(crate) fn is_closed(elements: &[kurbo::PathEl]) -> bool {
 /// Whether a shape's subpaths all end where they start.
 pub(crate) fn is_all_closed(path: &BezPath) -> bool {
     path.subpaths().all(|elements: &[PathEl]| is_closed(elements))
+}
+
+/// Whether a path leads nowhere: SVG draws its caps alone.
+pub(crate) fn has_no_length(path: &BezPath) -> bool {
+    let extent = control_box(path.elements());
+    path.elements().len() > 1 && extent.width() <= 0.0 && extent.height() <= 0.0
 }
 
 /// A subpath as cubics; segments no longer than `least` are left out.

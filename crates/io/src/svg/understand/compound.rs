@@ -1,4 +1,4 @@
-//! A filled compound path and its connected pieces.
+//! A compound path and its connected pieces: those that a fill has, or the subpaths of a stroke.
 
 use std::{ops::Range, rc::Rc};
 
@@ -25,7 +25,7 @@ use crate::svg::{
     },
 };
 
-/// A filled path of several pieces.
+/// A path of several pieces.
 #[derive(Debug)]
 pub(crate) struct Compound {
     /// The shape without its own clip and without the groups around it.
@@ -53,7 +53,7 @@ impl Compound {
         only: &SoleShape<'_>,
         at: &Surroundings,
     ) -> Result<Option<Self>> {
-        let &SoleShape { leaf, parent } = only;
+        let leaf = only.leaf;
         let Content::Shape(geometry) = &leaf.content else { return Ok(None) };
         if geometry.path.subpaths().count() < 2 {
             return Ok(None);
@@ -63,6 +63,33 @@ impl Compound {
             painter.source.notes.add(Note::TooTangled, || node.meta.id.clone().unwrap_or_default());
             return Ok(None);
         };
+        Self::of(painter, node, only, at, pieces)
+    }
+
+    /// The subpaths of a stroke that a node is or wraps, each a piece; `None` where there is one only.
+    ///
+    /// # Errors
+    /// As for clips that cannot be read.
+    pub(crate) fn of_stroke(
+        painter: &Painter<'_, '_>,
+        node: &Rc<Node>,
+        only: &SoleShape<'_>,
+        at: &Surroundings,
+    ) -> Result<Option<Self>> {
+        let Content::Shape(geometry) = &only.leaf.content else { return Ok(None) };
+        let pieces = (0..geometry.path.subpaths().count()).map(|k| Piece { subpaths: vec![k], within: None });
+        Self::of(painter, node, only, at, pieces.collect())
+    }
+
+    fn of(
+        painter: &Painter<'_, '_>,
+        node: &Rc<Node>,
+        only: &SoleShape<'_>,
+        at: &Surroundings,
+        pieces: Vec<Piece>,
+    ) -> Result<Option<Self>> {
+        let &SoleShape { leaf, parent } = only;
+        let Content::Shape(geometry) = &leaf.content else { return Ok(None) };
         if pieces.len() < 2 {
             return Ok(None);
         }
@@ -101,7 +128,8 @@ impl Compound {
     /// Notes what is lost when its pieces become separate.
     pub(crate) fn note_losses(&self, painter: &Painter<'_, '_>) {
         let notes = &painter.source.notes;
-        if self.bare.style.get(P::Fill).starts_with("url(") {
+        let painted = if self.bare.style.fills() { P::Fill } else { P::Stroke };
+        if self.bare.style.get(painted).starts_with("url(") {
             notes.add(Note::SplitGradient, || self.bare.meta.id.clone().unwrap_or_default());
         }
         if let Some(name) = &self.effects {

@@ -19,6 +19,7 @@ use crate::{
             scene::{Content, Node},
             style::Property as P,
         },
+        reason::Reason,
         shape::{
             cut_path::{Side, cut},
             duplicates::Seen,
@@ -26,7 +27,7 @@ use crate::{
             stroke::growth,
             subpath::{is_closed, line},
         },
-        understand::{classes::names_of, item::Item},
+        understand::{classes::names_of, item::Item, parts::cells::shared_once},
     },
     text::xml::{number, push_attribute},
 };
@@ -103,7 +104,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         if fraction(leaf.style.get(P::FillOpacity)) < 1.0 {
             push_attribute(&mut paint, "stroke-opacity", leaf.style.get(P::FillOpacity));
         }
-        paint.push_str(" stroke-linecap=\"round\"");
+        paint.push_str(match item.reason {
+            Reason::Band => " stroke-miterlimit=\"20\"",
+            _ => " stroke-linecap=\"round\"",
+        });
         let stroke = Stroke {
             paint,
             effects: self.effects(leaf, opacity),
@@ -137,8 +141,24 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         styles
     }
 
-    pub(crate) fn finish(self) -> Curves {
-        self.found
+    /// The curves, with the edges that closed outlines share once each.
+    ///
+    /// # Errors
+    /// As [`arabesque_core::Budget::spend`].
+    pub(crate) fn finish(self) -> Result<Curves> {
+        let Curves { curves, styles, strokes } = self.found;
+        let is_plain = |k: usize| strokes[k].dashes.is_empty();
+        let shared = shared_once(&curves, is_plain, &self.window, self.painter.source.budget)?;
+        let mut found = Curves { styles, ..Curves::default() };
+        for ((curve, stroke), rest) in curves.into_iter().zip(strokes).zip(shared) {
+            for path in rest.unwrap_or_else(|| vec![curve.path.clone()]) {
+                if path.bounds().grown(0.5 * curve.width).intersects(&self.window) {
+                    found.curves.push(Curve { path, ..curve.clone() });
+                    found.strokes.push(stroke.clone());
+                }
+            }
+        }
+        Ok(found)
     }
 
     fn node(&mut self, node: &Node, at: &Inside, item: &Item) -> Result<()> {

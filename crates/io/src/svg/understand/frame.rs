@@ -1,12 +1,19 @@
 //! The frame of an exemplar, and what lies on it.
 
 use arabesque_core::{Bounds, Outline, Role, Vector};
-use kurbo::Affine;
+use kurbo::{Affine, BezPath, ParamCurve as _};
 
 use crate::svg::{
-    parse::scene::Node,
-    shape::extent::{longer, outline_bounds},
-    understand::item::{Item, Kind},
+    parse::{
+        scene::{Content, Node},
+        style::Property as P,
+    },
+    shape::{
+        extent::{longer, outline_bounds},
+        stroke::growth,
+        subpath::{has_no_length, is_closed},
+    },
+    understand::item::{HALF, Item, Kind},
 };
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
@@ -18,12 +25,15 @@ const NEAR: f64 = 0.002;
 const EXACT_CUT: f64 = 0.03;
 const EXACTLY_NEAR: f64 = 1e-5;
 
+/// How near to a side of the frame a stroke ends that is cut there, as a share of the frame.
+const ENDS_NEAR: f64 = 1e-4;
+
 /// A box is thin when its shorter side is less than this share of the longer one.
 const THIN: f64 = 0.03;
 
 /// Whether an element is whole, or cut by a clip or at the frame; `frame` is `None` where the file states none.
 pub(crate) fn role(item: &Item, frame: Option<&Bounds<2>>) -> Role {
-    let is_cut = item.is_cut || frame.is_some_and(|frame| is_cut_along(&item.outline, frame));
+    let is_cut = item.is_cut || frame.is_some_and(|frame| is_cut_along(&item.outline, frame) || ends_on(item, frame));
     if is_cut { Role::Context } else { Role::Source }
 }
 
@@ -40,6 +50,65 @@ fn is_cut_along(outline: &Outline<2>, frame: &Bounds<2>) -> bool {
     sides.filter(|(_, side, reach)| (side - reach).abs() <= NEAR * diagonal).any(|(k, side, _)| {
         length(k, side, NEAR) >= CUT * diagonal || length(k, side, EXACTLY_NEAR) >= EXACT_CUT * diagonal
     })
+}
+
+/// Whether a stroke ends on a side of the frame, or runs along it, as one does that a file has cut there, and nothing of
+/// the item reaches over that side. A copy by `<use>` is as whole as what it shows, and what is too large for an element
+/// but taken for one is asked for.
+fn ends_on(item: &Item, frame: &Bounds<2>) -> bool {
+    let extent = item.outline.bounds();
+    if (0..2).any(|k| extent.size()[k] >= HALF * frame.size()[k]) {
+        return false;
+    }
+    let mut all: Vec<(Affine, &Node)> = item.parts.iter().map(|(parent, node)| (*parent, &**node)).collect();
+    let mut cut = [false; 4];
+    let mut width = 0.0_f64;
+    while let Some((parent, node)) = all.pop() {
+        let world = parent * node.transform;
+        match &node.content {
+            _ if node.meta.tag == "use" => {}
+            Content::Group(children) => all.extend(children.iter().map(|child| (world, &**child))),
+            Content::Shape(geometry) if node.style.strokes() => {
+                width = width.max(growth(world) * node.style.number(P::StrokeWidth));
+                cut_sides(&(world * geometry.path.clone()), frame, &mut cut);
+            }
+            Content::Shape(_) => {}
+        }
+    }
+    let over = [
+        frame.min[0] - extent.min[0],
+        extent.max[0] - frame.max[0],
+        frame.min[1] - extent.min[1],
+        extent.max[1] - frame.max[1],
+    ];
+    cut.iter().zip(over).any(|(cut, over)| *cut && over <= width)
+}
+
+/// Marks the sides of the frame (left, right, top, bottom) on which a path ends or along which it runs.
+fn cut_sides(path: &BezPath, frame: &Bounds<2>, cut: &mut [bool; 4]) {
+    let near = ENDS_NEAR * longer(frame);
+    let sides = |p: kurbo::Point| -> [bool; 4] {
+        let p = [p.x, p.y];
+        let within = (0..2).all(|k| (frame.min[k] - near..=frame.max[k] + near).contains(&p[k]));
+        let at = |k: usize, side: f64| within && (p[k] - side).abs() <= near;
+        [at(0, frame.min[0]), at(0, frame.max[0]), at(1, frame.min[1]), at(1, frame.max[1])]
+    };
+    let mut mark = |found: [bool; 4]| cut.iter_mut().zip(found).for_each(|(cut, found)| *cut |= found);
+    for elements in path.subpaths() {
+        let is_dot = has_no_length(&BezPath::from_vec(elements.to_vec()));
+        if is_closed(elements) || is_dot {
+            continue;
+        }
+        let ends = [elements.first(), elements.last()].map(|e| e.and_then(kurbo::PathEl::end_point));
+        ends.into_iter().flatten().for_each(|end| mark(sides(end)));
+    }
+    for segment in path.segments() {
+        let (from, to) = (segment.start(), segment.end());
+        if from.distance(to) > 10.0 * near {
+            let (a, b) = (sides(from), sides(to));
+            mark(std::array::from_fn(|k| a[k] && b[k]));
+        }
+    }
 }
 
 /// Whether a box is so thin that what it holds tells nothing about a second direction.

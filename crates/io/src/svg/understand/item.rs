@@ -9,6 +9,7 @@ use kurbo::Affine;
 use crate::svg::{
     centreline::Centrelines,
     parse::{meta::Meta, notes::Note, scene::Node, source::Source},
+    reason::Reason,
     shape::{
         extent::{SoleShape, bounds, longer, sole_shape},
         painted_area::{PaintedArea, Painter},
@@ -24,7 +25,7 @@ pub(crate) const HALF: f64 = 0.5;
 pub(crate) enum Kind {
     /// To be placed as a whole.
     Element,
-    /// An open stroke, a closed one too large for an element or of the same net, or one marked as curve.
+    /// Strokes of a net, or marked as curves.
     Curve,
     /// A fill larger than half of the frame that is not a background.
     Large,
@@ -33,7 +34,7 @@ pub(crate) enum Kind {
 /// How an item came to be, which decides what it may be joined with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
-    /// A group, `<use>`, or anything marked by hand: never joined.
+    /// A group, `<use>`, anything marked by hand, or what was put together: never joined.
     Whole,
     /// A single filled shape.
     Fill,
@@ -56,6 +57,8 @@ pub(crate) struct Item {
     pub(crate) painted: PaintedArea,
     pub(crate) kind: Kind,
     pub(crate) origin: Origin,
+    /// Why it was taken for that.
+    pub(crate) reason: Reason,
     /// The lines whose outline it is, where it was found to be one.
     pub(crate) lines: Option<Rc<Centrelines>>,
     /// What the clips of the containers around it leave visible.
@@ -72,9 +75,9 @@ impl Item {
         painter: &Painter<'_, '_>,
         node: &Rc<Node>,
         at: &Surroundings,
-        kind: Kind,
-        origin: Origin,
+        taken: (Kind, Origin, Reason),
     ) -> Result<Option<Self>> {
+        let (kind, origin, reason) = taken;
         let budget = painter.source.budget;
         let painted = painter.painted(node, at.parent)?;
         let mut item = Self {
@@ -86,6 +89,7 @@ impl Item {
             painted,
             kind,
             origin,
+            reason,
             lines: None,
             clip: at.clip.clone(),
             is_cut: false,
@@ -115,8 +119,8 @@ impl Item {
     ) -> Result<Option<Self>> {
         let node = Rc::new(compound.node(&which));
         let share = bounds(&node, compound.context.parent).measure() / frame.measure();
-        let kind = if share < HALF { Kind::Element } else { Kind::Large };
-        let item = Self::taken(painter, &node, &compound.context, kind, Origin::Piece)?;
+        let (kind, reason) = size_of_fill(share, Reason::Piece);
+        let item = Self::taken(painter, &node, &compound.context, (kind, Origin::Piece, reason))?;
         let compound = (which.len() > 1).then(|| (Rc::clone(compound), which));
         Ok(item.map(|item| Self { compound, ..item }))
     }
@@ -169,6 +173,11 @@ impl Item {
     }
 }
 
+/// What a fill is by its share of the frame.
+pub(crate) fn size_of_fill(share: f64, small: Reason) -> (Kind, Reason) {
+    if share < HALF { (Kind::Element, small) } else { (Kind::Large, Reason::Large) }
+}
+
 /// The names of a node, completed by those of the only shape in it.
 fn named(node: &Rc<Node>) -> Rc<Meta> {
     match sole_shape(node, Affine::IDENTITY) {
@@ -191,4 +200,6 @@ fn named(node: &Rc<Node>) -> Rc<Meta> {
 pub(crate) struct Selection {
     pub(crate) items: Vec<Item>,
     pub(crate) background: Vec<(Affine, Rc<Node>)>,
+    /// What is no part of the pattern: why, its name, its outline.
+    pub(crate) left_out: Vec<(Reason, String, Outline<2>)>,
 }

@@ -23,12 +23,12 @@ const EDGE_PAIRS: u64 = 200_000_000;
 const PAIR: u64 = 10;
 
 /// Gap that still counts as touching, as a share of the frame.
-const SEAM: f64 = 2e-4;
+pub(crate) const SEAM: f64 = 2e-4;
 
 /// Joins items: pieces of the same colour that touch always, strokes and what they touch when every connected piece is
 /// an element.
 pub(crate) fn join(found: Selection, painter: &Painter<'_, '_>, frame: Bounds<2>, method: Method) -> Result<Selection> {
-    let Selection { items, background } = found;
+    let Selection { items, background, left_out } = found;
     let tolerance = SEAM * longer(&frame);
     let items =
         if method == Method::Elements { items } else { abutting::join_lines(items, painter, frame, tolerance)? };
@@ -47,10 +47,14 @@ pub(crate) fn join(found: Selection, painter: &Painter<'_, '_>, frame: Bounds<2>
     } else {
         items
     };
-    Ok(Selection { items, background })
+    Ok(Selection { items, background, left_out })
 }
 
-fn connected(
+/// Items in groups of which each holds together by touching; only pairs that may join are looked at.
+///
+/// # Errors
+/// As [`arabesque_core::Budget::spend`].
+pub(crate) fn connected(
     items: &[Item],
     may_join: impl Fn(usize, usize) -> bool,
     tolerance: f64,

@@ -9,6 +9,7 @@ pub(crate) mod frame;
 pub(crate) mod item;
 pub(crate) mod join;
 pub(crate) mod outlined_lines;
+pub(crate) mod parts;
 pub(crate) mod pieces;
 pub(crate) mod select;
 pub(crate) mod signature;

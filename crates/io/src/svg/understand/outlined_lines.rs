@@ -12,7 +12,11 @@ use crate::svg::{
         scene::{Content, Node},
         source::Source,
     },
-    understand::item::{Item, Kind, Origin},
+    reason::Reason,
+    understand::{
+        item::{Item, Kind, Origin},
+        parts::bands::follow_bands,
+    },
 };
 
 /// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as
@@ -21,6 +25,7 @@ use crate::svg::{
 /// # Errors
 /// [`Error::Unsupported`] for something filled that is marked as a curve and has no lines of one width.
 pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>) -> Result<()> {
+    follow_bands(source, items, window)?;
     let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
         if follow(source, item, window)? {
@@ -33,7 +38,8 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
             follow(source, item, window)?;
         }
     }
-    for item in items.iter_mut().filter(|item| item.kind == Kind::Curve && is_plain_fill(item)) {
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Curve && item.lines.is_none() && is_plain_fill(item))
+    {
         if !follow(source, item, window)? {
             return Err(Error::Unsupported {
                 what: format!(
@@ -54,7 +60,7 @@ fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> Result<bo
         item.lines = centrelines(&item.outline, Some(window), source.budget)?.map(Rc::new);
     }
     if item.lines.is_some() {
-        item.kind = Kind::Curve;
+        (item.kind, item.reason) = (Kind::Curve, Reason::Traced);
         source.notes.add(Note::Traced, || item.name(source));
     }
     Ok(item.lines.is_some())

@@ -1,15 +1,15 @@
 //! What of a drawing is an element, what a curve, what background.
 //!
 //! - Filled shapes, groups, `<use>` and filled pieces smaller than half of the frame are elements.
-//! - A stroke without a fill is a curve where it is open, or larger than half of the frame. Where the drawing holds any
-//!   such curve, its closed strokes outside groups are curves too, for they belong to the same net; else they are
-//!   elements.
+//! - Strokes without a fill, each subpath by itself, are sorted by what they are joined to: a net that runs through, or
+//!   a thing of their own (`parts::components`). A stroke of no length is a dot.
 //! - Layers, groups that cover half of the frame, and groups of several things far apart are containers: their content
 //!   is looked at.
-//! - A filled compound path is taken apart into connected pieces unless it is small and its pieces lie close together
+//! - A compound path is taken apart into connected pieces unless it is small and its pieces lie close together
 //!   (a paw print); pieces in the holes of another piece stay with it, and pieces of the same colour that abut are
 //!   joined again.
-//! - A fill that covers the frame is background; a stroke along the frame is left out.
+//! - A fill that covers the frame is background; a stroke along the frame is left out, and so is what lies under
+//!   something opaque (`parts::hidden`).
 //! - `data-arabesque` on an item overrides all this.
 
 use std::rc::Rc;
@@ -27,17 +27,20 @@ use crate::svg::{
         notes::Note,
         paint::fraction,
         scene::{Content, Node},
+        style::Property as P,
     },
+    reason::Reason,
     shape::{
         extent::{SoleShape, bounds, clusters, longer, sole_shape},
         flatten,
         painted_area::Painter,
-        subpath::is_all_closed,
+        subpath::{has_no_length, is_all_closed},
     },
     understand::{
         compound::Compound,
-        item::{HALF, Item, Kind, Origin, Selection},
+        item::{HALF, Item, Kind, Origin, Selection, size_of_fill},
         join::join,
+        parts::{components::sort_strokes, hidden::drop_hidden},
         surroundings::Surroundings,
     },
 };
@@ -59,6 +62,10 @@ fn weight(node: &Node) -> u64 {
         Content::Shape(geometry) => 20 + 10 * geometry.path.elements().len() as u64,
     }
 }
+
+/// What is marked by hand, or says that arabesque made it.
+const MARKED_ELEMENT: (Kind, Origin, Reason) = (Kind::Element, Origin::Whole, Reason::MarkedElement);
+const MARKED_CURVE: (Kind, Origin, Reason) = (Kind::Curve, Origin::Stroke, Reason::MarkedCurve);
 
 /// Walks the drawing.
 struct Selector<'a, 's, 'i> {
@@ -94,19 +101,14 @@ pub(crate) fn select(
         match spread {
             Some(id) if !opened.contains(&id) => opened.push(id),
             _ => {
+                let mut found = selector.found;
                 if method == Method::Auto {
-                    promote(&mut selector.found.items);
+                    found.items = sort_strokes(found.items, painter, frame)?;
                 }
-                return join(selector.found, painter, frame, method);
+                drop_hidden(&mut found, painter.source)?;
+                return join(found, painter, frame, method);
             }
         }
-    }
-}
-
-/// Makes closed strokes curves where there are others.
-fn promote(items: &mut [Item]) {
-    if items.iter().any(|item| item.kind == Kind::Curve) {
-        items.iter_mut().filter(|item| item.origin == Origin::Stroke).for_each(|item| item.kind = Kind::Curve);
     }
 }
 
@@ -163,9 +165,9 @@ impl Selector<'_, '_, '_> {
         }
         match meta.mark.or(at.mark) {
             Some(Mark::Ignore) => return Ok(()),
-            Some(Mark::Element) => return self.take(node, at, Kind::Element, Origin::Whole),
-            Some(Mark::Curve) => return self.take(node, at, Kind::Curve, Origin::Stroke),
-            None if meta.source.is_some() => return self.take(node, at, Kind::Element, Origin::Whole),
+            Some(Mark::Element) => return self.take(node, at, MARKED_ELEMENT),
+            Some(Mark::Curve) => return self.take(node, at, MARKED_CURVE),
+            None if meta.source.is_some() => return self.take(node, at, MARKED_ELEMENT),
             None => {}
         }
         if let (Some(only), true) = (sole_shape(node, at.parent), meta.tag != "use") {
@@ -181,7 +183,7 @@ impl Selector<'_, '_, '_> {
         if self.is_container(node, &extent, at)? {
             return self.open(node, at);
         }
-        self.take(node, at, Kind::Element, Origin::Whole)
+        self.take(node, at, (Kind::Element, Origin::Whole, Reason::Group))
     }
 
     /// Box around what the clips leave of a node.
@@ -209,8 +211,8 @@ impl Selector<'_, '_, '_> {
     }
 
     /// Takes a node as a whole.
-    fn take(&mut self, node: &Rc<Node>, at: &Surroundings, kind: Kind, origin: Origin) -> Result<()> {
-        self.found.items.extend(Item::taken(self.painter, node, at, kind, origin)?);
+    fn take(&mut self, node: &Rc<Node>, at: &Surroundings, taken: (Kind, Origin, Reason)) -> Result<()> {
+        self.found.items.extend(Item::taken(self.painter, node, at, taken)?);
         self.check_count()
     }
 
@@ -226,39 +228,85 @@ impl Selector<'_, '_, '_> {
 
     /// Decides about a node that is, or wraps, a single shape.
     fn shape(&mut self, node: &Rc<Node>, only: &SoleShape<'_>, at: &Surroundings) -> Result<()> {
-        let &SoleShape { leaf, parent } = only;
+        let leaf = only.leaf;
         let Content::Shape(geometry) = &leaf.content else { return Ok(()) };
         let extent = self.visible(node, at)?;
-        let world = parent * leaf.transform;
         let filled = geometry.paint == Painted::Picture || is_filled(leaf, geometry);
         if filled && self.covers_frame(node, &extent, at)? {
             self.found.background.push((at.parent, Rc::clone(node)));
-            return Ok(());
+            return self.left_out(Reason::Background, node, at);
         }
-        let closed = is_all_closed(&geometry.path);
-        let origin = if filled { Origin::Fill } else { Origin::Stroke };
-        if filled {
-            let compound = match geometry.paint {
-                Painted::Style => Compound::new(self.painter, node, only, at)?.map(Rc::new),
-                Painted::Picture => None,
-            };
-            if let Some(compound) = &compound
-                && !self.is_compact(compound)?
-            {
-                return self.split(compound);
+        if !filled {
+            return self.stroke(node, only, at);
+        }
+        let compound = match geometry.paint {
+            Painted::Style => Compound::new(self.painter, node, only, at)?.map(Rc::new),
+            Painted::Picture => None,
+        };
+        if let Some(compound) = &compound
+            && !self.is_compact(compound)?
+        {
+            return self.split(compound);
+        }
+        let (kind, reason) = size_of_fill(self.share(&extent), Reason::Fill);
+        let whole = Item::taken(self.painter, node, at, (kind, Origin::Fill, reason))?;
+        self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
+        self.check_count()
+    }
+
+    /// Takes a shape that has no fill, subpath by subpath unless these are one small thing.
+    fn stroke(&mut self, node: &Rc<Node>, only: &SoleShape<'_>, at: &Surroundings) -> Result<()> {
+        let is_curve = node.meta.curve.or(only.leaf.meta.curve).is_some();
+        let compound = match self.method {
+            Method::Curves => None,
+            _ if is_curve || !only.leaf.style.strokes() => None,
+            _ => Compound::of_stroke(self.painter, node, only, at)?,
+        };
+        let Some(compound) = compound else { return self.line(node, only, at, is_curve) };
+        if self.is_compact(&compound)? {
+            return self.line(node, only, at, is_curve);
+        }
+        compound.note_losses(self.painter);
+        for k in 0..compound.pieces.len() {
+            let piece = Rc::new(compound.node(&[k]));
+            let only = SoleShape { leaf: &piece, parent: compound.context.parent };
+            self.line(&piece, &only, &compound.context, false)?;
+        }
+        Ok(())
+    }
+
+    /// Takes a stroke that is not taken apart.
+    fn line(&mut self, node: &Rc<Node>, only: &SoleShape<'_>, at: &Surroundings, is_curve: bool) -> Result<()> {
+        let Content::Shape(geometry) = &only.leaf.content else { return Ok(()) };
+        if is_curve {
+            return self.take(node, at, MARKED_CURVE);
+        }
+        if has_no_length(&geometry.path) && only.leaf.style.strokes() {
+            if only.leaf.style.get(P::StrokeLinecap) == "butt" {
+                self.painter.source.notes.add(Note::ZeroLength, || node.meta.id.clone().unwrap_or_default());
+                return Ok(());
             }
-            let kind = if self.share(&extent) < HALF { Kind::Element } else { Kind::Large };
-            let whole = Item::taken(self.painter, node, at, kind, origin)?;
-            self.found.items.extend(whole.map(|item| Item { compound: compound.map(Compound::all), ..item }));
-            return self.check_count();
+            return self.take(node, at, (Kind::Element, Origin::Stroke, Reason::Dot));
         }
-        if closed && self.is_frame(leaf, geometry, world)? {
+        let world = only.parent * only.leaf.transform;
+        if is_all_closed(&geometry.path) && self.is_frame(only.leaf, geometry, world)? {
             self.painter.source.notes.add(Note::Border, || node.meta.id.clone().unwrap_or_default());
+            self.left_out(Reason::Border, node, at)?;
             return Ok(());
         }
-        let is_small = closed && self.share(&extent) < HALF && self.method != Method::Curves;
-        let kind = if is_small { Kind::Element } else { Kind::Curve };
-        self.take(node, at, kind, origin)
+        let taken = match self.method {
+            Method::Curves => (Kind::Curve, Origin::Stroke, Reason::Asked),
+            _ => (Kind::Element, Origin::Stroke, Reason::Stroke),
+        };
+        self.take(node, at, taken)
+    }
+
+    /// Remembers what is no part of the pattern.
+    fn left_out(&mut self, reason: Reason, node: &Rc<Node>, at: &Surroundings) -> Result<()> {
+        let outline = self.painter.painted(node, at.parent)?.outline(self.painter.source.budget)?;
+        let name = node.meta.label.as_ref().or(node.meta.id.as_ref()).cloned().unwrap_or_default();
+        self.found.left_out.push((reason, name, outline));
+        Ok(())
     }
 
     /// Whether a stroke encloses nearly the whole frame and hardly more.

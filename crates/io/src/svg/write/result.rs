@@ -127,6 +127,7 @@ mod tests {
             definitions: String::new(),
             page: Page { view: exemplar.window, unit: Unit::Mm, unit_per_user: 2.0 },
             job: Job::default(),
+            understood: Vec::new(),
             warnings: Vec::new(),
             exemplar: exemplar.into(),
         }

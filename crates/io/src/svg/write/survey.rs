@@ -8,6 +8,7 @@ use crate::{
     svg::{
         drawing::{Drawing, Layer, Page},
         palette::PALETTE,
+        reason::Reason,
         write::{
             document::{PREFIXES, Root},
             text::{outline_data, rectangle},
@@ -17,7 +18,7 @@ use crate::{
 };
 
 /// The exemplar faded, every outline in the colour of its class (dashed where it is cut at the frame), the centres,
-/// every curve in the colour of its style with dots at its ends, and the frame.
+/// every curve in the colour of its style with dots at its ends, what is left out in grey dots, and the frame.
 pub fn write_survey(drawing: &Drawing) -> String {
     let exemplar = &drawing.exemplar;
     let view =
@@ -35,6 +36,7 @@ pub fn write_survey(drawing: &Drawing) -> String {
     let _ = writeln!(out, "<path d=\"{frame}\" stroke=\"#000000\"/>");
     elements(&mut out, drawing, d, line);
     curves(&mut out, drawing, d, line);
+    left_out(&mut out, drawing, d, line);
     out.push_str("</g>\n</svg>\n");
     out
 }
@@ -88,5 +90,20 @@ fn curves(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
             let _ = write!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"{colour}\"/>");
         }
         out.push_str("</g>\n");
+    }
+}
+
+/// What is no part of the pattern, dotted in grey.
+fn left_out(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
+    for known in drawing.understood.iter().filter(|known| known.reason != Reason::Background) {
+        let label = escape(&format!("{}: {}", known.reason.taken_for(), known.reason.why()));
+        for outline in known.outlines.iter().filter(|outline| !outline.rings.is_empty()) {
+            let _ = writeln!(
+                out,
+                "<path d=\"{}\" stroke=\"#808080\" stroke-dasharray=\"{}\"><title>{label}</title></path>",
+                outline_data(outline, d),
+                d.plus(2).format(line)
+            );
+        }
     }
 }

@@ -1,0 +1,9 @@
+//! Which parts of a drawing are one thing, what kind of thing that is, and what is no part of it at all.
+
+pub(crate) mod bands;
+pub(crate) mod cells;
+pub(crate) mod components;
+pub(crate) mod crowds;
+pub(crate) mod gaps;
+pub(crate) mod groups;
+pub(crate) mod hidden;

@@ -1,0 +1,219 @@
+//! What drawings as people make them are taken for, each kind in a tiny drawing, with drawings beside it that are of
+//! another kind.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+use arabesque_core::{Error, Role, Vector};
+use arabesque_io::svg::{Drawing, Method, ReadOptions, Reason, read_exemplar};
+
+const NAMESPACES: &str = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
+     xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'";
+
+fn read_with(body: &str, method: Method) -> Result<Drawing, Error> {
+    let text = format!("<svg {NAMESPACES} width='100' height='100' viewBox='0 0 100 100'>{body}</svg>");
+    read_exemplar(&text, &ReadOptions { method, ..ReadOptions::new("t.svg") })
+}
+
+fn read(body: &str) -> Drawing {
+    read_with(body, Method::Auto).unwrap()
+}
+
+/// Elements and curves.
+fn counts(drawing: &Drawing) -> (usize, usize) {
+    (drawing.exemplar.elements.len(), drawing.exemplar.curves.len())
+}
+
+/// How many things were taken for what they are for that reason.
+fn because(drawing: &Drawing, reason: Reason) -> usize {
+    drawing.understood.iter().filter(|known| known.reason == reason).map(|known| known.count).sum()
+}
+
+fn stroked(body: &str) -> String {
+    format!("<g fill='none' stroke='#225' stroke-width='1' stroke-linecap='round'>{body}</g>")
+}
+
+fn at_places(what: &str) -> String {
+    [(8, 9), (40, 12), (75, 8), (12, 45), (47, 50), (80, 42), (9, 80), (44, 84), (79, 78)]
+        .map(|(x, y)| format!("<g transform='translate({x} {y})'>{what}</g>"))
+        .concat()
+}
+
+#[test]
+fn small_strokes_beside_a_net_are_elements() {
+    let net = "<path d='M0 30H100M0 65H100M33 0V100M66 0V100'/>";
+    let spirals =
+        "<path d='M15 15c2-3 5 0 3 2s-7 1-6-3'/><path d='M50 48l4 4M54 48l-4 4'/><circle cx='84' cy='85' r='3'/>";
+    let d = read(&stroked(&(net.to_owned() + spirals)));
+    assert_eq!(counts(&d), (3, 4), "a spiral, a cross of two subpaths, a ring, and four lines");
+    assert_eq!((because(&d, Reason::Through), because(&d, Reason::Stroke)), (4, 3));
+    assert_eq!(counts(&read_with(&stroked(net), Method::Elements).unwrap()), (1, 0));
+    assert_eq!(read_with(&stroked(spirals), Method::Curves).unwrap().exemplar.elements.len(), 0);
+}
+
+#[test]
+fn twigs_and_what_the_frame_cuts_off_belong_to_the_net() {
+    let d = read(&stroked(
+        "<path d='M0 30H100'/><path d='M50 30v9'/><path d='M95 0v20q0 3 5 3'/><path d='M20 70q6-6 12 0'/>",
+    ));
+    assert_eq!(counts(&d), (1, 3), "the bow alone is a thing of its own");
+    assert_eq!(because(&d, Reason::Beside), 1);
+}
+
+#[test]
+fn dashes_of_one_path_are_elements_each() {
+    let dashes = "M8 9l6 3M40 12l5 5M75 8l2-6M12 45l6 3M47 50l-5 5M80 42l0 7M9 80l7 0M44 84l3 6M79 78l5-5";
+    let d = read(&stroked(&format!("<path d='{dashes}'/>")));
+    assert_eq!(counts(&d), (9, 0));
+    assert_eq!(because(&d, Reason::Stroke), 9);
+}
+
+#[test]
+fn loose_strokes_of_an_icon_are_one_element() {
+    let sun = "<circle r='3'/><path d='M5 0h2'/><path d='M-7 0h2'/><path d='M0 5v2'/><path d='M0 -7v2'/>";
+    let d = read(&stroked(&at_places(sun)));
+    assert_eq!((counts(&d), because(&d, Reason::Group)), ((9, 0), 9));
+    let loose: String = at_places("")
+        .split("<g transform='")
+        .skip(1)
+        .map(|g| g.split('\'').next().unwrap())
+        .fold(String::new(), |all, place| all + &sun.replace("/>", &format!(" transform='{place}'/>")));
+    let d = read(&stroked(&loose));
+    assert_eq!(counts(&d), (9, 0));
+    assert_eq!(because(&d, Reason::Together), 9);
+    assert_eq!(d.exemplar.classes.len(), 1);
+}
+
+#[test]
+fn strokes_and_the_fills_that_they_touch_are_one_element() {
+    let flowers = "<circle cx='-5' cy='-5' r='3' fill='red'/><path d='M-5 -5v12' fill='none' stroke='green'/>";
+    let loose: String = [(20, 20), (70, 25), (30, 70), (80, 75)]
+        .map(|(x, y)| flowers.replace("/>", &format!(" transform='translate({x} {y})'/>")))
+        .concat();
+    let d = read(&loose);
+    assert_eq!((counts(&d), because(&d, Reason::Touching)), ((4, 0), 4));
+}
+
+#[test]
+fn cells_with_narrow_gaps_are_a_net_and_cells_apart_are_not() {
+    let cells = |side: f64| -> String {
+        let cell = |k: u32| {
+            let (x, y) = (f64::from(k % 9) * 12.0 - 3.0, f64::from(k / 9) * 12.0 - 3.0);
+            format!("<rect x='{x}' y='{y}' width='{side}' height='{side}' rx='2'/>")
+        };
+        (0..81).map(cell).collect()
+    };
+    let net = read(&stroked(&cells(10.0)));
+    assert_eq!((counts(&net), because(&net, Reason::Crowded)), ((0, 81), 77), "the corners belong to it as well");
+    assert_eq!(counts(&read(&stroked(&cells(7.0)))), (81, 0));
+}
+
+#[test]
+fn strokes_of_no_length_are_dots_or_squares() {
+    let dots = "M10 10h0M30 12zM50 9l0 0M70 13h0M20 40h0M60 45h0";
+    let stroke = |cap: &str| format!("<path d='{dots}' stroke='red' stroke-width='4' stroke-linecap='{cap}'/>");
+    let d = read(&stroke("round"));
+    assert_eq!((counts(&d), because(&d, Reason::Dot)), ((6, 0), 6));
+    let area = d.exemplar.elements[0].outline.area();
+    assert!((area - 4.0 * std::f64::consts::PI).abs() < 0.2, "{area}");
+    assert_eq!(read(&stroke("square")).exemplar.elements[0].outline.area(), 16.0);
+    assert!(read_with(&stroke("butt"), Method::Auto).unwrap_err().to_string().contains("without length"));
+}
+
+#[test]
+fn closed_outlines_that_share_edges_are_one_net_without_doubles() {
+    let cell = |k: u32| {
+        let (x, y) = (f64::from(k % 6) * 20.005 - 10.0, f64::from(k / 6) * 20.0 - 10.0);
+        format!("<rect x='{x:.2}' y='{y:.2}' width='20' height='20'/>")
+    };
+    let d = read(&stroked(&(0..36).map(cell).collect::<String>()));
+    let length: f64 = d.exemplar.curves.iter().flat_map(|c| &c.path.cubics).map(|c| (c[3] - c[0]).norm()).sum();
+    assert!(d.exemplar.elements.is_empty() && d.exemplar.curves.iter().all(|c| !c.path.closed));
+    assert!((1100.0..1500.0).contains(&length), "{length}, of 2880 with doubles");
+    let tiles = (0..36).map(cell).collect::<String>().replace("/>", " fill='red'/>");
+    assert_eq!(read(&tiles).exemplar.curves.len(), 0, "filled tiles stay elements");
+}
+
+#[test]
+fn what_is_covered_is_left_out() {
+    let dots = at_places("<circle r='5'/>");
+    let under = "<rect x='6' y='7' width='4' height='4' fill='red'/>";
+    let d = read(&format!("{under}{dots}"));
+    assert_eq!((counts(&d), because(&d, Reason::Covered)), ((9, 0), 1));
+    let shows = read(&format!("{under}{}", dots.replace("<circle", "<circle fill-opacity='.9'")));
+    assert_eq!(shows.exemplar.elements.len(), 10);
+    let clone = |k: u32| {
+        let (x, y) = (k % 4 * 25, k / 4 * 25);
+        format!("<use xlink:href='#o' inkscape:tiled-clone-of='#o' transform='translate({x} {y})' opacity='.7'/>")
+    };
+    let clones = read(&format!("<path id='o' d='M4 4h9v9z'/>{}", (0..16).map(clone).collect::<String>()));
+    assert_eq!((counts(&clones), because(&clones, Reason::Original)), ((16, 0), 1));
+}
+
+#[test]
+fn a_clip_like_the_frame_cuts_nothing() {
+    let dots = at_places("<circle r='5'/>") + "<circle cx='100' cy='60' r='6'/>";
+    let clip = |side: u32| {
+        format!("<clipPath id='c'><rect width='{side}' height='{side}'/></clipPath><g clip-path='url(#c)'>{dots}</g>")
+    };
+    let whole = |d: &Drawing| d.exemplar.elements.iter().all(|e| e.role == Role::Source);
+    assert!(whole(&read(&clip(100))) && !whole(&read(&clip(98))));
+    assert_eq!(read(&clip(100)).exemplar.elements, read(&dots).exemplar.elements);
+    let mask = "<mask id='m' maskUnits='userSpaceOnUse' x='0' y='0' width='100' height='100'>
+        <path d='M0 0H100V100H0z' fill='#fff'/></mask>";
+    let masked = read(&format!("{mask}<g mask='url(#m)'>{dots}</g>"));
+    assert!(whole(&masked) && masked.warnings.is_empty());
+    let each = "<circle clip-path='url(#c)' cx='20' cy='30' r='5'/><circle clip-path='url(#c)' cx='99' cy='70' r='5'/>";
+    let each = read(&format!("<clipPath id='c'><rect width='100' height='100'/></clipPath>{each}"));
+    assert!(whole(&each) && each.fragments.iter().all(|f| !f.markup.contains("clip")));
+}
+
+#[test]
+fn strokes_that_end_on_the_frame_are_cut_by_it() {
+    let bows = at_places("<path d='M-3 0q3-5 6 0'/>");
+    let d = read(&stroked(&(bows + "<path d='M0 60q5 3 6 8'/><path d='M96 60q3 3 8 3'/>")));
+    let cut = d.exemplar.elements.iter().filter(|e| e.role == Role::Context).count();
+    assert_eq!((counts(&d), cut), ((11, 0), 1), "the other one reaches over it");
+}
+
+#[test]
+fn bands_through_the_frame_are_strokes() {
+    let stripe = |k: u32| format!("<rect x='{}' y='-5' width='9' height='110' fill='blue'/>", 20 * k);
+    let stripes: String = (0..5).map(stripe).collect();
+    let d = read(&stripes);
+    assert_eq!((counts(&d), because(&d, Reason::Band)), ((0, 5), 5));
+    let c = &d.exemplar.curves[1];
+    assert_eq!(
+        (c.width, c.path.start(), c.path.end()),
+        (9.0, Some(Vector::xy(24.5, -5.0)), Some(Vector::xy(24.5, 105.0)))
+    );
+    let across = stripes.replace("rect", "rect transform='matrix(0 1 1 0 0 0)' fill-opacity='.5'");
+    let gingham = read(&format!("{stripes}{across}"));
+    assert_eq!((counts(&gingham), gingham.exemplar.styles.len()), ((0, 10), 2));
+    let slanted = |k: i32| {
+        let x = 22 * k - 100;
+        format!("<path d='M{x} -10h8l120 120h-8z' fill='red'/>")
+    };
+    let d = read(&(0..9).map(slanted).collect::<String>());
+    assert_eq!(d.exemplar.elements.len(), 0, "those that cut off a corner too");
+}
+
+#[test]
+fn tiles_and_bars_are_no_bands() {
+    let tile = |k: u32| {
+        format!(
+            "<rect x='{}' y='{}' width='20' height='20' fill='#{}'/>",
+            k % 5 * 20,
+            k / 5 * 20,
+            ["222", "ddd"][k as usize % 2]
+        )
+    };
+    assert_eq!(read(&(0..25).map(tile).collect::<String>()).exemplar.curves.len(), 0);
+    let brick = |k: u32| {
+        format!(
+            "<rect x='{}' y='{}' width='28' height='9' fill='#a43'/>",
+            (k % 4) as i32 * 30 - 15 * (k / 4 % 2) as i32,
+            k / 4 * 10
+        )
+    };
+    assert_eq!(read(&(0..40).map(brick).collect::<String>()).exemplar.curves.len(), 0);
+    assert_eq!(read(&at_places("<rect x='-6' width='14' height='3'/>")).exemplar.curves.len(), 0);
+}

@@ -42,7 +42,7 @@ impl LoadedExemplar {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
         }
-        let text = file::decode_text(name, bytes)?;
+        let text = file::decode_text(name, bytes, budget)?;
         if looks_like_curves(name, &text) {
             let net = obj::read_curves(name, &text, budget)?;
             return Ok(Self::Space(net.exemplar, net.warnings));
@@ -70,7 +70,8 @@ fn looks_like_curves(name: &str, text: &str) -> bool {
 fn looks_like_points(name: &str, text: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     let has = |endings: &[&str]| endings.iter().any(|e| lower.ends_with(e));
-    has(&[".csv", ".tsv", ".txt", ".xyz"]) || !(has(&[".svg"]) || text.trim_start().starts_with('<') || text.is_empty())
+    has(&[".csv", ".tsv", ".txt", ".xyz"])
+        || !(has(&[".svg", ".svgz"]) || text.trim_start().starts_with('<') || text.is_empty())
 }
 
 /// Points as a drawing of dots, one colour a class.

@@ -33,6 +33,8 @@ pub(crate) enum Note {
     NoSize,
     /// A style value that is not understood.
     Style,
+    /// A selector or rule of a style sheet that is not understood.
+    Selector,
     /// A gradient stretched over pieces that were split.
     SplitGradient,
     /// Too many crossing parts to take apart.
@@ -94,6 +96,10 @@ impl Note {
                 ("no width, height or viewBox; the frame is the box around the drawing", "give the file a viewBox")
             }
             Self::Style => ("style value ignored", "use a plain SVG value"),
+            Self::Selector => (
+                "rule of a style sheet ignored, for its selector is not understood",
+                "select by element, class, id or attribute, or put the style on the shapes themselves",
+            ),
             Self::SplitGradient => {
                 ("gradient over a path that was split into pieces; it is stretched over each piece", "use plain fills")
             }

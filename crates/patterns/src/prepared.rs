@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use arabesque_core::{
     Budget, Error, Exemplar, Forecast, Numbered, Outcome, Request, Result, Role, Snapshot, Vector, Warning, Watch,
+    rounded,
 };
 
 use crate::{
@@ -126,7 +127,7 @@ where
             return Err(Error::parameter(
                 "radius",
                 radius,
-                format!("at most {side}, the shorter side of the exemplar"),
+                format!("at most {}, the shorter side of the exemplar", rounded(side)),
             ));
         }
         let skeleton = match exemplar.curves.as_slice() {

@@ -1,6 +1,6 @@
 //! The exemplars of ribbons, as pictures.
 
-use arabesque_core::{Budget, Error, Held, Image, Outline, Result, Vector, Warning};
+use arabesque_core::{Budget, Error, Held, Image, Outline, Result, Vector, Warning, rounded};
 use arabesque_io::{
     file,
     raster::{
@@ -185,8 +185,11 @@ fn width_warning(params: &RibbonParams, exemplars: &[StripExemplar]) -> Option<W
         Width::Profile(stations) => stations.iter().map(|s| s.1).fold(0.0, f64::max),
     };
     (widest > WIDE * height).then(|| {
-        let message =
-            format!("the ribbon is up to {widest} wide, the exemplar {height} high: most of the ribbon stays empty");
+        let message = format!(
+            "the ribbon is up to {} wide, the exemplar {} high: most of the ribbon stays empty",
+            rounded(widest),
+            rounded(height)
+        );
         Warning::new(message, "use a smaller --width, or a larger --scale")
     })
 }

@@ -2,7 +2,7 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{Format, Input, Limits, Method, Report, Resources, Stopper, inspect, io::file};
+use arabesque::{Format, Input, Limits, Method, Report, Resources, Stopper, core::rounded, inspect, io::file};
 use clap::Args;
 
 use super::fill::choice;
@@ -103,8 +103,10 @@ fn print(report: &Report) -> Result<(), Failure> {
             .collect::<Vec<_>>()
             .join(" x ")
     };
-    let unit =
-        report.unit.zip(report.unit_per_user).map_or_else(String::new, |(unit, n)| format!(" (1 unit = {n} {unit})"));
+    let unit = report
+        .unit
+        .zip(report.unit_per_user)
+        .map_or_else(String::new, |(unit, n)| format!(" (1 unit = {} {unit})", rounded(n)));
     writeln!(out, "{}: {}", report.file, report.kind)?;
     writeln!(out, "  frame: {}{unit}", join(&report.frame_size))?;
     if report.elements > 0 || report.curves == 0 {

@@ -9,6 +9,7 @@ pub(crate) mod definitions;
 pub(crate) mod geometry;
 pub(crate) mod guard;
 pub(crate) mod length;
+pub(crate) mod marker;
 pub(crate) mod markup;
 pub(crate) mod meta;
 pub(crate) mod notes;

@@ -13,7 +13,7 @@ pub(crate) enum Note {
     Missing,
     /// Text that is not converted to paths.
     Text,
-    /// Markers on lines.
+    /// Markers on lines that are continued.
     Marker,
     /// A reference that leads back to itself.
     Cycle,
@@ -77,7 +77,10 @@ impl Note {
             Self::External => ("reference to something outside the file, not fetched", "embed it in the file"),
             Self::Missing => ("reference to an id that does not exist", "remove it, or restore what it refers to"),
             Self::Text => ("text ignored", "convert it to paths (Inkscape: Path > Object to Path)"),
-            Self::Marker => ("line marker ignored", "convert it to paths (Inkscape: Path > Stroke to Path)"),
+            Self::Marker => (
+                "markers of a long stroke taken for elements of their own, which do not follow its ends",
+                "mark the stroke data-arabesque=\"element\" to have it copied with its markers as it is",
+            ),
             Self::Cycle => {
                 ("reference in a cycle ignored", "remove one of the references that lead back to each other")
             }

@@ -44,6 +44,8 @@ pub(crate) struct Source<'a> {
     pub(crate) values: &'a [String],
     pub(crate) notes: Notes,
     ids: Rc<BTreeMap<&'a str, NodeId>>,
+    /// Fill and stroke of the shape whose marker is being built: what `context-fill` and `context-stroke` mean.
+    pub(crate) context: RefCell<Option<[Rc<str>; 2]>>,
     /// Path segments read so far, against the limit.
     segments: Cell<usize>,
     /// Scene nodes made so far, against the limit.
@@ -88,6 +90,7 @@ pub(crate) fn with_source<T>(
         values: &values,
         notes: Notes::default(),
         ids: Rc::new(ids(&xml)),
+        context: RefCell::default(),
         segments: Cell::new(0),
         nodes: Cell::new(0),
         bytes: Cell::new(0),

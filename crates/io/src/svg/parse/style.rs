@@ -133,6 +133,13 @@ impl ComputedStyle {
         self.0 == other.0
     }
 
+    /// The same without line markers.
+    pub(crate) fn unmarked(&self) -> Self {
+        let mut style = self.clone();
+        [P::MarkerStart, P::MarkerMid, P::MarkerEnd].into_iter().for_each(|p| style.0[p as usize] = None);
+        style
+    }
+
     /// Whether line markers are asked for.
     pub(crate) fn has_markers(&self) -> bool {
         [P::MarkerStart, P::MarkerMid, P::MarkerEnd].iter().any(|&p| self.get(p) != "none")
@@ -328,6 +335,12 @@ impl Setter<'_, '_> {
         };
         match property {
             P::Fill | P::Stroke if value.len() > LONGEST => None,
+            P::Fill | P::Stroke if value.starts_with("context-") => {
+                // Outside of markers there is none.
+                let context = self.source.context.borrow();
+                let of = |k: usize| context.as_ref().map_or("none", |context| &context[k]).to_owned();
+                Some(of(usize::from(value == "context-stroke")))
+            }
             P::Fill | P::Stroke => paint(value, self.style.get(P::Color)),
             P::Color => paint(value, self.parent.get(P::Color)),
             P::StrokeWidth => length(value, Axis::Both, font).filter(|w| *w >= 0.0).map(number),

@@ -50,7 +50,7 @@ impl Document<'_> {
     /// when it is too large, [`Error::Unsupported`] when it holds a network of lines turned into an outline and the
     /// method is not [`Method::Elements`].
     pub fn exemplar(&self) -> Result<Drawing> {
-        let Opened { source, root, page } = self.open()?;
+        let Opened { source, root, page, .. } = self.open()?;
         let source = &source;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;

@@ -10,7 +10,7 @@ use arabesque_io::{
     table::csv::{self, Points},
 };
 
-use crate::recipe::{Input, Method};
+use crate::recipe::{Input, Reading};
 
 /// An exemplar as it was read.
 #[derive(Clone, Debug)]
@@ -35,9 +35,9 @@ impl LoadedExemplar {
     ///
     /// # Errors
     /// As [`svg::read_exemplar`], [`csv::read_points`] and [`obj::read_curves`]; [`Error::Unsupported`] for methods that do not exist yet.
-    pub fn read(input: &Input, bytes: &[u8], method: Method, budget: &Budget) -> Result<Self> {
+    pub fn read(input: &Input, bytes: &[u8], reading: impl Into<Reading>, budget: &Budget) -> Result<Self> {
         let name = input.name();
-        let method = method.of_drawings()?;
+        let (method, tiling) = reading.into().of_drawings()?;
         if arabesque_io::raster::png::is_png(bytes) {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
@@ -53,7 +53,7 @@ impl LoadedExemplar {
                 Points::Space(exemplar) => Self::Space(exemplar, Vec::new()),
             });
         }
-        let options = ReadOptions { method, budget: budget.clone(), ..ReadOptions::new(name) };
+        let options = ReadOptions { method, tiling, budget: budget.clone(), ..ReadOptions::new(name) };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
 }
@@ -125,6 +125,7 @@ pub(crate) fn understood<const D: usize>(exemplar: &Exemplar<D>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recipe::Method;
 
     fn read(name: &str, bytes: &[u8]) -> Result<LoadedExemplar> {
         LoadedExemplar::read(&Input::file(name), bytes, Method::Auto, &Budget::default())

@@ -3,7 +3,7 @@
 use arabesque_core::{Border, Bounds, Budget, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
-    svg::{Document, Drawing, HostDocument, ReadOptions},
+    svg::{Document, Drawing, HostDocument, ReadOptions, Tiling},
 };
 
 use crate::{
@@ -33,6 +33,7 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
     let options = ReadOptions {
         budget: preparation.files.budget().clone(),
         method: redo.method.of_drawings()?,
+        tiling: Tiling::Page,
         without: std::iter::once(&redo.region).chain(&redo.from).filter_map(own).collect(),
         ..ReadOptions::new(&*name)
     };

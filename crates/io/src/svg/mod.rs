@@ -1,7 +1,8 @@
 //! SVG: exemplars, jobs and results.
 //!
 //! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area
-//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`). `read` holds
+//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`). A drawing of
+//! one period is laid out as several before (`swatch`). `read` holds
 //! what callers ask for, `write` the way back to text; both speak of a [`Drawing`].
 
 mod centreline;
@@ -12,13 +13,14 @@ mod palette;
 mod parse;
 mod read;
 mod shape;
+mod swatch;
 mod understand;
 mod write;
 
 pub use crate::text::unit::Unit;
 pub use drawing::{Drawing, Fragment, HostDocument, Job, Page, Placed, Stacking, Stroke};
 pub use namespace::NAMESPACE;
-pub use options::{Method, ReadOptions};
+pub use options::{Method, ReadOptions, Tiling};
 pub use palette::PALETTE;
 pub use read::{
     document::Document,

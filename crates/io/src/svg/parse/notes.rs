@@ -51,6 +51,8 @@ pub(crate) enum Note {
     Override,
     /// A background among several shapes of a domain.
     DomainBackground,
+    /// A page that is one period.
+    Period,
     /// A drawing in a corner of its page.
     Corner,
     /// Path data that stops in the middle.
@@ -120,6 +122,10 @@ impl Note {
             Self::NoNamespace => ("no SVG namespace", "write xmlns=\"http://www.w3.org/2000/svg\" on the root"),
             Self::Transform => ("transform ignored", "use the transform attribute with plain numbers"),
             Self::Override => ("unknown data-arabesque value ignored", "use element, curve or ignore"),
+            Self::Period => (
+                "the page is taken for one period of a pattern, for what its opposite edges cut fits together",
+                "use --exemplar-tile=no to have it read as a page",
+            ),
             Self::Corner => (
                 "the drawing covers only a part of the page; the box around it is taken for the frame",
                 "resize the page to the drawing, or draw a rectangle with the id \"frame\"",
@@ -171,8 +177,9 @@ impl Notes {
     /// The kinds of trouble so far that may explain why nothing was found, in few message.
     pub(crate) fn summary(&self) -> String {
         let all = self.0.borrow();
-        let is_relevant =
-            |note: &Note| !matches!(note, Note::Corner | Note::NoSize | Note::OldInkscape | Note::NoNamespace);
+        let is_relevant = |note: &Note| {
+            !matches!(note, Note::Corner | Note::Period | Note::NoSize | Note::OldInkscape | Note::NoNamespace)
+        };
         let told = all.iter().filter(|(note, _)| is_relevant(note));
         told.map(|(note, (count, _))| format!("{} ({count}x)", note.message().0)).collect::<Vec<_>>().join(", ")
     }

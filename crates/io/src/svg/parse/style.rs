@@ -171,6 +171,11 @@ impl ComputedStyle {
 pub(crate) struct Own(Vec<(&'static str, Rc<str>)>);
 
 impl Own {
+    /// An opacity alone.
+    pub(crate) fn opacity(value: &str) -> Self {
+        Self(vec![("opacity", value.into())])
+    }
+
     /// Whether a container with these does something to its content that its items cannot do alone.
     pub(crate) fn has_effects(&self) -> bool {
         ["mask", "filter", "mix-blend-mode"].iter().any(|e| self.get(e).is_some_and(|v| v != "none" && v != "normal"))

@@ -20,6 +20,7 @@ use crate::{
             extent::{self, bounds},
             painted_area::Painter,
         },
+        swatch::{period::periods, unroll::Unrolled},
         understand::{
             classes::{self, Classes},
             curves::{Curves, Gatherer},
@@ -54,7 +55,11 @@ impl Document<'_> {
         let source = &source;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;
-        let mut scope = scope(&painter, &root, page.as_ref())?;
+        let unrolled = self.periods(source, &root, page.as_ref())?;
+        let mut scope = match &unrolled {
+            Some(unrolled) => Scope::of(unrolled),
+            None => scope(&painter, &root, page.as_ref())?,
+        };
         scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
         let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
@@ -75,15 +80,16 @@ impl Document<'_> {
         if elements.is_empty() && curves.is_empty() {
             return Err(nothing_found(source, &found));
         }
-        let exemplar = Exemplar::with_curves(
-            source.name,
-            Contents { elements, classes: classes.classes, curves, styles },
-            window,
-        )?;
+        let contents = Contents { elements, classes: classes.classes, curves, styles };
+        let period = unrolled.as_ref().map(|unrolled| unrolled.period);
+        let exemplar = Exemplar { period, ..Exemplar::with_curves(source.name, contents, window)? };
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
         let background = background(&found, &mut definitions);
         let definitions = definitions.finish()?;
-        let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
+        let mut page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
+        if unrolled.is_some() {
+            page.view = window;
+        }
         let warnings = source.notes.warnings(source.name);
         Ok(Drawing {
             exemplar: Arc::new(exemplar),
@@ -96,6 +102,17 @@ impl Document<'_> {
             job,
             warnings,
         })
+    }
+}
+
+impl Document<'_> {
+    /// The periods that the file shows, where it is one of a pattern.
+    fn periods(&self, source: &Source<'_>, root: &Rc<Node>, page: Option<&Page>) -> Result<Option<Unrolled>> {
+        let layers = parts(root, Part::Exemplar);
+        let roots = if layers.is_empty() { vec![(Affine::IDENTITY, Rc::clone(root))] } else { layers };
+        let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
+        let frame = marked.or_else(|| page.map(|page| page.view));
+        periods(source, root, &roots, frame, self.options.tiling)
     }
 }
 
@@ -112,6 +129,14 @@ struct Scope {
     frame: Bounds<2>,
     /// The frame of the exemplar, where it is known before the elements are.
     window: Option<Bounds<2>>,
+}
+
+impl Scope {
+    /// Periods that are laid out.
+    fn of(unrolled: &Unrolled) -> Self {
+        let roots = vec![(Surroundings::new(Affine::IDENTITY), Rc::clone(&unrolled.root))];
+        Self { roots, frame: unrolled.window, window: Some(unrolled.window) }
+    }
 }
 
 /// Content that covers less than this share of the page lies in a corner of it: the page is not its frame.

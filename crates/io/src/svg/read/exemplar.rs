@@ -64,6 +64,10 @@ impl Document<'_> {
         let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
+        if unrolled.is_some() {
+            // Copies beside the window are nothing to speak of.
+            found.items.retain(|item| item.outline.bounds().intersects(&window));
+        }
         settle(source, &mut found.items, window, self.options.method)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
@@ -76,7 +80,9 @@ impl Document<'_> {
         let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
         lines.iter().try_for_each(|item| gatherer.add(item))?;
         let Curves { curves, styles, strokes } = gatherer.finish();
-        let (elements, classes) = elements(source, &items, scope.window.as_ref())?;
+        // No edge of the window cuts anything of periods that are laid out.
+        let frame = scope.window.as_ref().filter(|_| unrolled.is_none());
+        let (elements, classes) = elements(source, &items, frame)?;
         if elements.is_empty() && curves.is_empty() {
             return Err(nothing_found(source, &found));
         }

@@ -3,26 +3,27 @@
 use kurbo::{PathSeg, Rect};
 
 use crate::svg::swatch::{
-    cell::{Cell, opposite},
-    fit::misfit,
+    cell::{Cell, SIDES, opposite},
+    fit::{Ending, misfit},
     links::Links,
     pieces::{Chain, Piece},
     units::{Unit, Units},
 };
 
-/// Things beyond which a page is no period: so much is drawn to be looked at, not to be repeated.
-pub(crate) const MOST: usize = 400;
+/// Things beyond which a page is not taken for a period: it shows enough as it is.
+pub(crate) const MOST: usize = 60;
 /// Boxes whose sides differ by less, as a share of their longer side, are those of things alike.
 const ALIKE: f64 = 0.01;
 
 /// Whether a page is one period beyond doubt: what its edges cut goes on at the opposite ones, to the right and down, and nothing else
 /// explains that it does.
 pub(crate) fn is_period(units: &Units, pieces: &[Piece], links: &Links, cell: &Cell) -> bool {
-    if units.all.len() > MOST || misfit(pieces, &units.all, links, cell).is_some() {
+    if units.all.len().max(pieces.len()) > MOST || misfit(pieces, &units.all, links, (cell, Ending::Nothing)).is_some()
+    {
         return false;
     }
     let clipped = units.all.iter().any(|unit| unit.node.viewport_clip.is_some());
-    if clipped || pieces.iter().any(|piece| ends_as_a_whole(piece, &units.all, cell)) {
+    if clipped || pieces.iter().any(|piece| ends_as_a_whole(piece, &units.all, pieces, cell)) {
         return false;
     }
     (0..2).all(|axis| units.doubled[axis] > 0 || goes_on(pieces, links, cell, axis))
@@ -56,9 +57,11 @@ fn is_straight(chains: &[Chain], axis: usize) -> bool {
 
 /// Whether something that ends at an edge, and not at the opposite one too, is no part of anything: others, which no edge cuts, are like
 /// it.
-fn ends_as_a_whole(piece: &Piece, units: &[Unit], cell: &Cell) -> bool {
+fn ends_as_a_whole(piece: &Piece, units: &[Unit], pieces: &[Piece], cell: &Cell) -> bool {
     let frame = cell.frame.inflate(cell.near(), cell.near());
-    if piece.gaps.is_empty() || frame.union(piece.extent) != frame {
+    let sides = sides(piece, cell);
+    let is_through = sides.iter().any(|side| sides.contains(&opposite(*side)));
+    if sides.is_empty() || is_through || frame.union(piece.extent) != frame {
         return false;
     }
     let longer = piece.extent.width().max(piece.extent.height());
@@ -66,6 +69,16 @@ fn ends_as_a_whole(piece: &Piece, units: &[Unit], cell: &Cell) -> bool {
         (other.width() - piece.extent.width()).abs() <= ALIKE * longer
             && (other.height() - piece.extent.height()).abs() <= ALIKE * longer
     };
-    units.iter().any(|unit| !unit.is_cut && is_alike(&unit.extent))
-        && piece.gaps.iter().all(|gap| piece.gaps.iter().all(|other| other.side != opposite(gap.side)))
+    let whole = pieces.iter().filter(|other| self::sides(other, cell).is_empty()).map(|other| &other.extent);
+    units.iter().filter(|unit| !unit.is_cut).map(|unit| &unit.extent).chain(whole).any(is_alike)
+}
+
+/// The edges that cut a piece, or that it ends at.
+fn sides(piece: &Piece, cell: &Cell) -> Vec<usize> {
+    let mut sides: Vec<usize> = piece.gaps.iter().map(|gap| gap.side).collect();
+    if !piece.is_filled {
+        let ends = piece.chains.iter().filter(|chain| !chain.is_closed).flat_map(|chain| [chain.end(0), chain.end(1)]);
+        sides.extend(ends.flat_map(|at| SIDES.into_iter().filter(move |side| cell.is_on(*side, at))));
+    }
+    sides
 }

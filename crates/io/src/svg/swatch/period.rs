@@ -17,7 +17,7 @@ use crate::svg::{
     },
     swatch::{
         cell::{Cell, name, opposite},
-        fit::{Misfit, misfit},
+        fit::{Ending, Misfit, misfit},
         found::{MOST, is_period},
         links::{Links, links},
         pattern::{Painted, painted},
@@ -52,7 +52,7 @@ pub(crate) fn periods(
         let no_size = || Error::input(source.name, "one period without a size", advice);
         return if tiling == Tiling::Period { Err(no_size()) } else { Ok(None) };
     };
-    if tiling == Tiling::Auto && roots.iter().map(|(_, node)| count(node)).sum::<usize>() > 4 * MOST {
+    if tiling == Tiling::Auto && roots.iter().map(|(_, node)| count(node)).sum::<usize>() > 10 * MOST {
         return Ok(None);
     }
     of_page(source, base, roots, (frame, tiling))
@@ -80,7 +80,7 @@ fn of_page(
         }
         source.notes.add(Note::Period, String::new);
     }
-    if let Some(off) = misfit(&pieces, &found.all, &links, &cell) {
+    if let Some(off) = misfit(&pieces, &found.all, &links, (&cell, Ending::Whole)) {
         return Err(does_not_fit(source, &off, &found.all[off.unit]));
     }
     let period = Period { cell, units: &found.all, pieces: &pieces, links: &links };
@@ -123,7 +123,7 @@ fn of_pattern(source: &Source<'_>, root: &Rc<Node>, painted: Painted) -> Result<
     let (pieces, links) = taken_apart(source, &found, &cell)?;
     let period = Period { cell, units: &found.all, pieces: &pieces, links: &links };
     let unrolled = period.unroll(source, root)?;
-    let window = unrolled.window.grown(unrolled.window.size().norm());
+    let window = unrolled.window;
     let cover = Rect::new(window.min[0], window.min[1], window.max[0], window.max[1]).to_path(0.1);
     let mut children: Vec<Rc<Node>> = Vec::new();
     for (parent, node) in below {

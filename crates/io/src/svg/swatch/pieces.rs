@@ -121,6 +121,10 @@ fn chains(subpath: &BezPath, cell: &Cell, is_filled: bool, is_closed: bool) -> V
         }
         was_kept = is_kept;
     }
+    if !is_filled {
+        // What an edge leaves of a stroke that hardly reaches in.
+        chains.retain(|chain| chain.segments.iter().map(|s| (s.end() - s.start()).hypot()).sum::<f64>() > cell.near());
+    }
     chains
 }
 

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, rc::Rc};
 
 use arabesque_core::{Bounds, Result, Vector};
-use kurbo::{Affine, BezPath, Rect};
+use kurbo::{Affine, BezPath, PathEl, Point, Rect, Vec2};
 
 use crate::svg::{
     parse::{
@@ -72,7 +72,8 @@ impl Period<'_> {
             if unit.is_cut {
                 for path in welded.remove(&number).unwrap_or_default() {
                     let node = with_path(&unit.node, Affine::IDENTITY, &path);
-                    if bounds(&node, self.cell.to_root).intersects(&window) {
+                    let is_seen = unit.is_filled || self.reaches_in(&path, &window);
+                    if is_seen && bounds(&node, self.cell.to_root).intersects(&window) {
                         source.count_node()?;
                         source.count_segments(path.elements().len())?;
                         children.push(Rc::new(node));
@@ -97,11 +98,62 @@ impl Period<'_> {
         Ok(Unrolled { root, window, period: self.vectors() })
     }
 
+    /// Whether a good part of a stroke lies in the window: not, where it merely passes a corner.
+    fn reaches_in(&self, path: &BezPath, window: &Bounds<2>) -> bool {
+        let near = 5.0 * self.cell.near();
+        let mut inside = 0.0;
+        let mut last = Point::ZERO;
+        kurbo::flatten(self.cell.to_root * path.clone(), 0.1 * near, |element| {
+            let Some(at) = element.end_point() else { return };
+            if let PathEl::LineTo(_) = element {
+                let part = Bounds::around([last, at].map(|p| Vector::xy(p.x, p.y)));
+                let common = Bounds::new(part.min.zip(window.min, f64::max), part.max.zip(window.max, f64::min));
+                inside += if common.is_empty() { 0.0 } else { common.size().norm() };
+            }
+            last = at;
+        });
+        inside > near
+    }
+
     /// The ways to the next copies.
     fn vectors(&self) -> [Vector<2>; 2] {
         let [a, b, c, d, ..] = self.cell.to_root.as_coeffs();
         let [w, h] = self.cell.size();
         [Vector::xy(a * w, b * w), Vector::xy(c * h, d * h)]
+    }
+
+    /// Where the box that is shown begins, from the corner of the cell: away from the middles of things, so that each counts once.
+    fn offset(&self) -> Vec2 {
+        const STEPS: usize = 32;
+        let size = self.cell.size();
+        let best = |axis: usize| {
+            let middles: Vec<f64> = self.units.iter().map(|unit| self.middle(unit, axis) / size[axis]).collect();
+            let room = |k: usize| {
+                let at = k as f64 / STEPS as f64;
+                let away = middles.iter().map(|m| (at - m - (at - m).round()).abs());
+                away.fold(0.5, f64::min)
+            };
+            let mut least = 0;
+            for k in 1..STEPS {
+                if room(k) > room(least) + 1e-9 {
+                    least = k;
+                }
+            }
+            least as f64 / STEPS as f64 * size[axis]
+        };
+        Vec2::new(best(0), best(1))
+    }
+
+    /// About where the middle of a thing lies along an axis, from the corner of the cell: at an edge, where that cuts it.
+    fn middle(&self, unit: &Unit, axis: usize) -> f64 {
+        let (frame, near) = (self.cell.frame, self.cell.near());
+        let (low, high, from, to) = if axis == 0 {
+            (unit.extent.x0, unit.extent.x1, frame.x0, frame.x1)
+        } else {
+            (unit.extent.y0, unit.extent.y1, frame.y0, frame.y1)
+        };
+        let is_cut = unit.is_cut && (low <= from + near || high >= to - near);
+        if is_cut { 0.0 } else { 0.5 * (low + high) - from }
     }
 
     /// The box that is shown, and the cells that reach into it, with those around them.
@@ -114,9 +166,10 @@ impl Period<'_> {
         let is_upright = p[1].abs() + q[0].abs() <= 1e-9 * (p.norm() + q.norm());
         let periods = |length: f64| (side / length).round().clamp(LEAST, MOST);
         let frame = self.cell.frame;
+        let origin = frame.origin() + self.offset();
         let shown = if is_upright {
             let size = [frame.width() * periods(p.norm()), frame.height() * periods(q.norm())];
-            self.cell.to_root.transform_rect_bbox(Rect::from_origin_size(frame.origin(), (size[0], size[1])))
+            self.cell.to_root.transform_rect_bbox(Rect::from_origin_size(origin, (size[0], size[1])))
         } else {
             let longest = p.norm().max(q.norm());
             let half = 0.5 * side.max(LEAST * longest).min(MOST * longest);

@@ -10,7 +10,7 @@ use arabesque_io::{
     table::csv::{self, Points},
 };
 
-use crate::recipe::{Input, Method};
+use crate::recipe::{Input, Reading};
 
 /// An exemplar as it was read.
 #[derive(Clone, Debug)]
@@ -35,14 +35,14 @@ impl LoadedExemplar {
     ///
     /// # Errors
     /// As [`svg::read_exemplar`], [`csv::read_points`] and [`obj::read_curves`]; [`Error::Unsupported`] for methods that do not exist yet.
-    pub fn read(input: &Input, bytes: &[u8], method: Method, budget: &Budget) -> Result<Self> {
+    pub fn read(input: &Input, bytes: &[u8], reading: impl Into<Reading>, budget: &Budget) -> Result<Self> {
         let name = input.name();
-        let method = method.of_drawings()?;
+        let (method, tiling) = reading.into().of_drawings()?;
         if arabesque_io::raster::png::is_png(bytes) {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
         }
-        let text = file::decode_text(name, bytes)?;
+        let text = file::decode_text(name, bytes, budget)?;
         if looks_like_curves(name, &text) {
             let net = obj::read_curves(name, &text, budget)?;
             return Ok(Self::Space(net.exemplar, net.warnings));
@@ -53,7 +53,7 @@ impl LoadedExemplar {
                 Points::Space(exemplar) => Self::Space(exemplar, Vec::new()),
             });
         }
-        let options = ReadOptions { method, budget: budget.clone(), ..ReadOptions::new(name) };
+        let options = ReadOptions { method, tiling, budget: budget.clone(), ..ReadOptions::new(name) };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
 }
@@ -70,7 +70,8 @@ fn looks_like_curves(name: &str, text: &str) -> bool {
 fn looks_like_points(name: &str, text: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     let has = |endings: &[&str]| endings.iter().any(|e| lower.ends_with(e));
-    has(&[".csv", ".tsv", ".txt", ".xyz"]) || !(has(&[".svg"]) || text.trim_start().starts_with('<') || text.is_empty())
+    has(&[".csv", ".tsv", ".txt", ".xyz"])
+        || !(has(&[".svg", ".svgz"]) || text.trim_start().starts_with('<') || text.is_empty())
 }
 
 /// Points as a drawing of dots, one colour a class.
@@ -125,6 +126,7 @@ pub(crate) fn understood<const D: usize>(exemplar: &Exemplar<D>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recipe::Method;
 
     fn read(name: &str, bytes: &[u8]) -> Result<LoadedExemplar> {
         LoadedExemplar::read(&Input::file(name), bytes, Method::Auto, &Budget::default())

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
-    recipe::{Format, Input, Method, NO_RECIPE},
+    recipe::{Format, Input, NO_RECIPE, Reading},
     resources::Resources,
     spacing::{length, spacing},
 };
@@ -148,9 +148,9 @@ const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 ///
 /// # Errors
 /// As [`LoadedExemplar::read`] and [`Resources::read`].
-pub fn inspect(input: &Input, method: Method, resources: &Resources) -> Result<Report> {
+pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources) -> Result<Report> {
     let bytes = resources.read(input)?;
-    Ok(match LoadedExemplar::read(input, &bytes, method, &resources.budget())? {
+    Ok(match LoadedExemplar::read(input, &bytes, reading, &resources.budget())? {
         LoadedExemplar::Drawing(drawing) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
             report.unit = Some(drawing.page.unit.name());

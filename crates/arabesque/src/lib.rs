@@ -83,8 +83,8 @@ pub use inspect::{ClassReport, Report, StyleReport, UnderstoodReport, inspect};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
-    Carrier, Cuboid, EMBEDDED_BYTES, Encoding, FieldFile, FieldSource, Fill, Format, Input, Job, Method, OutputOptions,
-    Parameters, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, carried_recipe, is_result, recipe_in,
-    ribbon_options,
+    Carrier, Cuboid, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
+    OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, carried_recipe,
+    is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

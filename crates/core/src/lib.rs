@@ -51,4 +51,4 @@ pub use run::{
     StopReason, Unobserved, Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};
-pub use text::Decimals;
+pub use text::{Decimals, rounded};

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use arabesque_core::{Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Watch};
+use arabesque_core::{
+    Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Watch, rounded,
+};
 
 use crate::{
     dimension::Dimension,
@@ -107,7 +109,7 @@ where
             return Err(Error::parameter(
                 "radius",
                 radius,
-                format!("at most {side}, the shorter side of the exemplar"),
+                format!("at most {}, the shorter side of the exemplar", rounded(side)),
             ));
         }
         let regular = match Vector::<D>::plane_exemplar(exemplar) {
@@ -117,6 +119,9 @@ where
         if regular.is_none() && params.repeat == Repeats::Exact {
             let expected = "auto or off: the exemplar shows no repeat that explains it";
             return Err(Error::parameter("repeat", "exact", expected));
+        }
+        if regular.is_none() {
+            no_areas(exemplar, "do not repeat")?;
         }
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);

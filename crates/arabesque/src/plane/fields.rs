@@ -58,7 +58,7 @@ fn orientation(input: &Input, bounds: &Bounds<2>, files: &Files) -> Result<Orien
     if png::is_png(&bytes) || !is_drawing {
         return Picture::new(input.name(), &bytes, files.budget()).orientation_field(*bounds);
     }
-    let strokes = svg::read_flow(&file::decode_text(input.name(), &bytes)?, &options(input, files))?;
+    let strokes = svg::read_flow(&file::decode_text(input.name(), &bytes, files.budget())?, &options(input, files))?;
     OrientationField::from_strokes(&strokes, *bounds, STROKE_NODES).ok_or_else(|| {
         Error::input(input.name(), "no stroke crosses the domain", "draw strokes over the domain, in its coordinates")
     })

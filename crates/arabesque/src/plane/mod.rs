@@ -23,7 +23,7 @@ use crate::{
     exemplar::{LoadedExemplar, points_as_drawing, understood},
     inspect::UnderstoodReport,
     method::{Preparation, Ready, RunContext, Show},
-    recipe::{Fill, Parameters, Redo},
+    recipe::{Fill, Parameters, Reading, Redo},
 };
 use exemplar::PlaneExemplar;
 use made::PlaneMade;
@@ -41,7 +41,8 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     // What is wrong with the parameters is told before what is wrong in a file.
     fill.params.engine_params()?;
     let bytes = preparation.files.read(input)?;
-    let (drawing, points) = match LoadedExemplar::read(input, &bytes, fill.method, preparation.files.budget())? {
+    let reading = Reading { method: fill.method, exemplar_tile: fill.exemplar_tile };
+    let (drawing, points) = match LoadedExemplar::read(input, &bytes, reading, preparation.files.budget())? {
         LoadedExemplar::Drawing(drawing) => (*drawing, None),
         LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar))),
         LoadedExemplar::Space(..) => {

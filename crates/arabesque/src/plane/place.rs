@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Outline, Result, Shape};
+use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Outline, Result, Shape, rounded};
 use arabesque_io::svg::{self, Drawing, Page, ReadOptions};
 
 use crate::{
@@ -116,9 +116,9 @@ pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, budget: &Bu
     if (smallest.is_finite() && domain.measure() < smallest) || expected < 0.5 {
         return Err(Error::no_result(
             format!(
-                "the domain ({:.4} square units) is smaller than one element takes ({:.4})",
-                domain.measure(),
-                if smallest.is_finite() { smallest.max(spacing.powi(2)) } else { spacing.powi(2) }
+                "the domain ({} square units) is smaller than one element takes ({})",
+                rounded(domain.measure()),
+                rounded(if smallest.is_finite() { smallest.max(spacing.powi(2)) } else { spacing.powi(2) })
             ),
             "make it larger; sizes without a unit are in the units of the exemplar",
         ));
@@ -127,7 +127,12 @@ pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, budget: &Bu
     let side = domain.bounds().size().0.into_iter().fold(f64::INFINITY, f64::min);
     if side < least {
         return Err(Error::no_result(
-            format!("the domain is {side} wide, where {least:.4} is the least for elements {spacing:.4} apart"),
+            format!(
+                "the domain is {} wide, where {} is the least for elements {} apart",
+                rounded(side),
+                rounded(least),
+                rounded(spacing)
+            ),
             "make it wider; sizes without a unit are in the units of the exemplar",
         ));
     }

@@ -1,9 +1,9 @@
 //! Filling a region of a drawing again, from what lies around it or from another region.
 
-use arabesque_core::{Border, Bounds, Error, Result, Shape, Vector, Warning};
+use arabesque_core::{Border, Bounds, Budget, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
-    svg::{Document, Drawing, HostDocument, ReadOptions},
+    svg::{Document, Drawing, HostDocument, ReadOptions, Tiling},
 };
 
 use crate::{
@@ -28,11 +28,12 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
     check_border(redo.border)?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
     let name = preparation.exemplar.name().to_owned();
-    let text = drawing_text(&name, &bytes)?;
+    let text = drawing_text(&name, &bytes, preparation.files.budget())?;
     let own = |region: &Region| if let Region::Own(id) = region { Some(id.clone()) } else { None };
     let options = ReadOptions {
         budget: preparation.files.budget().clone(),
         method: redo.method.of_drawings()?,
+        tiling: Tiling::Page,
         without: std::iter::once(&redo.region).chain(&redo.from).filter_map(own).collect(),
         ..ReadOptions::new(&*name)
     };
@@ -62,8 +63,9 @@ pub(crate) fn check_border(border: Option<Border>) -> Result<()> {
 }
 
 /// The text of a drawing.
-fn drawing_text(name: &str, bytes: &[u8]) -> Result<String> {
-    let text = if arabesque_io::raster::png::is_png(bytes) { String::new() } else { file::decode_text(name, bytes)? };
+fn drawing_text(name: &str, bytes: &[u8], budget: &Budget) -> Result<String> {
+    let text =
+        if arabesque_io::raster::png::is_png(bytes) { String::new() } else { file::decode_text(name, bytes, budget)? };
     if text.trim_start().starts_with('<') {
         return Ok(text);
     }

@@ -1,6 +1,6 @@
 //! Files that carry a recipe.
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Budget, Error, Result};
 use arabesque_io::{
     file, json,
     mesh::{
@@ -46,7 +46,7 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
     } else if gltf::is_glb(bytes) {
         (gltf::recipe_of(bytes), "a mesh")
     } else {
-        let text = file::decode_text(name, bytes)?;
+        let text = file::decode_text(name, bytes, &Budget::default())?;
         let start = text.trim_start();
         let ending = Format::of_path(name).ok().flatten();
         if start.starts_with('<') {

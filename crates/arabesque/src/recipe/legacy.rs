@@ -13,7 +13,7 @@ use serde::{
 use crate::recipe::{
     field::FieldSource,
     input::Input,
-    job::{Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, plain_values},
+    job::{ExemplarTile, Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, plain_values},
     output::OutputOptions,
     region::Region,
     size::{Cuboid, Size},
@@ -241,6 +241,7 @@ impl FlatRecipe {
 
     fn fill(&mut self) -> Job {
         Job::Fill(Fill {
+            exemplar_tile: ExemplarTile::Auto,
             size: self.size.take(),
             tile: self.tile.take(),
             border: self.border.take(),

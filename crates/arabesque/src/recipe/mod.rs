@@ -19,7 +19,7 @@ pub use embedded::{Carrier, carried_recipe, is_result, recipe_in};
 pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
-pub use job::{Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, ribbon_options};
+pub use job::{ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, WidthSource, ribbon_options};
 pub use output::OutputOptions;
 pub use region::Region;
 pub use size::{Cuboid, Size};

@@ -66,7 +66,7 @@ impl Files {
 
     /// The content of an input, as text.
     pub(crate) fn text(&self, input: &Input) -> Result<String> {
-        file::decode_text(input.name(), &self.read(input)?)
+        file::decode_text(input.name(), &self.read(input)?, &self.budget)
     }
 
     /// Reads an input, and makes it what a recipe carries.

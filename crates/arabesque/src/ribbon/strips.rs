@@ -1,6 +1,6 @@
 //! The exemplars of ribbons, as pictures.
 
-use arabesque_core::{Error, Held, Image, Outline, Result, Vector, Warning};
+use arabesque_core::{Budget, Error, Held, Image, Outline, Result, Vector, Warning, rounded};
 use arabesque_io::{
     file,
     raster::{
@@ -115,8 +115,8 @@ impl Loading<'_> {
     fn exemplar(&mut self, input: &Input, bytes: &[u8], finer: &mut Option<f64>) -> Result<(Image, Source)> {
         let name = input.name();
         let path = name.to_owned();
-        if !png::is_png(bytes) && file::decode_text(name, bytes).is_ok_and(|text| text.trim_start().starts_with('<')) {
-            let (image, areas, factor) = self.drawing(name, &file::decode_text(name, bytes)?, *finer)?;
+        if let Some(text) = drawing_text(name, bytes, self.files.budget())? {
+            let (image, areas, factor) = self.drawing(name, &text, *finer)?;
             *finer = Some(factor);
             return Ok((image, Source { name: path, areas: Some(areas) }));
         }
@@ -164,6 +164,18 @@ fn check_alike(sources: &[Source]) -> Result<()> {
     })
 }
 
+/// The text of an exemplar that is a drawing; `None` for anything else.
+fn drawing_text(name: &str, bytes: &[u8], budget: &Budget) -> Result<Option<String>> {
+    if png::is_png(bytes) {
+        return Ok(None);
+    }
+    match file::decode_text(name, bytes, budget) {
+        Ok(text) => Ok(Some(text).filter(|text| text.trim_start().starts_with('<'))),
+        Err(Error::Input { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
 /// Warns of a ribbon that is much wider than its exemplar.
 fn width_warning(params: &RibbonParams, exemplars: &[StripExemplar]) -> Option<Warning> {
     let height = exemplars.iter().map(|e| e.image.height).max().unwrap_or(0) as f64 * params.scale;
@@ -173,8 +185,11 @@ fn width_warning(params: &RibbonParams, exemplars: &[StripExemplar]) -> Option<W
         Width::Profile(stations) => stations.iter().map(|s| s.1).fold(0.0, f64::max),
     };
     (widest > WIDE * height).then(|| {
-        let message =
-            format!("the ribbon is up to {widest} wide, the exemplar {height} high: most of the ribbon stays empty");
+        let message = format!(
+            "the ribbon is up to {} wide, the exemplar {} high: most of the ribbon stays empty",
+            rounded(widest),
+            rounded(height)
+        );
         Warning::new(message, "use a smaller --width, or a larger --scale")
     })
 }

@@ -87,7 +87,7 @@ fn follow(ribbon: &mut Ribbon, context: &mut RunContext<'_>) -> Result<Track> {
         let problem = "a picture where curves were expected";
         return Err(Error::input(name, problem, "give an SVG file with a path, or an OBJ file with l elements"));
     }
-    let text = file::decode_text(name, &bytes)?;
+    let text = file::decode_text(name, &bytes, files.budget())?;
     if is_obj(name, &text) {
         if input.id.is_some() {
             let advice = "leave the id out: all lines of an OBJ file are followed";
@@ -127,7 +127,7 @@ fn avoided(inputs: &mut [Input], page: &Page, context: &RunContext<'_>) -> Resul
             region.add_picture(input.name(), &bytes, budget)?;
             continue;
         }
-        let text = file::decode_text(input.name(), &bytes)?;
+        let text = file::decode_text(input.name(), &bytes, budget)?;
         let shape = svg::read_shape(&text, input.id.as_deref(), &options(input, files))?.0;
         region.add_outline(shape.outline(), budget)?;
     }

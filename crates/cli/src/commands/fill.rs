@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
-    Border, Cuboid, Error, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo, Region, Space,
+    Border, Cuboid, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo,
+    Region, Space,
     core::options::{Choice, help_list, preset_list},
     patterns::Params,
 };
@@ -98,6 +99,10 @@ struct Engine {
     /// What the exemplar is made of
     #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
     method: Method,
+    /// The exemplar is one period of the pattern: what an edge of it cuts goes on at the opposite edge
+    #[arg(long, value_name = "WHETHER", num_args = 0..=1, require_equals = true, default_missing_value = "yes",
+        default_value = ExemplarTile::default().name(), value_parser = choice::<ExemplarTile>())]
+    exemplar_tile: ExemplarTile,
     /// Named set of parameters: default, ma2011, tu2020
     #[arg(long, value_name = "NAME", default_value = "default")]
     preset: String,
@@ -177,7 +182,15 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
         });
     }
     let avoid = place.avoid.iter().map(|text| Input::shape(text)).collect();
-    let (method, border) = (engine.method, place.border);
+    let (method, border, exemplar_tile) = (engine.method, place.border, engine.exemplar_tile);
+    let elsewhere = place.cuboid.is_some() || place.redo.is_some() || place.to.is_some();
+    if exemplar_tile == ExemplarTile::Yes && elsewhere {
+        let advice = "leave it out, or fill a page, a shape or a tile";
+        return Err(Error::Unsupported {
+            what: "exemplar-tile together with box, redo or to".into(),
+            advice: advice.into(),
+        });
+    }
     let Fields { orient, scale, density } = fields;
     if let Some(cuboid) = place.cuboid {
         let plane_only =
@@ -205,6 +218,7 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
         tile: size(place.tile)?,
         border,
         method,
+        exemplar_tile,
         domain: place.domain.as_deref().map(Input::shape),
         keep: place.keep.map(Input::file),
         orient,

@@ -2,7 +2,9 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{Format, Input, Limits, Method, Report, Resources, Stopper, inspect, io::file};
+use arabesque::{
+    ExemplarTile, Format, Input, Limits, Method, Reading, Report, Resources, Stopper, core::rounded, inspect, io::file,
+};
 use clap::Args;
 
 use super::fill::choice;
@@ -30,6 +32,10 @@ pub(crate) struct Inspect {
     /// What the exemplar is made of
     #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
     method: Method,
+    /// It is one period of the pattern: what an edge of it cuts goes on at the opposite edge
+    #[arg(long, value_name = "WHETHER", num_args = 0..=1, require_equals = true, default_missing_value = "yes",
+        default_value = ExemplarTile::default().name(), value_parser = choice::<ExemplarTile>())]
+    exemplar_tile: ExemplarTile,
     #[command(flatten)]
     write: WriteOptions,
     #[command(flatten)]
@@ -65,7 +71,8 @@ impl Inspect {
         let target = self.output.as_deref().map(|path| target(path, &guard)).transpose()?;
         sentinel::watch(self.orders(limits), stopper.clone())?;
         let resources = Resources { limits, stopper, ..Resources::default() };
-        let report = inspect(&Input::file(&self.file), self.method, &resources)?;
+        let reading = Reading { method: self.method, exemplar_tile: self.exemplar_tile };
+        let report = inspect(&Input::file(&self.file), reading, &resources)?;
         if let Some((target, format)) = target {
             let picture = report.picture(format, &resources.budget())?;
             sentinel::enter(Phase::Writing);
@@ -103,8 +110,10 @@ fn print(report: &Report) -> Result<(), Failure> {
             .collect::<Vec<_>>()
             .join(" x ")
     };
-    let unit =
-        report.unit.zip(report.unit_per_user).map_or_else(String::new, |(unit, n)| format!(" (1 unit = {n} {unit})"));
+    let unit = report
+        .unit
+        .zip(report.unit_per_user)
+        .map_or_else(String::new, |(unit, n)| format!(" (1 unit = {} {unit})", rounded(n)));
     writeln!(out, "{}: {}", report.file, report.kind)?;
     writeln!(out, "  frame: {}{unit}", join(&report.frame_size))?;
     if report.elements > 0 || report.curves == 0 {

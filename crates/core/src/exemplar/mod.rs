@@ -90,6 +90,9 @@ pub struct Exemplar<const D: usize> {
     pub window: Bounds<D>,
     /// A part of the window of which nothing is known.
     pub hole: Option<Bounds<D>>,
+    /// Where the exemplar is known to repeat exactly: two vectors by which all of it can be moved onto itself, as far as it is shown.
+    /// `None` where the file does not say so; it may repeat all the same.
+    pub period: Option<[Vector<D>; 2]>,
 }
 
 /// What an exemplar holds, not yet checked.
@@ -156,7 +159,7 @@ impl<const D: usize> Exemplar<D> {
         if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
             return fail("the frame has no area", "give the exemplar a width and a height");
         }
-        Ok(Self { elements, classes, curves, areas, styles, window, hole: None })
+        Ok(Self { elements, classes, curves, areas, styles, window, hole: None, period: None })
     }
 
     /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.

@@ -9,6 +9,7 @@ use crate::{
     error::{Error, Result},
     region::segment::Segment,
     space::{Bounds, Vector},
+    text::rounded,
 };
 
 /// Work for each edge that an operation is given: sorting and sweeping.
@@ -48,7 +49,12 @@ pub(super) fn in_range(points: impl Iterator<Item = Vector<2>>, budget: &Budget)
     let Some(found) = { points }.find(far) else { return Ok(()) };
     Err(Error::input(
         "outline",
-        format!("a corner at ({:e}, {:e}), expected coordinates of at most {most:e}", found[0], found[1]),
+        format!(
+            "a corner at ({}, {}), expected coordinates of at most {}",
+            rounded(found[0]),
+            rounded(found[1]),
+            rounded(most)
+        ),
         "draw it smaller, and nearer to the origin",
     ))
 }

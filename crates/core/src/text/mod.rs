@@ -2,4 +2,4 @@
 
 mod number;
 
-pub use number::Decimals;
+pub use number::{Decimals, rounded};

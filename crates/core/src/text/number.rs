@@ -46,9 +46,42 @@ impl Decimals {
     }
 }
 
+/// A number as messages show it: four significant digits, with an exponent where it is very large or small.
+pub fn rounded(value: f64) -> String {
+    let magnitude = value.abs();
+    if !value.is_finite() || value == 0.0 {
+        return value.to_string();
+    }
+    if !(1e-4..1e7).contains(&magnitude) {
+        let text = format!("{value:.3e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'));
+    }
+    Decimals((3 - magnitude.log10().floor() as i32).clamp(0, 8) as usize).format(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn people_get_four_digits() {
+        let cases = [
+            (533.333_333_333_333_4, "533.3"),
+            (0.1 + 0.2, "0.3"),
+            (-12.345_678, "-12.35"),
+            (1_234_567.8, "1234568"),
+            (12_345_678.9, "1.235e7"),
+            (1e9, "1e9"),
+            (0.000_012_345, "1.234e-5"),
+            (0.001_234_5, "0.001234"),
+            (0.0, "0"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(rounded(value), text);
+        }
+    }
 
     #[test]
     fn a_page_of_720_units_gets_thousandths() {

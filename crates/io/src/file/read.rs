@@ -16,6 +16,8 @@ use super::{
 
 /// Bytes that are read between two questions whether to stop.
 const CHUNK: u64 = 1 << 18;
+/// What is too much of a file.
+const SIZE: &str = "size of the file";
 
 /// Reads a file, or standard input for `-`.
 ///
@@ -40,7 +42,7 @@ pub fn read_bytes(path: &str, budget: &Budget) -> Result<Vec<u8>> {
         return take(path, 0, &file, &|| system::wait_for_input(&file), budget);
     }
     if before.len() > budget.limits().file_bytes as u64 {
-        return Err(too_large(path, budget));
+        return Err(too_large(path, SIZE, budget));
     }
     let bytes = take(path, before.len(), &file, &|| Ok(true), budget)?;
     check_unchanged(path, &before, &file, bytes.len() as u64)?;
@@ -66,7 +68,7 @@ fn take(
         }
         let room = most.saturating_add(1) - bytes.len() as u64;
         if room == 0 {
-            return Err(too_large(name, &budget));
+            return Err(too_large(name, SIZE, &budget));
         }
         // One call: what comes from a pipe is taken as it comes, so that nothing waits for a whole chunk.
         let old = bytes.len();
@@ -85,10 +87,11 @@ fn take(
     }
 }
 
-fn too_large(name: &str, budget: &Budget) -> Error {
+/// More bytes of a file, called `what`, than the limit.
+pub(super) fn too_large(name: &str, what: &str, budget: &Budget) -> Error {
     let most = budget.limits().file_bytes;
     Error::Limit {
-        what: format!("{name}: size of the file"),
+        what: format!("{name}: {what}"),
         found: format!("more than {most} bytes"),
         limit: format!("{most} bytes"),
         advice: "use a smaller file, or raise the limit with --limit file-bytes=N".into(),

@@ -1,8 +1,10 @@
 //! SVG: exemplars, jobs and results.
 //!
 //! Reading goes from the raw text over the parsed file to a tree of what is drawn (`parse`), whose painted area
-//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`); what lies on
-//! what makes strokes with several paints and the layers of the result (`layers`). `read` holds what callers ask for, `write` the way back to text; both speak of a [`Drawing`].
+//! (`shape`) tells elements from curves and background and sorts the elements into classes (`understand`). A drawing of
+//! one period is laid out as several before (`swatch`). What lies on what makes strokes with several paints and the
+//! layers of the result (`layers`). `read` holds what callers ask for, `write` the way back to text; both speak of a
+//! [`Drawing`].
 
 mod centreline;
 mod drawing;
@@ -14,13 +16,14 @@ mod parse;
 mod read;
 mod reason;
 mod shape;
+mod swatch;
 mod understand;
 mod write;
 
 pub use crate::text::unit::Unit;
 pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page, Placed, Stroke};
 pub use namespace::NAMESPACE;
-pub use options::{Method, ReadOptions};
+pub use options::{Method, ReadOptions, Tiling};
 pub use palette::PALETTE;
 pub use read::{
     document::Document,

@@ -15,6 +15,18 @@ pub enum Method {
     Elements,
 }
 
+/// Whether an exemplar is a page of a pattern, or one period of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tiling {
+    /// One period where a `<pattern>` fills it, or where what its opposite edges cut fits together beyond doubt.
+    #[default]
+    Auto,
+    /// One period: what an edge cuts goes on at the opposite one.
+    Period,
+    /// A page; a `<pattern>` that fills it is a background.
+    Page,
+}
+
 /// How an SVG file is to be read.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
@@ -22,6 +34,8 @@ pub struct ReadOptions {
     pub name: String,
     /// What open strokes are taken for. Default: [`Method::Auto`].
     pub method: Method,
+    /// Whether it shows a page or one period. Default: [`Tiling::Auto`].
+    pub tiling: Tiling,
     /// Ids (or labels) of items that are not part of the drawing, because they only say where something is. Default:
     /// none.
     pub without: Vec<String>,
@@ -32,6 +46,12 @@ pub struct ReadOptions {
 impl ReadOptions {
     /// Default options for the file called `name` in messages.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), method: Method::default(), without: Vec::new(), budget: Budget::default() }
+        Self {
+            name: name.into(),
+            method: Method::default(),
+            tiling: Tiling::default(),
+            without: Vec::new(),
+            budget: Budget::default(),
+        }
     }
 }

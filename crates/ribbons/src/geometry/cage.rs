@@ -1,6 +1,6 @@
 //! The ribbon around a curve, cut into pieces [Zhou 2013 §1.1, §1.3].
 
-use arabesque_core::{Bounds, Budget, Error, Held, Measured, Path, Result, Vector};
+use arabesque_core::{Bounds, Budget, Error, Held, Measured, Path, Result, Vector, rounded};
 
 use crate::params::{RibbonParams, STEP, Width};
 
@@ -223,13 +223,14 @@ impl CagePlan<'_> {
         if most / self.scale() > ROWS as f64 {
             return Err(Error::Limit {
                 what: "width of the ribbon".into(),
-                found: format!("{} pixels of the exemplar", most / self.scale()),
+                found: format!("{} pixels of the exemplar", rounded(most / self.scale())),
                 limit: ROWS.to_string(),
                 advice: "use a smaller --width or a larger --scale".into(),
             });
         }
         if least / self.scale() < NARROWEST {
-            let expected = format!("at least {}, a hundredth of a pixel of the exemplar", NARROWEST * self.scale());
+            let expected =
+                format!("at least {}, a hundredth of a pixel of the exemplar", rounded(NARROWEST * self.scale()));
             return Err(Error::parameter("width", least, expected));
         }
         Ok(())

@@ -29,6 +29,9 @@ pub struct Fill {
     /// What open strokes are taken for. Default: auto.
     #[serde(default)]
     pub method: Method,
+    /// Whether the exemplar is one period of a pattern. Default: auto.
+    #[serde(default, skip_serializing_if = "ExemplarTile::is_auto")]
+    pub exemplar_tile: ExemplarTile,
     /// A file with the shape to fill.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<Input>,
@@ -60,7 +63,65 @@ impl Fill {
     }
 
     pub(super) fn prepared_part(&self) -> Self {
-        Self { method: self.method, params: self.params.clone(), ..Self::default() }
+        let params = self.params.clone();
+        Self { method: self.method, exemplar_tile: self.exemplar_tile, params, ..Self::default() }
+    }
+}
+
+choices! {
+    /// Whether the exemplar is one period of a pattern.
+    pub enum ExemplarTile {
+        /// Where a `<pattern>` fills it, or what its opposite edges cut fits together beyond doubt.
+        Auto = "auto",
+        /// It is: what an edge cuts goes on at the opposite edge.
+        Yes = "yes",
+        /// It is a page of the pattern.
+        No = "no",
+    }
+}
+
+impl Default for ExemplarTile {
+    /// [`ExemplarTile::Auto`].
+    fn default() -> Self {
+        Self::Auto
+    }
+}
+
+impl ExemplarTile {
+    fn is_auto(&self) -> bool {
+        *self == Self::Auto
+    }
+
+    /// How a drawing is read for it.
+    fn of_drawings(self) -> svg::Tiling {
+        match self {
+            Self::Auto => svg::Tiling::Auto,
+            Self::Yes => svg::Tiling::Period,
+            Self::No => svg::Tiling::Page,
+        }
+    }
+}
+
+/// What an exemplar is taken for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// What it is made of. Default: auto.
+    pub method: Method,
+    /// Whether it is one period of a pattern. Default: auto.
+    pub exemplar_tile: ExemplarTile,
+}
+
+impl From<Method> for Reading {
+    /// Everything but the method at its default.
+    fn from(method: Method) -> Self {
+        Self { method, ..Self::default() }
+    }
+}
+
+impl Reading {
+    /// How a drawing is read for it.
+    pub(crate) fn of_drawings(self) -> Result<(svg::Method, svg::Tiling)> {
+        Ok((self.method.of_drawings()?, self.exemplar_tile.of_drawings()))
     }
 }
 

@@ -7,7 +7,7 @@ mod redo;
 mod ribbon;
 mod space;
 
-pub use fill::{Fill, Method};
+pub use fill::{ExemplarTile, Fill, Method, Reading};
 pub use parameters::Parameters;
 pub use redo::Redo;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};

@@ -6,6 +6,7 @@ use svgtypes::Color;
 use crate::svg::parse::{
     css::style_declarations,
     paint::{fraction, reference},
+    sheet::variables::default_of,
     source::{Source, href},
 };
 
@@ -19,7 +20,7 @@ pub(crate) fn of_paint(source: &Source<'_>, paint: &str) -> [f64; 3] {
 }
 
 fn parsed(text: &str) -> Option<[f64; 3]> {
-    let c: Color = text.trim().parse().ok()?;
+    let c: Color = default_of(text)?.trim().parse().ok()?;
     Some([c.red, c.green, c.blue].map(|v| f64::from(v) / 255.0))
 }
 

@@ -9,6 +9,11 @@ use std::{
 use roxmltree::Node as Xml;
 use simplecss::{AttributeOperator, Declaration, PseudoClass, Rule, StyleSheet};
 
+use crate::svg::parse::sheet::{
+    declarations::{Declared, declarations},
+    rules::ROOT,
+};
+
 /// Steps of matching selectors in a whole file: parts of a selector compared, and moves in the tree.
 pub(crate) const STEPS: u64 = 200_000_000;
 
@@ -126,25 +131,8 @@ impl Key {
 }
 
 /// The declarations of a style attribute.
-pub(crate) fn style_declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
-    let (mut parts, mut from, mut quote, mut depth) = (Vec::new(), 0, None, 0_usize);
-    if style.len() > PART {
-        for (k, b) in style.bytes().enumerate() {
-            match (quote, b) {
-                (None, b'"' | b'\'') => quote = Some(b),
-                (Some(q), _) if q == b => quote = None,
-                (None, b'(') => depth += 1,
-                (None, b')') => depth = depth.saturating_sub(1),
-                (None, b';') if depth == 0 && k - from >= PART / 8 => {
-                    parts.push(&style[from..=k]);
-                    from = k + 1;
-                }
-                _ => {}
-            }
-        }
-    }
-    parts.push(&style[from..]);
-    parts.into_iter().flat_map(simplecss::DeclarationTokenizer::from)
+pub(crate) fn style_declarations(style: &str) -> impl Iterator<Item = Declared<'_>> {
+    declarations(style)
 }
 
 /// A long style sheet in parts that end with rules.
@@ -240,6 +228,9 @@ impl simplecss::Element for Element<'_> {
 
     fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
         self.count(self.node.attributes().len() as u64);
+        if local_name == ROOT {
+            return self.node.parent_element().is_none();
+        }
         self.node.attribute(local_name).is_some_and(|value| {
             self.count(value.len() as u64 / 32);
             operator.matches(value)

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, rc::Rc};
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Error, Result, rounded};
 use kurbo::{BezPath, Point, Shape as _};
 use roxmltree::Node as Xml;
 use svgtypes::{Length, PointsParser, SimplePathSegment, SimplifyingPathParser};
@@ -82,9 +82,10 @@ pub(crate) fn read(source: &Source<'_>, node: Xml<'_, '_>, viewport: Viewport) -
     source.count_bytes(geometry.markup.len() + SEGMENT_BYTES * geometry.path.elements().len())?;
     let extent = geometry.path.control_box();
     if let Some(v) = [extent.x0, extent.y0, extent.x1, extent.y1].iter().find(|v| !(0.0..=LARGEST).contains(&v.abs())) {
-        return Err(
-            reader.wrong(format!("a coordinate is {v:e}, expected a number between -{LARGEST:e} and {LARGEST:e}"))
-        );
+        return Err(reader.wrong(format!(
+            "a coordinate is {}, expected a number between -{LARGEST:e} and {LARGEST:e}",
+            rounded(*v)
+        )));
     }
     Ok(Some(geometry))
 }

@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, collections::BTreeMap};
 
-use arabesque_core::{Error, Limits, Result};
+use arabesque_core::{Error, Limits, Result, rounded};
 use svgtypes::{PathParser, PathSegment};
 
 /// Longest text that all entity references of a file may stand for, beyond the size of the file itself.
@@ -262,16 +262,20 @@ fn check_arcs(data: &str, largest: f64) -> std::result::Result<(), String> {
         };
         let radius = rx.abs().max(ry.abs());
         if !(0.0..=largest).contains(&radius) {
-            return Err(format!("an arc has a radius of {radius:e}, expected at most {largest:e}"));
+            return Err(format!("an arc has a radius of {}, expected at most {largest:e}", rounded(radius)));
         }
         if let Some(v) = [from, to].as_flattened().iter().find(|v| !(-largest..=largest).contains(*v)) {
-            return Err(format!("an arc ends at {v:e}, expected a number between -{largest:e} and {largest:e}"));
+            return Err(format!(
+                "an arc ends at {}, expected a number between -{largest:e} and {largest:e}",
+                rounded(*v)
+            ));
         }
         let chord = (to[0] - from[0]).hypot(to[1] - from[1]);
         let is_flat = radius > FLAT * chord;
         if is_flat && chord > 0.0 && (radius > ROUNDING || chord < CHORD) {
             return Err(format!(
-                "an arc has a radius of {radius:e} for ends {chord:e} apart, expected a line or an arc"
+                "an arc has a radius of {} for ends {chord:e} apart, expected a line or an arc",
+                rounded(radius)
             ));
         }
         run = if is_flat { run + 1 } else { 0 };

@@ -1,6 +1,6 @@
 //! Lengths with units, and the page.
 
-use arabesque_core::{Bounds, Error, Result, Vector};
+use arabesque_core::{Bounds, Error, Result, Vector, rounded};
 use roxmltree::Node as Xml;
 use svgtypes::{AspectRatio, Length, LengthUnit, ViewBox};
 
@@ -89,8 +89,25 @@ fn stated(source: &Source<'_>, root: Xml<'_, '_>, name: &str) -> Result<Option<(
     Ok(Some((length.number, unit)))
 }
 
+/// The page of a file, and how its content lies on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sheet {
+    pub(crate) page: Page,
+    /// From the coordinates of the content to those of the page: where the file asks for it, the content is stretched more one way than
+    /// the other.
+    pub(crate) stretch: [f64; 2],
+}
+
+impl Sheet {
+    /// What percentages in the content refer to.
+    pub(crate) fn viewport(&self) -> Viewport {
+        let size = self.page.view.size();
+        Viewport { width: size[0] / self.stretch[0], height: size[1] / self.stretch[1] }
+    }
+}
+
 /// The page of the file; `None` when it states no size at all.
-pub(crate) fn page(source: &Source<'_>) -> Result<Option<Page>> {
+pub(crate) fn page(source: &Source<'_>) -> Result<Option<Sheet>> {
     let root = source.xml.root_element();
     let (width, height) = (stated(source, root, "width")?, stated(source, root, "height")?);
     note_old_inkscape(source, root);
@@ -99,18 +116,53 @@ pub(crate) fn page(source: &Source<'_>) -> Result<Option<Page>> {
     let page = match (view_box(source, root)?, pixels(width), pixels(height)) {
         (Some(view), w, h) => {
             let size = view.size();
-            // The drawing is scaled to fit in the smaller direction (preserveAspectRatio meet).
             let scales = [w.map(|w| w / size[0]), h.map(|h| h / size[1])];
-            let scale = scales.into_iter().flatten().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
-            let scale = if scale.is_finite() { scale } else { 1.0 };
-            Some(Page { view, unit, unit_per_user: scale / unit.pixels() })
+            let scales = scales.map(|scale| scale.filter(|s| *s > 0.0));
+            let (view, scale, stretch) = match scales {
+                [Some(sx), Some(sy)] => laid(view, [sx, sy], aspect_ratio(root)),
+                // What is not stated follows from the other.
+                [a, b] => (view, a.or(b).unwrap_or(1.0), [1.0; 2]),
+            };
+            Some((Page { view, unit, unit_per_user: scale / unit.pixels() }, stretch))
         }
         (None, Some(w), Some(h)) => {
-            Some(Page { view: Bounds::new(Vector::ZERO, Vector::xy(w, h)), unit, unit_per_user: 1.0 / unit.pixels() })
+            let view = Bounds::new(Vector::ZERO, Vector::xy(w, h));
+            Some((Page { view, unit, unit_per_user: 1.0 / unit.pixels() }, [1.0; 2]))
         }
         (None, ..) => None,
     };
-    page.map(|page| checked(source, page)).transpose()
+    page.map(|(page, stretch)| Ok(Sheet { page: checked(source, page)?, stretch })).transpose()
+}
+
+/// Stretches that differ by less are the same: sizes are written with few digits.
+const UNEVEN: f64 = 1e-3;
+
+/// What of the view box the page shows, in coordinates of the page; pixels per unit of these; how the content is stretched to them.
+fn laid(view: Bounds<2>, scales: [f64; 2], ratio: AspectRatio) -> (Bounds<2>, f64, [f64; 2]) {
+    let [least, most] = [scales[0].min(scales[1]), scales[0].max(scales[1])];
+    if most <= least * (1.0 + UNEVEN) {
+        return (view, least, [1.0; 2]);
+    }
+    if ratio.align == svgtypes::Align::None {
+        let stretch = scales.map(|s| s / least);
+        let laid = |p: Vector<2>| Vector::xy(p[0] * stretch[0], p[1] * stretch[1]);
+        return (Bounds::new(laid(view.min), laid(view.max)), least, stretch);
+    }
+    if !ratio.slice {
+        // The room that is left beside the view box is no part of the drawing.
+        return (view, least, [1.0; 2]);
+    }
+    let size = view.size();
+    let shown = Vector::xy(size[0] * scales[0] / most, size[1] * scales[1] / most);
+    let (ax, ay) = alignment(ratio.align);
+    let corner = view.min + Vector::xy(ax * (size[0] - shown[0]), ay * (size[1] - shown[1]));
+    (Bounds::new(corner, corner + shown), most, [1.0; 2])
+}
+
+/// How a node says that its view box is to be fitted into its size.
+fn aspect_ratio(node: Xml<'_, '_>) -> AspectRatio {
+    let stated = node.attribute("preserveAspectRatio").and_then(|t| t.trim().parse::<AspectRatio>().ok());
+    stated.unwrap_or(AspectRatio { defer: false, align: svgtypes::Align::XMidYMid, slice: false })
 }
 
 fn checked(source: &Source<'_>, page: Page) -> Result<Page> {
@@ -118,7 +170,7 @@ fn checked(source: &Source<'_>, page: Page) -> Result<Page> {
     let root = || source.place(source.xml.root_element());
     let extremes = page.view.min.0.iter().chain(page.view.max.0.iter());
     if let Some(v) = { extremes }.find(|v| !(0.0..=source.limits.coordinate).contains(&v.abs())) {
-        let problem = format!("the page reaches beyond {:e} user units: {v:e}", source.limits.coordinate);
+        let problem = format!("the page reaches beyond {:e} user units: {}", source.limits.coordinate, rounded(*v));
         return Err(Error::input(root(), problem, "give it a sensible width, height and viewBox"));
     }
     if size[0] <= source.limits.extent || size[1] <= source.limits.extent {
@@ -166,8 +218,7 @@ pub(crate) fn fit(source: &Source<'_>, node: Xml<'_, '_>, width: f64, height: f6
         return Ok(Fit { shift: [0.0; 2], scale: [1.0; 2], viewport: Viewport { width, height } });
     };
     let size = view.size();
-    let ratio = node.attribute("preserveAspectRatio").and_then(|t| t.parse::<AspectRatio>().ok());
-    let ratio = ratio.unwrap_or(AspectRatio { defer: false, align: svgtypes::Align::XMidYMid, slice: false });
+    let ratio = aspect_ratio(node);
     let (sx, sy) = (width / size[0], height / size[1]);
     let one = if ratio.slice { sx.max(sy) } else { sx.min(sy) };
     let scale = if ratio.align == svgtypes::Align::None { [sx, sy] } else { [one, one] };
@@ -200,12 +251,33 @@ mod tests {
     use super::*;
     use crate::svg::{options::ReadOptions, parse::source::with_source};
 
-    fn page_of(attributes: &str) -> Result<Option<Page>> {
+    fn sheet_of(attributes: &str) -> Result<Option<Sheet>> {
         with_source(
             &format!("<svg xmlns='http://www.w3.org/2000/svg' {attributes}/>"),
             &ReadOptions::new("p.svg"),
             page,
         )
+    }
+
+    fn page_of(attributes: &str) -> Result<Option<Page>> {
+        Ok(sheet_of(attributes)?.map(|sheet| sheet.page))
+    }
+
+    #[test]
+    fn content_is_stretched_cropped_or_fitted_as_the_root_says() {
+        let at = |ratio: &str| {
+            let sheet = sheet_of(&format!("width='480' height='180' viewBox='10 0 240 180' {ratio}")).unwrap().unwrap();
+            let (view, units) = (sheet.page.view, sheet.page.unit_per_user);
+            ([view.min[0], view.min[1], view.max[0], view.max[1]], units, sheet.stretch)
+        };
+        assert_eq!(at("preserveAspectRatio='none'"), ([20.0, 0.0, 500.0, 180.0], 1.0, [2.0, 1.0]));
+        assert_eq!(at(""), ([10.0, 0.0, 250.0, 180.0], 1.0, [1.0, 1.0]));
+        assert_eq!(at("preserveAspectRatio='xMidYMid slice'"), ([10.0, 45.0, 250.0, 135.0], 2.0, [1.0, 1.0]));
+        assert_eq!(at("preserveAspectRatio='xMinYMin slice'"), ([10.0, 0.0, 250.0, 90.0], 2.0, [1.0, 1.0]));
+        let fits = "width='48mm' height='36.001mm' viewBox='0 0 240 180' preserveAspectRatio='none'";
+        assert_eq!(sheet_of(fits).unwrap().unwrap().stretch, [1.0, 1.0]);
+        let viewport = sheet_of("width='9' height='3' viewBox='0 0 3 3' preserveAspectRatio='none'").unwrap();
+        assert_eq!(viewport.unwrap().viewport(), Viewport { width: 3.0, height: 3.0 });
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub(crate) enum Note {
     Missing,
     /// Text that is not converted to paths.
     Text,
-    /// Markers on lines.
+    /// Markers on lines that are continued.
     Marker,
     /// A reference that leads back to itself.
     Cycle,
@@ -33,6 +33,8 @@ pub(crate) enum Note {
     NoSize,
     /// A style value that is not understood.
     Style,
+    /// A selector or rule of a style sheet that is not understood.
+    Selector,
     /// A gradient stretched over pieces that were split.
     SplitGradient,
     /// Too many crossing parts to take apart.
@@ -49,6 +51,8 @@ pub(crate) enum Note {
     Override,
     /// A background among several shapes of a domain.
     DomainBackground,
+    /// A page that is one period.
+    Period,
     /// A drawing in a corner of its page.
     Corner,
     /// Path data that stops in the middle.
@@ -79,7 +83,10 @@ impl Note {
             Self::External => ("reference to something outside the file, not fetched", "embed it in the file"),
             Self::Missing => ("reference to an id that does not exist", "remove it, or restore what it refers to"),
             Self::Text => ("text ignored", "convert it to paths (Inkscape: Path > Object to Path)"),
-            Self::Marker => ("line marker ignored", "convert it to paths (Inkscape: Path > Stroke to Path)"),
+            Self::Marker => (
+                "markers of a long stroke taken for elements of their own, which do not follow its ends",
+                "mark the stroke data-arabesque=\"element\" to have it copied with its markers as it is",
+            ),
             Self::Cycle => {
                 ("reference in a cycle ignored", "remove one of the references that lead back to each other")
             }
@@ -98,6 +105,10 @@ impl Note {
                 ("no width, height or viewBox; the frame is the box around the drawing", "give the file a viewBox")
             }
             Self::Style => ("style value ignored", "use a plain SVG value"),
+            Self::Selector => (
+                "rule of a style sheet ignored, for its selector is not understood",
+                "select by element, class, id or attribute, or put the style on the shapes themselves",
+            ),
             Self::SplitGradient => {
                 ("gradient over a path that was split into pieces; it is stretched over each piece", "use plain fills")
             }
@@ -115,6 +126,10 @@ impl Note {
             Self::NoNamespace => ("no SVG namespace", "write xmlns=\"http://www.w3.org/2000/svg\" on the root"),
             Self::Transform => ("transform ignored", "use the transform attribute with plain numbers"),
             Self::Override => ("unknown data-arabesque value ignored", "use element, curve or ignore"),
+            Self::Period => (
+                "the page is taken for one period of a pattern, for what its opposite edges cut fits together",
+                "use --exemplar-tile=no to have it read as a page",
+            ),
             Self::Corner => (
                 "the drawing covers only a part of the page; the box around it is taken for the frame",
                 "resize the page to the drawing, or draw a rectangle with the id \"frame\"",
@@ -174,8 +189,9 @@ impl Notes {
     /// The kinds of trouble so far that may explain why nothing was found, in few message.
     pub(crate) fn summary(&self) -> String {
         let all = self.0.borrow();
-        let is_relevant =
-            |note: &Note| !matches!(note, Note::Corner | Note::NoSize | Note::OldInkscape | Note::NoNamespace);
+        let is_relevant = |note: &Note| {
+            !matches!(note, Note::Corner | Note::Period | Note::NoSize | Note::OldInkscape | Note::NoNamespace)
+        };
         let told = all.iter().filter(|(note, _)| is_relevant(note));
         told.map(|(note, (count, _))| format!("{} ({count}x)", note.message().0)).collect::<Vec<_>>().join(", ")
     }

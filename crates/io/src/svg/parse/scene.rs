@@ -11,6 +11,7 @@ use crate::svg::parse::{
     geometry::{self, Geometry},
     guard,
     length::{self, Axis, Viewport},
+    marker,
     meta::{Meta, meta},
     notes::Note,
     source::{Source, clip_text},
@@ -149,7 +150,7 @@ fn node<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>) -> Resu
         "switch" => built.content = Content::Group(choice(source, xml, &inside)?),
         "g" | "a" => built.content = Content::Group(children(source, xml, &inside)?),
         _ => match shape(source, xml, &built)? {
-            Some(geometry) => built.content = Content::Shape(Rc::new(geometry)),
+            Some(geometry) => built.content = with_markers(source, xml, geometry, &built)?,
             None => return Ok(None),
         },
     }
@@ -177,10 +178,60 @@ fn shape(source: &Source<'_>, xml: Xml<'_, '_>, node: &Node) -> Result<Option<Ge
     if node.style.get(Property::Visibility) != "visible" || !geometry::is_shape(xml.tag_name().name()) {
         return Ok(None);
     }
-    if node.style.has_markers() {
-        source.notes.add(Note::Marker, || node.meta.id.clone().unwrap_or_default());
-    }
     geometry::read(source, xml, node.viewport)
+}
+
+/// A shape, with its markers where it has any: they make a group with it.
+fn with_markers(source: &Source<'_>, xml: Xml<'_, '_>, geometry: Geometry, built: &Node) -> Result<Content> {
+    let style = &built.style;
+    // Markers in markers are not drawn.
+    if !style.has_markers() || !marker::may_have(built.meta.tag) || source.context.borrow().is_some() {
+        return Ok(Content::Shape(Rc::new(geometry)));
+    }
+    let vertices = marker::vertices(&geometry.path, xml.attribute("d"));
+    let width = style.number(Property::StrokeWidth);
+    let mut markers = Vec::new();
+    for (k, vertex) in vertices.iter().enumerate() {
+        for spot in marker::spots(k, vertices.len()) {
+            let Some(found) = marker::find(source, style.get(spot.property())) else { continue };
+            let Some(placed) = marker::placed(source, found, (vertex, spot), width, built.viewport)? else { continue };
+            *source.context.borrow_mut() = Some([Property::Fill, Property::Stroke].map(|p| style.get(p).into()));
+            let content = build_definition(source, found, placed.viewport);
+            source.context.borrow_mut().take();
+            markers.extend(content?.and_then(|content| as_placed(&content, &placed)));
+        }
+    }
+    if markers.is_empty() {
+        return Ok(Content::Shape(Rc::new(geometry)));
+    }
+    let style = Rc::new(style.unmarked());
+    let meta = Rc::new(Meta { mark: None, part: None, ..(*built.meta).clone() });
+    let content = Content::Shape(Rc::new(geometry));
+    let line = Node { transform: Affine::IDENTITY, style, own: Own::default(), meta, content, ..built.clone() };
+    markers.insert(0, Rc::new(line));
+    Ok(Content::Group(markers))
+}
+
+/// The content of a marker at its place; cut where it reaches beyond what shows of it.
+fn as_placed(content: &Node, placed: &marker::Placed) -> Option<Rc<Node>> {
+    let reach = reach(content, Affine::IDENTITY)?;
+    let is_inside = |clip: &Rect| clip.union(reach) == *clip;
+    let viewport_clip = placed.clip.filter(|clip| !is_inside(clip));
+    Some(Rc::new(Node { transform: placed.transform, viewport_clip, ..content.clone() }))
+}
+
+/// Box around everything that a node can paint, where `world` leads from the node.
+fn reach(node: &Node, world: Affine) -> Option<Rect> {
+    match &node.content {
+        Content::Group(children) => {
+            children.iter().filter_map(|c| reach(c, world * c.transform)).reduce(|a, b| a.union(b))
+        }
+        Content::Shape(geometry) => {
+            let mitre = 0.5 * node.style.number(Property::StrokeMiterlimit).max(1.5);
+            let width = if node.style.strokes() { node.style.number(Property::StrokeWidth) } else { 0.0 };
+            Some(world.transform_rect_bbox(geometry.path.control_box().inflate(mitre * width, mitre * width)))
+        }
+    }
 }
 
 /// The first child of a `<switch>` that asks for nothing special.
@@ -335,6 +386,40 @@ mod tests {
             <symbol id='s' viewBox='0 0 10 10'><rect width='10' height='10'/></symbol></defs>
             <use href='#r' x='5' y='6'/><use xlink:href='#s' x='20' width='30' height='40'/>";
         assert_eq!(boxes(svg), ["5 6 7 8", "20 5 50 35"]);
+    }
+
+    #[test]
+    fn markers_stand_at_their_lines_in_the_way_that_these_go() {
+        let arrow = |attributes: &str| {
+            format!("<marker id='m' markerWidth='4' markerHeight='4' {attributes}><path d='M0 0L4 2L0 4z'/></marker>")
+        };
+        let line = "<path d='M10 10V30' stroke='red' stroke-width='2' fill='none' marker-end='url(#m)'/>";
+        let of = |attributes: &str| boxes(&format!("{}{line}", arrow(attributes)))[1].clone();
+        assert_eq!(of("refX='0' refY='2' orient='auto'"), "6 30 14 38");
+        assert_eq!(of("refX='4' refY='2' orient='auto'"), "6 22 14 30");
+        assert_eq!(of("refX='0' refY='2' orient='-90deg'"), "6 22 14 30");
+        assert_eq!(of("refX='center' refY='center'"), "6 26 14 34");
+        assert_eq!(of("markerUnits='userSpaceOnUse' refY='2'"), "10 28 14 32");
+        assert_eq!(of("viewBox='0 0 8 8' refY='4'"), "10 26 14 30");
+        let start = "<path d='M10 10V30' stroke='red' marker-start='url(#m)'/>";
+        assert_eq!(boxes(&format!("{}{start}", arrow("refY='2' orient='auto-start-reverse'")))[1], "8 6 12 10");
+    }
+
+    #[test]
+    fn markers_take_paint_from_their_line_and_have_none_themselves() {
+        let text = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><marker id='m' style='overflow:visible'>
+            <path d='M0 0L4 2L0 4' fill='context-stroke' stroke='context-fill' marker-end='url(#m)'/></marker>
+            <line x2='10' stroke='#0066cc' fill='lime' marker-end='url(#m)'/><path d='M0 0h9' fill='context-fill'/></svg>";
+        with_source(text, &ReadOptions::new("m.svg"), |source| {
+            let root = build(source, Viewport { width: 100.0, height: 100.0 })?;
+            let head = &root.children()[0].children()[1];
+            let style = &head.children()[0].style;
+            assert_eq!((style.get(Property::Fill), style.get(Property::Stroke)), ("#0066cc", "#00ff00"));
+            assert!(head.viewport_clip.is_none() && matches!(head.children()[0].content, Content::Shape(_)));
+            assert_eq!(root.children()[1].style.get(Property::Fill), "none");
+            Ok(())
+        })
+        .unwrap();
     }
 
     #[test]

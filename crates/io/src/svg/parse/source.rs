@@ -16,8 +16,11 @@ use crate::svg::{
         css::{self, StyleRules},
         guard,
         notes::{Note, Notes},
+        sheet::rules::{self, Plain},
+        style::is_known,
     },
 };
+use crate::text::short::short;
 
 /// Work units of reading one path segment.
 const SEGMENT: u64 = 100;
@@ -37,8 +40,12 @@ pub(crate) struct Source<'a> {
     pub(crate) text: &'a str,
     pub(crate) xml: &'a Document<'a>,
     pub(crate) sheet: StyleRules<'a>,
+    /// Values of the sheet that stand there by their number.
+    pub(crate) values: &'a [String],
     pub(crate) notes: Notes,
     ids: Rc<BTreeMap<&'a str, NodeId>>,
+    /// Fill and stroke of the shape whose marker is being built: what `context-fill` and `context-stroke` mean.
+    pub(crate) context: RefCell<Option<[Rc<str>; 2]>>,
     /// Path segments read so far, against the limit.
     segments: Cell<usize>,
     /// Scene nodes made so far, against the limit.
@@ -71,15 +78,19 @@ pub(crate) fn with_source<T>(
         return Err(Error::input(name, format!("the root is <{found}>, expected <svg>"), "choose an SVG file"));
     }
     let css = style_text(&xml);
+    let Plain { css: plain, values, unknown } = rules::plain(&css, is_known);
+    let plain = css::sparing_comments(plain);
     let source = Source {
         name,
         limits,
         budget: &options.budget,
         text,
         xml: &xml,
-        sheet: StyleRules::new(&css),
+        sheet: StyleRules::new(&plain),
+        values: &values,
         notes: Notes::default(),
         ids: Rc::new(ids(&xml)),
+        context: RefCell::default(),
         segments: Cell::new(0),
         nodes: Cell::new(0),
         bytes: Cell::new(0),
@@ -87,6 +98,7 @@ pub(crate) fn with_source<T>(
         colours: RefCell::default(),
     };
     source.note_outside_styles(&css);
+    unknown.iter().for_each(|what| source.notes.add(Note::Selector, || short(what)));
     if xml.root_element().tag_name().namespace() != Some(SVG) {
         source.notes.add(Note::NoNamespace, String::new);
     }
@@ -138,7 +150,7 @@ fn style_text(xml: &Document<'_>) -> String {
             css.push('\n');
         }
     }
-    css::sparing_comments(css.replace("<!--", " ").replace("-->", " "))
+    css.replace("<!--", " ").replace("-->", " ")
 }
 
 impl<'a> Source<'a> {

@@ -1,6 +1,6 @@
 //! The cascade: which presentation properties an element has, and what they are worth.
 
-use std::{rc::Rc, str::FromStr};
+use std::{borrow::Cow, rc::Rc, str::FromStr};
 
 use roxmltree::Node as Xml;
 use svgtypes::{Length, LengthListParser};
@@ -12,9 +12,13 @@ use crate::{
         length::{Axis, Viewport},
         notes::Note,
         paint::{fraction, paint},
+        sheet::{
+            rules,
+            variables::{self, Variables},
+        },
         source::{Source, clip_text},
     },
-    text::xml::number,
+    text::{short::short, xml::number},
 };
 
 /// Bytes of a value beyond which it is not understood: everything that inherits it would be written with it.
@@ -101,7 +105,7 @@ const OWN: [&str; 15] = [
 
 /// The inherited properties of an element, computed. Absent values are initial.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct ComputedStyle([Option<Rc<str>>; PROPERTIES.len()]);
+pub(crate) struct ComputedStyle([Option<Rc<str>>; PROPERTIES.len()], Rc<Variables>);
 
 impl ComputedStyle {
     /// The computed value.
@@ -122,6 +126,18 @@ impl ComputedStyle {
             let value = value.as_deref().filter(|v| v != initial && !silent.contains(property))?;
             Some((*name, value))
         })
+    }
+
+    /// Whether two are painted alike.
+    pub(crate) fn looks_like(&self, other: &Self) -> bool {
+        self.0 == other.0
+    }
+
+    /// The same without line markers.
+    pub(crate) fn unmarked(&self) -> Self {
+        let mut style = self.clone();
+        [P::MarkerStart, P::MarkerMid, P::MarkerEnd].into_iter().for_each(|p| style.0[p as usize] = None);
+        style
     }
 
     /// Whether line markers are asked for.
@@ -155,6 +171,11 @@ impl ComputedStyle {
 pub(crate) struct Own(Vec<(&'static str, Rc<str>)>);
 
 impl Own {
+    /// An opacity alone.
+    pub(crate) fn opacity(value: &str) -> Self {
+        Self(vec![("opacity", value.into())])
+    }
+
     /// Whether a container with these does something to its content that its items cannot do alone.
     pub(crate) fn has_effects(&self) -> bool {
         ["mask", "filter", "mix-blend-mode"].iter().any(|e| self.get(e).is_some_and(|v| v != "none" && v != "normal"))
@@ -185,9 +206,12 @@ pub(crate) fn computed<'a>(
 ) -> (Rc<ComputedStyle>, Own) {
     let mut set = Setter { source, parent, viewport, style: Rc::clone(parent), own: Own::default() };
     let declared = declarations(source, node);
+    for (name, value) in declared.iter().filter(|(name, _)| name.starts_with("--")) {
+        set.variable(name, value);
+    }
     // `color` and `font-size` first: other values refer to them.
     for first in [true, false] {
-        for (name, value) in &declared {
+        for (name, value) in declared.iter().filter(|(name, _)| !name.starts_with("--")) {
             if matches!(*name, "color" | "font-size" | "font") == first {
                 set.declare(name, value);
             }
@@ -209,30 +233,26 @@ fn declarations<'a>(source: &Source<'a>, node: Xml<'a, 'a>) -> Vec<(&'a str, Str
     }
     let mut important = Vec::new();
     for rule in source.sheet.declarations(node) {
-        // The sheet outlives the walk but not the document; names are mapped to the static ones.
-        if let Some(name) = static_name(rule.name) {
+        let name = rule.name.strip_prefix("v--").map_or(rule.name, |_| &rule.name[1..]);
+        if is_known(name) {
             let list = if rule.important { &mut important } else { &mut all };
-            list.push((name, rule.value.to_owned()));
+            list.push((name, rules::value(source.values, rule.value).to_owned()));
         }
     }
     if let Some(style) = node.attribute("style") {
-        for declaration in style_declarations(style) {
-            if let Some(name) = static_name(declaration.name) {
-                let list = if declaration.important { &mut important } else { &mut all };
-                list.push((name, declaration.value.to_owned()));
-            }
+        for declared in style_declarations(style).filter(|declared| is_known(declared.name)) {
+            let list = if declared.is_important { &mut important } else { &mut all };
+            list.push((declared.name, declared.value.to_owned()));
         }
     }
     all.append(&mut important);
     all
 }
 
-fn static_name(name: &str) -> Option<&'static str> {
-    if name == "marker" || name == "transform" {
-        return Some(if name == "marker" { "marker" } else { "transform" });
-    }
+/// Whether a property says anything here; custom ones do.
+pub(crate) fn is_known(name: &str) -> bool {
     let inherited = PROPERTIES.iter().map(|(_, n, _)| *n);
-    inherited.chain(OWN).find(|n| *n == name)
+    matches!(name, "marker" | "transform") || name.starts_with("--") || inherited.chain(OWN).any(|n| n == name)
 }
 
 struct Setter<'a, 's> {
@@ -244,8 +264,32 @@ struct Setter<'a, 's> {
 }
 
 impl Setter<'_, '_> {
+    /// Sets a custom property.
+    fn variable(&mut self, name: &str, value: &str) {
+        let variables = &mut Rc::make_mut(&mut self.style).1;
+        if value.len() > LONGEST || name.len() > LONGEST || variables.len() >= variables::MOST {
+            self.source.notes.add(Note::Style, || short(name));
+            return;
+        }
+        Rc::make_mut(variables).insert(name.into(), value.into());
+    }
+
+    /// The value with what it refers to in its place; `None` where that is nothing.
+    fn plain<'v>(&self, name: &str, value: &'v str) -> Option<Cow<'v, str>> {
+        let value = variables::default_of(value)?.trim();
+        if !value.contains("var(") {
+            return Some(Cow::Borrowed(value));
+        }
+        let resolved = variables::resolved(value, &self.style.1);
+        if resolved.is_none() {
+            self.source.notes.add(Note::Style, || format!("{name}: {}", clip_text(value, 40)));
+        }
+        Some(Cow::Owned(resolved?.trim().to_owned()))
+    }
+
     fn declare(&mut self, name: &str, value: &str) {
-        let value = value.trim();
+        let Some(value) = self.plain(name, value) else { return };
+        let value = &*value;
         if name == "marker" {
             [P::MarkerStart, P::MarkerMid, P::MarkerEnd].into_iter().for_each(|p| self.inherited(p, value));
         } else if name == "transform" {
@@ -296,6 +340,12 @@ impl Setter<'_, '_> {
         };
         match property {
             P::Fill | P::Stroke if value.len() > LONGEST => None,
+            P::Fill | P::Stroke if value.starts_with("context-") => {
+                // Outside of markers there is none.
+                let context = self.source.context.borrow();
+                let of = |k: usize| context.as_ref().map_or("none", |context| &context[k]).to_owned();
+                Some(of(usize::from(value == "context-stroke")))
+            }
             P::Fill | P::Stroke => paint(value, self.style.get(P::Color)),
             P::Color => paint(value, self.parent.get(P::Color)),
             P::StrokeWidth => length(value, Axis::Both, font).filter(|w| *w >= 0.0).map(number),
@@ -375,5 +425,25 @@ mod tests {
         let (style, _) =
             style_of_last("<g fill='red'><path fill='var(--x)' stroke-width='-3' stroke-miterlimit='nan'/></g>");
         assert_eq!((style.get(P::Fill), style.get(P::StrokeWidth)), ("#ff0000", "1"));
+    }
+
+    #[test]
+    fn variables_are_inherited_and_parameters_have_defaults() {
+        let css = "<style>:root{--ink:teal;--w:2px} .a{--ink:rgb(0, 0, 255)} path{stroke:var(--ink)} \
+                   path:nth-of-type(2){fill:lime}</style>";
+        let (style, _) = style_of_last(&format!(
+            "{css}<g class='a'><path fill='param(fill) #378add' fill-opacity='param(o)' \
+             style='stroke-width:var(--w);font:1px/2 x;stroke-linecap:var(--none, round)'/></g>"
+        ));
+        assert_eq!((style.get(P::Stroke), style.get(P::Fill), style.get(P::FillOpacity)), ("#0000ff", "#378add", "1"));
+        assert_eq!((style.get(P::StrokeWidth), style.get(P::StrokeLinecap)), ("2", "round"));
+    }
+
+    #[test]
+    fn selectors_that_are_not_understood_are_told_on_one_line() {
+        let text = "<svg xmlns='http://www.w3.org/2000/svg'><style>path ~ g,\n path:not(.a) {fill:red}\n\
+             @media screen { g{fill:red} }</style></svg>";
+        let told = with_source(text, &ReadOptions::new("s.svg"), |source| Ok(source.notes.warnings("s.svg"))).unwrap();
+        assert!(told[0].message.ends_with("(3 times): path ~ g, path:not(.a), @media screen"), "{}", told[0].message);
     }
 }

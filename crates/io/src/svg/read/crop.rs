@@ -13,7 +13,7 @@ impl Drawing {
     /// # Errors
     /// As [`Exemplar::with_curves`], naming `place`.
     pub fn within(self, window: Bounds<2>, hole: Option<Bounds<2>>, place: &str) -> Result<Self> {
-        let Exemplar { elements, classes, curves, styles, .. } = Arc::unwrap_or_clone(self.exemplar);
+        let Exemplar { elements, classes, curves, styles, period, .. } = Arc::unwrap_or_clone(self.exemplar);
         let (mut kept, mut fragments) = (Vec::new(), Vec::new());
         for (mut element, fragment) in elements.into_iter().zip(self.fragments) {
             if hole.is_some_and(|hole| hole.contains(element.centre)) {
@@ -40,6 +40,7 @@ impl Drawing {
         let layers = self.layers.iter().filter_map(|layer| still_there(layer, &class_of, &style_of)).collect();
         let exemplar = Exemplar {
             hole,
+            period,
             ..Exemplar::with_curves(
                 place,
                 Contents { elements: kept, classes, curves, styles, ..Contents::default() },

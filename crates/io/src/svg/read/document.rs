@@ -2,7 +2,7 @@
 
 use std::{cell::OnceCell, rc::Rc};
 
-use arabesque_core::{Error, Result, Vector, suggest::nearest};
+use arabesque_core::{Error, Result, suggest::nearest};
 use kurbo::Affine;
 
 use crate::svg::{
@@ -35,6 +35,8 @@ pub(crate) struct Opened<'a> {
     pub(crate) root: Rc<Node>,
     /// `None` where the file states no size.
     pub(crate) page: Option<Page>,
+    /// Whether the page shows the content stretched more one way than the other.
+    pub(crate) is_stretched: bool,
 }
 
 impl<'a> Document<'a> {
@@ -52,17 +54,14 @@ impl<'a> Document<'a> {
             return Ok(drawn.clone());
         }
         let source = self.source.clone();
-        let (root, page) = root(&source)?;
-        Ok(self.drawn.get_or_init(|| Opened { source, root, page }).clone())
+        let sheet = length::page(&source)?;
+        let viewport = sheet.map_or(Viewport { width: 100.0, height: 100.0 }, |sheet| sheet.viewport());
+        let [x, y] = sheet.map_or([1.0; 2], |sheet| sheet.stretch);
+        let mut root = scene::build(&source, viewport)?;
+        root.transform = Affine::scale_non_uniform(x, y) * root.transform;
+        let (root, page, is_stretched) = (Rc::new(root), sheet.map(|sheet| sheet.page), x != y);
+        Ok(self.drawn.get_or_init(|| Opened { source, root, page, is_stretched }).clone())
     }
-}
-
-/// The drawing and its page, `None` where the file states no size.
-fn root(source: &Source<'_>) -> Result<(Rc<Node>, Option<Page>)> {
-    let page = length::page(source)?;
-    let size = page.map_or(Vector::xy(100.0, 100.0), |p| p.view.size());
-    let root = scene::build(source, Viewport { width: size[0], height: size[1] })?;
-    Ok((Rc::new(root), page))
 }
 
 /// The nodes that play a part in the job, with the transforms from their parents to the root.

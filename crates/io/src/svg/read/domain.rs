@@ -44,7 +44,7 @@ impl Document<'_> {
     /// [`Error::Input`] when the text is not usable SVG, nothing has that id, a line is open, or no area is enclosed;
     /// [`Error::Limit`] when the file is too large.
     pub fn shape(&self, id: Option<&str>) -> Result<(Shape, Page)> {
-        let Opened { source, root, page } = self.open()?;
+        let Opened { source, root, page, .. } = self.open()?;
         let source = &source;
         let painter = Painter::new(source);
         let layers = parts(&root, Part::Domain);

@@ -27,6 +27,7 @@ use crate::{
             idle::without_idle_clips,
             painted_area::Painter,
         },
+        swatch::{period::periods, unroll::Unrolled},
         understand::{
             classes::{self, Classes},
             curves::Gatherer,
@@ -57,11 +58,15 @@ impl Document<'_> {
     /// when it is too large, [`Error::Unsupported`] when it holds a network of lines turned into an outline and the
     /// method is not [`Method::Elements`].
     pub fn exemplar(&self) -> Result<Drawing> {
-        let Opened { source, root, page } = self.open()?;
+        let Opened { source, root, page, .. } = self.open()?;
         let source = &source;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;
-        let mut scope = scope(&painter, &root, page.as_ref())?;
+        let unrolled = self.periods(source, &root, page.as_ref())?;
+        let mut scope = match &unrolled {
+            Some(unrolled) => Scope::of(unrolled),
+            None => scope(&painter, &root, page.as_ref())?,
+        };
         scope.roots.iter_mut().for_each(|(context, _)| *context = context.clone().without(&self.options.without));
         if let Some(window) = &scope.window {
             for (context, root) in &mut scope.roots {
@@ -71,6 +76,10 @@ impl Document<'_> {
         let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
+        if unrolled.is_some() {
+            // Copies beside the window are nothing to speak of.
+            found.items.retain(|item| item.outline.bounds().intersects(&window));
+        }
         settle(source, &mut found, window, self.options.method)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
@@ -87,23 +96,26 @@ impl Document<'_> {
         let stack = stacked(found_curves, &window, source.budget)?;
         (0..stack.doubled).for_each(|_| source.notes.add(Note::Duplicate, String::new));
         (0..stack.surplus).for_each(|_| source.notes.add(Note::ManyPaints, String::new));
-        let (elements, classes) = elements(source, &items, scope.window.as_ref())?;
+        // No edge of the window cuts anything of periods that are laid out.
+        let frame = scope.window.as_ref().filter(|_| unrolled.is_none());
+        let (elements, classes) = elements(source, &items, frame)?;
         if elements.is_empty() && stack.curves.is_empty() {
             return Err(nothing_found(source, &found));
         }
         let drawn = Drawn { is_line: &is_line, lines: &lines, styles_of: &styles_of, items: &items, classes: &classes };
         let layers = layers(source, &drawn, (paints, &stack.paints), &window)?;
         let Stacked { curves, styles, strokes, .. } = stack;
-        let exemplar = Exemplar::with_curves(
-            source.name,
-            Contents { elements, classes: classes.classes, curves, styles, ..Contents::default() },
-            window,
-        )?;
+        let contents = Contents { elements, classes: classes.classes, curves, styles, ..Contents::default() };
+        let period = unrolled.as_ref().map(|unrolled| unrolled.period);
+        let exemplar = Exemplar { period, ..Exemplar::with_curves(source.name, contents, window)? };
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
         let background = background(&found, &mut definitions);
         let understood = understood(source, &items, &lines, found.left_out);
         let definitions = definitions.finish()?;
-        let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
+        let mut page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
+        if unrolled.is_some() {
+            page.view = window;
+        }
         let warnings = source.notes.warnings(source.name);
         Ok(Drawing {
             exemplar: Arc::new(exemplar),
@@ -117,6 +129,17 @@ impl Document<'_> {
             understood,
             warnings,
         })
+    }
+}
+
+impl Document<'_> {
+    /// The periods that the file shows, where it is one of a pattern.
+    fn periods(&self, source: &Source<'_>, root: &Rc<Node>, page: Option<&Page>) -> Result<Option<Unrolled>> {
+        let layers = parts(root, Part::Exemplar);
+        let roots = if layers.is_empty() { vec![(Affine::IDENTITY, Rc::clone(root))] } else { layers };
+        let marked = roots.iter().find_map(|(parent, node)| frame_mark(node, *parent));
+        let frame = marked.or_else(|| page.map(|page| page.view));
+        periods(source, root, &roots, frame, self.options.tiling)
     }
 }
 
@@ -192,6 +215,14 @@ struct Scope {
     frame: Bounds<2>,
     /// The frame of the exemplar, where it is known before the elements are.
     window: Option<Bounds<2>>,
+}
+
+impl Scope {
+    /// Periods that are laid out.
+    fn of(unrolled: &Unrolled) -> Self {
+        let roots = vec![(Surroundings::new(Affine::IDENTITY), Rc::clone(&unrolled.root))];
+        Self { roots, frame: unrolled.window, window: Some(unrolled.window) }
+    }
 }
 
 /// Content that covers less than this share of the page lies in a corner of it: the page is not its frame.

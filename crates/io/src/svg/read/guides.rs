@@ -50,7 +50,7 @@ impl Document<'_> {
     /// [`Error::Input`] when the text is not usable SVG, nothing has that id, or no line has a length; [`Error::Limit`]
     /// when it is too large.
     pub fn guides(&self, id: Option<&str>) -> Result<Lines> {
-        let Opened { source, root, page } = self.open()?;
+        let Opened { source, root, page, .. } = self.open()?;
         let source = &source;
         let painter = Painter::new(source);
         let (place, start) = match id {

@@ -51,8 +51,17 @@ impl Document<'_> {
     /// As [`crate::svg::read_placed`]; [`Error::Unsupported`] when something in the area is drawn by a `<use>` that
     /// draws other things too.
     pub fn host(&self, drawing: &Drawing, area: &Outline<2>) -> Result<HostDocument> {
-        let Opened { source, root, page } = self.open()?;
+        let Opened { source, root, page, is_stretched } = self.open()?;
         let source = &source;
+        if is_stretched {
+            return Err(Error::Unsupported {
+                what: format!(
+                    "{}: filling a region of a drawing that preserveAspectRatio=\"none\" stretches",
+                    source.name
+                ),
+                advice: "give the page the proportions of its viewBox".into(),
+            });
+        }
         refuse_closes(source)?;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;

@@ -60,7 +60,7 @@ impl Document<'_> {
     /// [`arabesque_core::Error::Input`] when the text is not usable SVG, [`arabesque_core::Error::Limit`] when it is
     /// too large.
     pub fn placed(&self, drawing: &Drawing) -> Result<Placed> {
-        let Opened { source, root, page } = self.open()?;
+        let Opened { source, root, page, .. } = self.open()?;
         let source = &source;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Budget, Error, FillRule, Outline, Result, Ring};
+use arabesque_core::{Budget, Error, FillRule, Outline, Result, Ring, rounded};
 use kurbo::{Affine, Shape as _};
 
 use crate::svg::{
@@ -193,7 +193,7 @@ impl<'a, 's> Painter<'a, 's> {
         let numbers = [extent.x0, extent.y0, extent.x1, extent.y1, width];
         let Some(found) = numbers.into_iter().find(|v| !(0.0..=most).contains(&v.abs())) else { return Ok(()) };
         let place = self.source.xml.get_node(node.meta.xml).map_or_else(String::new, |xml| self.source.place(xml));
-        let problem = format!("a coordinate beyond {most:e} user units: {found:e}");
+        let problem = format!("a coordinate beyond {most:e} user units: {}", rounded(found));
         Err(Error::input(place, problem, "correct or delete this shape"))
     }
 

@@ -21,7 +21,7 @@ use roxmltree::NodeId;
 use crate::svg::{
     options::Method,
     parse::{
-        geometry::{Geometry, Painted},
+        geometry::{self, Geometry, Painted},
         guard,
         meta::{Mark, Part},
         notes::Note,
@@ -144,6 +144,10 @@ impl Selector<'_, '_, '_> {
         let opacity = at.opacity * node.own.get("opacity").map_or(1.0, fraction);
         if opacity == 0.0 {
             return Ok(());
+        }
+        if geometry::is_shape(node.meta.tag) {
+            // A shape that holds others has markers.
+            self.painter.source.notes.add(Note::Marker, || node.meta.id.clone().unwrap_or_default());
         }
         if node.own.has_effects() {
             self.painter.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());

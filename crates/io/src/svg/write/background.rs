@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arabesque_core::{Decimals, Domain, Error, Outline, Result, Vector, Warning};
+use arabesque_core::{Decimals, Domain, Error, Outline, Result, Vector, Warning, rounded};
 
 use crate::{
     svg::write::{
@@ -41,7 +41,11 @@ fn seam(sheet: &Sheet<'_>) -> Option<Warning> {
     (!(fits(0) && fits(1))).then(|| {
         Warning::new(
             "the background is more than one colour and shows a seam in the tile",
-            format!("make the tile a multiple of {} x {}, or the background one colour", window[0], window[1]),
+            format!(
+                "make the tile a multiple of {} x {}, or the background one colour",
+                rounded(window[0]),
+                rounded(window[1])
+            ),
         )
     })
 }

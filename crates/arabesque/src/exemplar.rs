@@ -37,7 +37,7 @@ impl LoadedExemplar {
     /// As [`svg::read_exemplar`], [`csv::read_points`] and [`obj::read_curves`]; [`Error::Unsupported`] for methods that do not exist yet.
     pub fn read(input: &Input, bytes: &[u8], reading: impl Into<Reading>, budget: &Budget) -> Result<Self> {
         let name = input.name();
-        let (method, tiling) = reading.into().of_drawings()?;
+        let options = reading.into().of_drawings(name)?;
         if arabesque_io::raster::png::is_png(bytes) {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
@@ -53,7 +53,7 @@ impl LoadedExemplar {
                 Points::Space(exemplar) => Self::Space(exemplar, Vec::new()),
             });
         }
-        let options = ReadOptions { method, tiling, budget: budget.clone(), ..ReadOptions::new(name) };
+        let options = ReadOptions { budget: budget.clone(), ..options };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
 }
@@ -95,6 +95,7 @@ pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
     Drawing {
         fragments: fragments.collect(),
         strokes: Vec::new(),
+        fills: Vec::new(),
         layers: vec![Layer::all_elements(&exemplar)],
         background: None,
         definitions: String::new(),
@@ -120,7 +121,8 @@ pub(crate) fn understood<const D: usize>(exemplar: &Exemplar<D>) -> String {
     let (elements, classes) = (exemplar.elements.len(), exemplar.classes.len());
     let (curves, styles) = (exemplar.curves.len(), exemplar.styles.len());
     let of_curves = if curves > 0 { format!(", {curves} curves in {styles} styles") } else { String::new() };
-    format!("exemplar: {elements} elements in {classes} classes{of_curves}")
+    let of_areas = if exemplar.areas.is_empty() { String::new() } else { format!(", {} areas", exemplar.areas.len()) };
+    format!("exemplar: {elements} elements in {classes} classes{of_curves}{of_areas}")
 }
 
 #[cfg(test)]

@@ -222,6 +222,14 @@ where
     }
 }
 
+/// Whether an exemplar of the plane has a repeat by which it can be continued.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub fn repeats(exemplar: &Exemplar<2>, budget: &Budget) -> Result<bool> {
+    Ok(Regular::new(exemplar, budget)?.is_some())
+}
+
 /// Refuses areas that only a repeat could continue.
 fn no_areas<const D: usize>(exemplar: &Exemplar<D>, why: &str) -> Result<()> {
     let count = exemplar.areas.len();

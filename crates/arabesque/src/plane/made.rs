@@ -78,6 +78,7 @@ impl PlaneMade {
             placements,
             sequence: &self.outcome.sequence,
             curves: &self.outcome.curves,
+            areas: &self.outcome.areas,
             kept: self.request.kept.as_ref(),
             host: self.exemplar.region.as_ref().map(|region| &region.rest),
             page: self.request.page,

@@ -16,7 +16,8 @@ pub(crate) use place::options;
 use std::sync::Arc;
 
 use arabesque_core::{Error, Result, Watch};
-use arabesque_patterns::Prepared as Engine;
+use arabesque_io::svg::LargeFills;
+use arabesque_patterns::{Prepared as Engine, Repeats, repeats};
 
 use crate::{
     artwork::Artwork,
@@ -39,10 +40,20 @@ pub(crate) struct Plane {
 pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<Plane> {
     let input = &preparation.exemplar;
     // What is wrong with the parameters is told before what is wrong in a file.
-    fill.params.engine_params()?;
+    let params = fill.params.engine_params()?;
     let bytes = preparation.files.read(input)?;
-    let reading = Reading { method: fill.method, exemplar_tile: fill.exemplar_tile };
-    let (drawing, points) = match LoadedExemplar::read(input, &bytes, reading, preparation.files.budget())? {
+    let areas = if params.repeat == Repeats::Off { LargeFills::Lines } else { LargeFills::Areas };
+    let reading = |large_fills| Reading { method: fill.method, exemplar_tile: fill.exemplar_tile, large_fills };
+    let budget = preparation.files.budget();
+    let mut loaded = LoadedExemplar::read(input, &bytes, reading(areas), budget)?;
+    if let LoadedExemplar::Drawing(drawing) = &loaded
+        && !drawing.exemplar.areas.is_empty()
+        && !repeats(&drawing.exemplar, budget)?
+    {
+        // Without a repeat, lines are all that can be made of them.
+        loaded = LoadedExemplar::read(input, &bytes, reading(LargeFills::Lines), budget)?;
+    }
+    let (drawing, points) = match loaded {
         LoadedExemplar::Drawing(drawing) => (*drawing, None),
         LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar))),
         LoadedExemplar::Space(..) => {

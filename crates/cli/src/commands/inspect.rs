@@ -71,7 +71,7 @@ impl Inspect {
         let target = self.output.as_deref().map(|path| target(path, &guard)).transpose()?;
         sentinel::watch(self.orders(limits), stopper.clone())?;
         let resources = Resources { limits, stopper, ..Resources::default() };
-        let reading = Reading { method: self.method, exemplar_tile: self.exemplar_tile };
+        let reading = Reading { method: self.method, exemplar_tile: self.exemplar_tile, ..Reading::default() };
         let report = inspect(&Input::file(&self.file), reading, &resources)?;
         if let Some((target, format)) = target {
             let picture = report.picture(format, &resources.budget())?;

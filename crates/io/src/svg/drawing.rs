@@ -150,6 +150,8 @@ pub struct Drawing {
     /// How curve `i` of the exemplar is painted: a stroke for each paint from bottom to top, such as a casing and the
     /// core on it; at least one.
     pub strokes: Vec<Vec<Stroke>>,
+    /// How area `i` of the exemplar is painted: attributes of its fill, no width.
+    pub fills: Vec<Stroke>,
     /// What is painted before what, from bottom to top, the background aside: every paint of every style and every
     /// class is in one of them.
     pub layers: Vec<Layer>,

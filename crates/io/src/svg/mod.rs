@@ -23,7 +23,7 @@ mod write;
 pub use crate::text::unit::Unit;
 pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page, Placed, Stroke};
 pub use namespace::NAMESPACE;
-pub use options::{Method, ReadOptions, Tiling};
+pub use options::{LargeFills, Method, ReadOptions, Tiling};
 pub use palette::PALETTE;
 pub use read::{
     document::Document,

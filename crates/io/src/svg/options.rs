@@ -27,6 +27,16 @@ pub enum Tiling {
     Page,
 }
 
+/// What fills are taken for that run through the frame and are no bands of one width.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LargeFills {
+    /// The outlines of lines, where they are that; else they are refused.
+    #[default]
+    Lines,
+    /// Areas, which only a repeat can continue.
+    Areas,
+}
+
 /// How an SVG file is to be read.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
@@ -36,6 +46,8 @@ pub struct ReadOptions {
     pub method: Method,
     /// Whether it shows a page or one period. Default: [`Tiling::Auto`].
     pub tiling: Tiling,
+    /// What large fills are taken for. Default: [`LargeFills::Lines`].
+    pub large_fills: LargeFills,
     /// Ids (or labels) of items that are not part of the drawing, because they only say where something is. Default:
     /// none.
     pub without: Vec<String>,
@@ -50,6 +62,7 @@ impl ReadOptions {
             name: name.into(),
             method: Method::default(),
             tiling: Tiling::default(),
+            large_fills: LargeFills::default(),
             without: Vec::new(),
             budget: Budget::default(),
         }

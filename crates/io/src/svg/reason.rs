@@ -71,6 +71,8 @@ pub enum Reason {
     Traced,
     /// A filled band of one width.
     Band,
+    /// A fill that runs through the frame.
+    Area,
     /// A fill that covers the frame.
     Background,
     /// Something under what is opaque.
@@ -96,6 +98,7 @@ impl Reason {
             Self::Together | Self::Dot | Self::Large => "elements",
             Self::MarkedCurve | Self::Through | Self::Vast | Self::Crowded | Self::Beside | Self::Asked => "curves",
             Self::Traced | Self::Band => "curves",
+            Self::Area => "areas",
             Self::Background => "background",
             Self::Covered | Self::Original | Self::Border | Self::Outside => "left out",
         }
@@ -121,6 +124,7 @@ impl Reason {
             Self::Asked => "strokes, as --method curves asks",
             Self::Traced => "outlines of lines of one width",
             Self::Band => "filled bands of one width through the frame",
+            Self::Area => "fills that run through the frame",
             Self::Background => "fills that cover the frame",
             Self::Covered => "fully covered by something opaque",
             Self::Original => "originals of tiled clones, under their first copies",

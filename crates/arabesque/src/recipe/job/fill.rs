@@ -109,6 +109,8 @@ pub struct Reading {
     pub method: Method,
     /// Whether it is one period of a pattern. Default: auto.
     pub exemplar_tile: ExemplarTile,
+    /// What fills are taken for that run through the frame. Default: the outlines of lines.
+    pub large_fills: svg::LargeFills,
 }
 
 impl From<Method> for Reading {
@@ -120,8 +122,9 @@ impl From<Method> for Reading {
 
 impl Reading {
     /// How a drawing is read for it.
-    pub(crate) fn of_drawings(self) -> Result<(svg::Method, svg::Tiling)> {
-        Ok((self.method.of_drawings()?, self.exemplar_tile.of_drawings()))
+    pub(crate) fn of_drawings(self, name: &str) -> Result<svg::ReadOptions> {
+        let (method, tiling) = (self.method.of_drawings()?, self.exemplar_tile.of_drawings());
+        Ok(svg::ReadOptions { method, tiling, large_fills: self.large_fills, ..svg::ReadOptions::new(name) })
     }
 }
 

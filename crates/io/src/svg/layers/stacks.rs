@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Budget, Class, Curve, Path, Result};
+use arabesque_core::{Area, Bounds, Budget, Class, Curve, Path, Result};
 
 use crate::svg::{
     drawing::Stroke,
@@ -82,6 +82,9 @@ pub(crate) fn stacks(lines: Vec<(Path<2>, usize)>, near: f64, budget: &Budget) -
 #[derive(Debug, Default)]
 pub(crate) struct Stacked {
     pub(crate) curves: Vec<Curve<2>>,
+    pub(crate) areas: Vec<Area<2>>,
+    /// How area `i` is painted.
+    pub(crate) fills: Vec<Stroke>,
     pub(crate) styles: Vec<Class>,
     /// How curve `i` is painted, from bottom to top.
     pub(crate) strokes: Vec<Vec<Stroke>>,
@@ -98,7 +101,7 @@ pub(crate) struct Stacked {
 /// # Errors
 /// As [`Budget::spend`].
 pub(crate) fn stacked(found: Curves, window: &Bounds<2>, budget: &Budget) -> Result<Stacked> {
-    let Curves { curves, styles, strokes } = found;
+    let Curves { curves, mut areas, fills, styles, strokes } = found;
     let near = nearness(window, curves.iter().map(|c| &c.width));
     // Styles differ by layer too, paints do not.
     let paints = paints_of(&strokes);
@@ -107,7 +110,7 @@ pub(crate) fn stacked(found: Curves, window: &Bounds<2>, budget: &Budget) -> Res
     if stacks.len() == curves.len() && stacks.iter().all(|s| s.members.len() == 1) || stacks.is_empty() {
         let paints = (0..styles.len()).map(|s| vec![s]).collect();
         let strokes = strokes.into_iter().map(|s| vec![s]).collect();
-        return Ok(Stacked { curves, styles, strokes, paints, doubled: 0, surplus: 0 });
+        return Ok(Stacked { curves, areas, fills, styles, strokes, paints, doubled: 0, surplus: 0 });
     }
     let mut style_of: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
     let mut out = Stacked::default();
@@ -125,6 +128,14 @@ pub(crate) fn stacked(found: Curves, window: &Bounds<2>, budget: &Budget) -> Res
         out.doubled += stack.doubled;
         out.surplus += stack.surplus;
     }
+    for area in &mut areas {
+        area.style = *style_of.entry(vec![area.style]).or_insert_with_key(|paints| {
+            out.styles.push(Class { name: joint_name(&styles, paints) });
+            out.paints.push(paints.clone());
+            out.styles.len() - 1
+        });
+    }
+    (out.areas, out.fills) = (areas, fills);
     Ok(out)
 }
 

@@ -13,7 +13,7 @@ impl Drawing {
     /// # Errors
     /// As [`Exemplar::with_curves`], naming `place`.
     pub fn within(self, window: Bounds<2>, hole: Option<Bounds<2>>, place: &str) -> Result<Self> {
-        let Exemplar { elements, classes, curves, styles, period, .. } = Arc::unwrap_or_clone(self.exemplar);
+        let Exemplar { elements, classes, curves, mut areas, styles, period, .. } = Arc::unwrap_or_clone(self.exemplar);
         let (mut kept, mut fragments) = (Vec::new(), Vec::new());
         for (mut element, fragment) in elements.into_iter().zip(self.fragments) {
             if hole.is_some_and(|hole| hole.contains(element.centre)) {
@@ -36,16 +36,13 @@ impl Drawing {
         let (mut curves, strokes): (Vec<_>, Vec<_>) =
             curves.into_iter().zip(self.strokes).filter(|(curve, _)| meets(curve)).unzip();
         let (classes, class_of) = renumbered(classes, kept.iter_mut().map(|e| &mut e.class));
-        let (styles, style_of) = renumbered(styles, curves.iter_mut().map(|c| &mut c.style));
+        let of_lines = curves.iter_mut().map(|c| &mut c.style).chain(areas.iter_mut().map(|a| &mut a.style));
+        let (styles, style_of) = renumbered(styles, of_lines);
         let layers = self.layers.iter().filter_map(|layer| still_there(layer, &class_of, &style_of)).collect();
         let exemplar = Exemplar {
             hole,
             period,
-            ..Exemplar::with_curves(
-                place,
-                Contents { elements: kept, classes, curves, styles, ..Contents::default() },
-                window,
-            )?
+            ..Exemplar::with_curves(place, Contents { elements: kept, classes, curves, styles, areas }, window)?
         };
         Ok(Self { exemplar: Arc::new(exemplar), fragments, strokes, layers, ..self })
     }

@@ -14,7 +14,7 @@ use crate::{
             order::{Kinds, Layered, layered},
             stacks::{Stacked, stacked},
         },
-        options::{Method, ReadOptions},
+        options::{LargeFills, Method, ReadOptions},
         parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
         read::{
             document::{Document, Opened, parts},
@@ -34,7 +34,8 @@ use crate::{
             fragment::{fragment, push_placed},
             frame::{self, frame_mark, is_frame_mark},
             item::{Item, Kind, Origin, Selection},
-            outlined_lines::trace,
+            outlined_lines::{take_areas, trace},
+            parts::bands::follow_bands,
             select::select,
             surroundings::Surroundings,
         },
@@ -80,12 +81,13 @@ impl Document<'_> {
             // Copies beside the window are nothing to speak of.
             found.items.retain(|item| item.outline.bounds().intersects(&window));
         }
-        settle(source, &mut found, window, self.options.method)?;
+        settle(source, &mut found, window, &self.options)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
         }
-        let is_curve = |item: &Item| item.kind == Kind::Curve && self.options.method != Method::Elements;
+        let is_line = |item: &Item| matches!(item.kind, Kind::Curve | Kind::Area);
+        let is_curve = |item: &Item| is_line(item) && self.options.method != Method::Elements;
         let is_line: Vec<bool> = found.items.iter().map(is_curve).collect();
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
@@ -99,13 +101,13 @@ impl Document<'_> {
         // No edge of the window cuts anything of periods that are laid out.
         let frame = scope.window.as_ref().filter(|_| unrolled.is_none());
         let (elements, classes) = elements(source, &items, frame)?;
-        if elements.is_empty() && stack.curves.is_empty() {
+        if elements.is_empty() && stack.curves.is_empty() && stack.areas.is_empty() {
             return Err(nothing_found(source, &found));
         }
         let drawn = Drawn { is_line: &is_line, lines: &lines, styles_of: &styles_of, items: &items, classes: &classes };
         let layers = layers(source, &drawn, (paints, &stack.paints), &window)?;
-        let Stacked { curves, styles, strokes, .. } = stack;
-        let contents = Contents { elements, classes: classes.classes, curves, styles, ..Contents::default() };
+        let Stacked { curves, areas, fills, styles, strokes, .. } = stack;
+        let contents = Contents { elements, classes: classes.classes, curves, areas, styles };
         let period = unrolled.as_ref().map(|unrolled| unrolled.period);
         let exemplar = Exemplar { period, ..Exemplar::with_curves(source.name, contents, window)? };
         let fragments = items.iter().map(|item| fragment(item, &mut definitions)).collect();
@@ -121,6 +123,7 @@ impl Document<'_> {
             exemplar: Arc::new(exemplar),
             fragments,
             strokes,
+            fills,
             layers,
             background,
             definitions,
@@ -265,7 +268,7 @@ fn content(node: &Node, parent: Affine) -> Bounds<2> {
 }
 
 /// Drops what lies outside, and refuses what cannot be handled.
-fn settle(source: &Source<'_>, found: &mut Selection, window: Bounds<2>, method: Method) -> Result<()> {
+fn settle(source: &Source<'_>, found: &mut Selection, window: Bounds<2>, options: &ReadOptions) -> Result<()> {
     let Selection { items, left_out, .. } = found;
     items.retain(|item| {
         let inside = item.outline.bounds().intersects(&window);
@@ -278,7 +281,11 @@ fn settle(source: &Source<'_>, found: &mut Selection, window: Bounds<2>, method:
     if items.len() > source.limits.elements {
         return Err(guard::too_much(format!("{}: elements", source.name), items.len(), source.limits.elements as u64));
     }
-    if method != Method::Elements {
+    if options.method != Method::Elements {
+        follow_bands(source, items, &window)?;
+        if options.large_fills == LargeFills::Areas {
+            take_areas(items, &window);
+        }
         trace(source, items, &window)?;
         refuse_networks(source, items, &window)?;
     }

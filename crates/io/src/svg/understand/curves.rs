@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _, rc::Rc};
 
-use arabesque_core::{Bounds, Class, Curve, Outline, Path, Result};
+use arabesque_core::{Area, Bounds, Class, Curve, Outline, Path, Result};
 use kurbo::{Affine, BezPath};
 
 use crate::{
@@ -27,7 +27,11 @@ use crate::{
             stroke::growth,
             subpath::{is_closed, line},
         },
-        understand::{classes::names_of, item::Item, parts::cells::shared_once},
+        understand::{
+            classes::names_of,
+            item::{Item, Kind},
+            parts::cells::shared_once,
+        },
     },
     text::xml::{number, push_attribute},
 };
@@ -39,6 +43,9 @@ const PER_EDGE: u64 = 5;
 #[derive(Debug, Default)]
 pub(crate) struct Curves {
     pub(crate) curves: Vec<Curve<2>>,
+    pub(crate) areas: Vec<Area<2>>,
+    /// How area `i` is painted.
+    pub(crate) fills: Vec<Stroke>,
     pub(crate) styles: Vec<Class>,
     /// How curve `i` is painted.
     pub(crate) strokes: Vec<Stroke>,
@@ -80,6 +87,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     /// # Errors
     /// [`arabesque_core::Error::Limit`] for too many.
     pub(crate) fn add(&mut self, item: &Item) -> Result<()> {
+        if item.kind == Kind::Area {
+            self.add_area(item);
+            return Ok(());
+        }
         if let Some(lines) = &item.lines {
             return self.add_lines(item, lines);
         }
@@ -125,17 +136,47 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         self.check_count()
     }
 
-    /// Number of the curves so far.
-    pub(crate) fn count(&self) -> usize {
-        self.found.curves.len()
+    /// Adds a filled area.
+    fn add_area(&mut self, item: &Item) {
+        let Some((leaf, opacity)) = item.parts.first().and_then(|(_, node)| first_shape(node, item.opacity)) else {
+            return;
+        };
+        let mut paint = String::new();
+        let fill = leaf.style.get(P::Fill);
+        match reference(fill) {
+            Some(_) => push_attribute(&mut paint, "fill", &self.definitions.paint(fill, leaf.viewport)),
+            None => push_attribute(&mut paint, "fill", fill),
+        }
+        if fraction(leaf.style.get(P::FillOpacity)) < 1.0 {
+            push_attribute(&mut paint, "fill-opacity", leaf.style.get(P::FillOpacity));
+        }
+        let fill = Stroke {
+            paint,
+            effects: self.effects(leaf, opacity),
+            width: 0.0,
+            dashes: Vec::new(),
+            dash_offset: 0.0,
+            layer: item.layer.as_deref().map(str::to_owned),
+            label: item.meta.label.clone(),
+        };
+        let style = self.style(&fill, &item.meta);
+        let (outline, colour) = (item.outline.clone(), item.painted.colour());
+        self.found.areas.push(Area { outline, style, colour });
+        self.found.fills.push(fill);
     }
 
-    /// The styles of the curves from number `from` on, each once.
-    pub(crate) fn styles_from(&self, from: usize) -> Vec<usize> {
+    /// Number of the curves and areas so far.
+    pub(crate) fn count(&self) -> (usize, usize) {
+        (self.found.curves.len(), self.found.areas.len())
+    }
+
+    /// The styles of what was added since there were so many curves and areas, each once.
+    pub(crate) fn styles_from(&self, (curves, areas): (usize, usize)) -> Vec<usize> {
         let mut styles: Vec<usize> = Vec::new();
-        for curve in &self.found.curves[from..] {
-            if !styles.contains(&curve.style) {
-                styles.push(curve.style);
+        let of_curves = self.found.curves[curves..].iter().map(|curve| curve.style);
+        for style in of_curves.chain(self.found.areas[areas..].iter().map(|area| area.style)) {
+            if !styles.contains(&style) {
+                styles.push(style);
             }
         }
         styles
@@ -146,10 +187,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     /// # Errors
     /// As [`arabesque_core::Budget::spend`].
     pub(crate) fn finish(self) -> Result<Curves> {
-        let Curves { curves, styles, strokes } = self.found;
+        let Curves { curves, areas, fills, styles, strokes } = self.found;
         let is_plain = |k: usize| strokes[k].dashes.is_empty();
         let shared = shared_once(&curves, is_plain, &self.window, self.painter.source.budget)?;
-        let mut found = Curves { styles, ..Curves::default() };
+        let mut found = Curves { areas, fills, styles, ..Curves::default() };
         for ((curve, stroke), rest) in curves.into_iter().zip(strokes).zip(shared) {
             for path in rest.unwrap_or_else(|| vec![curve.path.clone()]) {
                 if path.bounds().grown(0.5 * curve.width).intersects(&self.window) {

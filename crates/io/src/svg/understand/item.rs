@@ -29,6 +29,8 @@ pub(crate) enum Kind {
     Curve,
     /// A fill larger than half of the frame that is not a background.
     Large,
+    /// A fill that runs through the frame, to be continued as it repeats.
+    Area,
 }
 
 /// How an item came to be, which decides what it may be joined with.

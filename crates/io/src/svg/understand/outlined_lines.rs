@@ -3,7 +3,7 @@
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use arabesque_core::{Bounds, Error, Result};
+use arabesque_core::{Bounds, Error, Result, Role};
 
 use crate::svg::{
     centreline::centrelines,
@@ -14,10 +14,13 @@ use crate::svg::{
     },
     reason::Reason,
     understand::{
+        frame,
         item::{Item, Kind, Origin},
-        parts::bands::follow_bands,
     },
 };
+
+/// A fill reaches a side of the frame when it is this near to it, as a share of its diagonal.
+const NEAR: f64 = 1e-3;
 
 /// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as
 /// a curve.
@@ -25,7 +28,6 @@ use crate::svg::{
 /// # Errors
 /// [`Error::Unsupported`] for something filled that is marked as a curve and has no lines of one width.
 pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>) -> Result<()> {
-    follow_bands(source, items, window)?;
     let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
         if follow(source, item, window)? {
@@ -52,6 +54,28 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
         }
     }
     Ok(())
+}
+
+/// Takes fills that run through the frame for areas, with what is painted like them and cut by the frame.
+pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
+    let runs_through = |item: &Item| {
+        let b = item.outline.bounds();
+        let near = NEAR * window.size().norm();
+        let reaches =
+            |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
+        reaches(0) + reaches(1) >= 2
+    };
+    let mut paints = BTreeSet::new();
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item) && runs_through(item)) {
+        (item.kind, item.reason) = (Kind::Area, Reason::Area);
+        paints.insert(item.painted.colours_key());
+    }
+    // What the frame has cut off is a part of the same.
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Element && item.origin == Origin::Piece) {
+        if paints.contains(&item.painted.colours_key()) && frame::role(item, Some(window)) == Role::Context {
+            (item.kind, item.reason) = (Kind::Area, Reason::Area);
+        }
+    }
 }
 
 /// Makes an item a curve where it is the outline of lines.

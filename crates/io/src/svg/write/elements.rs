@@ -8,6 +8,7 @@ use crate::{
     svg::{
         drawing::{KeptStrokes, Layer},
         write::{
+            areas::areas,
             curves::{StrokeLayer, by_style, curves},
             flat::{Flattener, Warp},
             sheet::Style,
@@ -81,6 +82,12 @@ impl<'a> Writer<'a> {
                     if let Some(strokes) = kept.as_mut().and_then(|kept| kept.remove(&k)) {
                         self.close(&mut group);
                         self.kept_group(&strokes, &group.next_kept());
+                    }
+                    if paint == 0 && sheet.areas.iter().any(|a| sheet.drawing.exemplar.areas[a.source].style == style) {
+                        self.open(&mut group);
+                        let shifts = |bounds: &Bounds<2>| self.shifts(bounds);
+                        let text = areas(sheet, style, &self.prefix, self.decimals.plus(1), &shifts);
+                        self.out.push_str(&text);
                     }
                     if let Some(members) = by_style.get(&style) {
                         self.open(&mut group);

@@ -1,5 +1,6 @@
 //! Results as SVG text: a file of placed elements and strokes, a file of ribbons, and the survey of an exemplar.
 
+pub(crate) mod areas;
 pub(crate) mod background;
 pub(crate) mod curves;
 pub(crate) mod cut;

@@ -122,6 +122,7 @@ mod tests {
         Drawing {
             fragments: centres.iter().map(dot).collect(),
             strokes: Vec::new(),
+            fills: Vec::new(),
             layers: vec![Layer::all_elements(&exemplar)],
             background: Some("<rect width=\"10\" height=\"10\" fill=\"#fed\"/>".into()),
             definitions: String::new(),
@@ -147,6 +148,7 @@ mod tests {
             placements: &[at(0, -2.0, 8.0), at(0, 5.0, 5.0)],
             sequence: &[],
             curves: &[],
+            areas: &[],
             kept: None,
             host: None,
             page,

@@ -1,6 +1,6 @@
 //! Everything that one SVG file of a result is made of.
 
-use arabesque_core::{Border, Budget, Domain, Drawn, Instance, Outline, Placement, Vector, Warning};
+use arabesque_core::{Border, Budget, Covered, Domain, Drawn, Instance, Outline, Placement, Vector, Warning};
 
 use crate::svg::drawing::{Drawing, HostDocument, Page, Placed};
 
@@ -27,6 +27,8 @@ pub struct Sheet<'a> {
     pub sequence: &'a [Instance<2>],
     /// The strokes.
     pub curves: &'a [Drawn<2>],
+    /// The filled areas.
+    pub areas: &'a [Covered<2>],
     /// The looks of frozen placements and of what else is kept.
     pub kept: Option<&'a Placed>,
     /// The drawing of which a part is refilled: then the result is that file with the new in it.

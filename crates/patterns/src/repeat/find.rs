@@ -93,6 +93,9 @@ const CANDIDATES: usize = 40_000;
 /// More jitter than this, in terms of the shorter vector, is no lattice.
 const JITTER: f64 = 0.12;
 
+/// Most marks in a cell where they lie about where they should.
+const FEW_IN_CELL: f64 = 6.5;
+
 /// Work for each offset.
 const OFFSET: u64 = 60;
 
@@ -238,7 +241,9 @@ impl Search<'_> {
         let Some(fit) = fit else { return Ok(None) };
         let shorter = lattice.vectors[0].norm().min(lattice.vectors[1].norm());
         let explains = if self.mode.kinds == Kinds::Any { Explains::Places } else { Explains::Everything };
-        let sound = fit.jitter <= JITTER * shorter;
+        // Where marks lie about where they should, a cell of many of them is a chance to find all at once.
+        let in_cell = marks_in(self.marks, &lattice);
+        let sound = fit.jitter <= JITTER * shorter && (self.mode.tolerance <= EXACT || in_cell <= FEW_IN_CELL);
         let (anchor, jitter, share) = (self.mode.anchor, fit.jitter, fit.share);
         Ok(sound.then_some(Repeat { lattice, explains, extent, anchor, jitter, share }))
     }
@@ -285,6 +290,11 @@ impl Search<'_> {
         let vectors = sums.vectors().unwrap_or(lattice.vectors);
         Ok(Fit { vectors, jitter: sums.jitter(&vectors), share: found as f64 / seen.max(1) as f64 })
     }
+}
+
+/// Mean number of marks in a cell.
+fn marks_in(marks: &Marks, lattice: &Lattice) -> f64 {
+    marks.all.len() as f64 * lattice.cell() / marks.window.measure()
 }
 
 /// Fitted vectors, and how well they fit.

@@ -14,7 +14,7 @@ const CORNER: f64 = 0.26;
 const FLAT: f64 = 5e-5;
 
 /// Features nearer to the frame than this share of its side may have been made by it.
-const AT_FRAME: f64 = 1e-3;
+pub(crate) const AT_FRAME: f64 = 1e-3;
 
 /// More features than this tell no more.
 const MOST: usize = 60_000;

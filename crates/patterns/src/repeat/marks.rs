@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Role, Vector};
 
 use crate::repeat::{
-    lines::{Feature, Lines},
+    lines::{AT_FRAME, Feature, Lines},
     looks,
 };
+
+/// What is this near to the frame touches it, as a share of its diagonal.
+const TOUCH: f64 = 1e-4;
 
 /// Which elements count as one kind of mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +55,13 @@ pub(crate) struct Marks {
     index: GridIndex<2>,
 }
 
+/// Whether a box touches a side of the frame from inside, or reaches just over it.
+pub(crate) fn touches(extent: &Bounds<2>, window: &Bounds<2>) -> bool {
+    let near = TOUCH * window.size().norm();
+    let is_at = |a: f64, b: f64| (a - b).abs() <= near;
+    (0..2).any(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
+}
+
 /// The place of an element.
 pub(crate) fn place_of(element: &arabesque_core::Element<2>, anchor: Anchor) -> Vector<2> {
     match anchor {
@@ -86,18 +96,21 @@ impl Marks {
             *number.entry(key).or_insert(next)
         };
         let mut all = Vec::new();
+        let window = exemplar.window;
+        // Features nearer to the frame are not looked at.
+        let from_frame = 1.01 * AT_FRAME * exemplar.view().side();
         for (e, (element, look)) in (0..).zip(exemplar.elements.iter().zip(looks)) {
             let place = place_of(element, anchor);
             let extent =
                 if element.outline.rings.is_empty() { Bounds::new(place, place) } else { element.outline.bounds() };
-            let is_context = element.role == Role::Context;
+            // What touches the frame may be cut there, and look like another thing.
+            let is_context = element.role == Role::Context || touches(&extent, &window);
             all.push(Mark { place, kind: kind((Some(look), None)), extent, element: Some(e), is_context });
         }
         for &(place, feature) in &lines.features {
-            let (kind, extent) = (kind((None, Some(feature))), Bounds::new(place, place));
+            let (kind, extent) = (kind((None, Some(feature))), Bounds::new(place, place).grown(from_frame));
             all.push(Mark { place, kind, extent, element: None, is_context: false });
         }
-        let window = exemplar.window;
         let unit = (window.measure() / all.len().max(1) as f64).sqrt();
         let places: Vec<_> = all.iter().map(|mark| mark.place).collect();
         let index = GridIndex::new(&places, 0.25 * unit, &Domain::Box(window));

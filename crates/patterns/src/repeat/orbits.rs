@@ -9,7 +9,7 @@ use crate::{
     repeat::{
         find::Repeat,
         lattice::{Lattice, Node},
-        marks::place_of,
+        marks::{place_of, touches},
     },
 };
 
@@ -64,10 +64,14 @@ pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -
     // Common classes first: an exception among them takes one of their nodes, and no orbit of its own.
     let mut groups: Vec<_> = groups.into_iter().collect();
     groups.sort_by_key(|(class, members)| (std::cmp::Reverse(members.len()), *class));
-    for (class, members) in groups {
-        for e in members {
-            let place = place_of(&exemplar.elements[e as usize], repeat.anchor);
-            found.add(e, class, place)?;
+    let touches = |e: u32| touches(&exemplar.elements[e as usize].outline.bounds(), &exemplar.window);
+    // What touches the frame may be cut there: it may take a node of others, but says nothing by itself.
+    for may_be_cut in [false, true] {
+        for (class, members) in &groups {
+            for &e in members.iter().filter(|&&e| touches(e) == may_be_cut) {
+                let place = place_of(&exemplar.elements[e as usize], repeat.anchor);
+                found.add(e, *class, place, may_be_cut)?;
+            }
         }
     }
     Ok(found.settled(exemplar))
@@ -89,7 +93,7 @@ impl Found<'_> {
         ((p[0] / side).floor() as i64, (p[1] / side).floor() as i64)
     }
 
-    fn add(&mut self, element: u32, class: usize, place: Vector<2>) -> Result<()> {
+    fn add(&mut self, element: u32, class: usize, place: Vector<2>, may_be_cut: bool) -> Result<()> {
         let folded = self.lattice.folded(place);
         let mut best: Option<(bool, f64, usize)> = None;
         let mut looked = 0;
@@ -106,6 +110,9 @@ impl Found<'_> {
                     if apart > self.tolerance || taken.contains_key(&node) {
                         continue;
                     }
+                    if may_be_cut && *first != class {
+                        continue;
+                    }
                     let rank = (*first != class, apart, o);
                     if best.is_none_or(|b| (rank.0, rank.1) < (b.0, b.1)) {
                         best = Some(rank);
@@ -116,6 +123,7 @@ impl Found<'_> {
         self.budget.spend(COMPARE * (looked + 20))?;
         let number = match best {
             Some((_, _, o)) => o,
+            None if may_be_cut => return Ok(()),
             None => {
                 let key = self.key(folded);
                 self.cells.entry(key).or_default().push(self.orbits.len());

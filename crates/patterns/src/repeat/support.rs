@@ -3,7 +3,10 @@
 
 use arabesque_core::{Bounds, Budget, Domain, GridIndex, Result, Segment, Vector, segment};
 
-use crate::repeat::{lines::Lines, marks::Marks};
+use crate::repeat::{
+    lines::{AT_FRAME, Lines},
+    marks::Marks,
+};
 
 /// A share of marks that must have a partner.
 const ENOUGH: f64 = 0.95;
@@ -12,7 +15,7 @@ const ENOUGH: f64 = 0.95;
 const ENOUGH_LINE: f64 = 0.975;
 
 /// Marks that are looked at before a hopeless translation is given up, and the share of them that must have a partner.
-const FIRST: (usize, f64) = (12, 0.7);
+const FIRST: (usize, f64) = (24, 0.6);
 
 /// Places along the lines of an exemplar that are compared.
 const PLACES: f64 = 3000.0;
@@ -139,12 +142,14 @@ impl<'a> LineIndex<'a> {
             return Ok(true);
         }
         let stride = (self.pieces.len() as f64 / PLACES).ceil().max(1.0) as usize;
-        let seen_in = self.window.grown(-2.0 * tolerance);
+        // What lies along the frame may have been made by it.
+        let at_frame = AT_FRAME * self.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+        let (known, seen_in) = (self.window.grown(-at_frame), self.window.grown(-at_frame.max(2.0 * tolerance)));
         let (mut seen, mut found, mut work) = (0_usize, 0_usize, 0);
         for ((a, b), style) in self.pieces.iter().step_by(stride) {
             let (place, way) = ((*a + *b) * 0.5, (*b - *a).unit_or_zero());
             for by in [by, -by] {
-                if !(self.window.contains(place) && seen_in.contains(place + by)) {
+                if !(known.contains(place) && seen_in.contains(place + by)) {
                     continue;
                 }
                 let (near, looked) = self.distance(place + by, way, *style, tolerance);

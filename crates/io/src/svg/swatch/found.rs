@@ -11,7 +11,7 @@ use crate::svg::swatch::{
 };
 
 /// Things beyond which a page is not taken for a period: it shows enough as it is.
-pub(crate) const MOST: usize = 60;
+pub(crate) const MOST: usize = 40;
 /// Boxes whose sides differ by less, as a share of their longer side, are those of things alike.
 const ALIKE: f64 = 0.01;
 

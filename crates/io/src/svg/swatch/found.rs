@@ -38,8 +38,9 @@ fn goes_on(pieces: &[Piece], links: &Links, cell: &Cell, axis: usize) -> bool {
     });
     let of_strokes = links.ends.iter().any(|(&[p, chain, which], _)| {
         let chain = &pieces[p].chains[chain];
-        let on_side = (0..4).any(|side| is_across(side) && cell.is_on(side, chain.end(which)));
-        on_side && !is_straight(std::slice::from_ref(chain), axis)
+        // What ends at a corner meets others there, whatever it is.
+        let sides: Vec<usize> = SIDES.into_iter().filter(|side| cell.is_on(*side, chain.end(which))).collect();
+        matches!(sides[..], [side] if is_across(side)) && !is_straight(std::slice::from_ref(chain), axis)
     });
     of_fills || of_strokes
 }

@@ -197,7 +197,7 @@ fn patterns_that_cannot_be_repeated_are_refused() {
 
 #[test]
 fn large_periods_meet_a_limit() {
-    let dots: String = (0..3000).map(|k| format!("<circle cx='{}' cy='{}' r='.3'/>", k % 60, k / 60)).collect();
+    let dots: String = (0..3000).map(|k| format!("<circle cx='{}.5' cy='{}.5' r='.3'/>", k % 60, k / 60)).collect();
     let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 60'>{dots}</svg>");
     let budget = Budget::new(Limits { nodes: 7000, ..Limits::default() });
     let options = ReadOptions { tiling: Tiling::Period, budget, ..ReadOptions::new("l.svg") };

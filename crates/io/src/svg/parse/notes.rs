@@ -21,6 +21,8 @@ pub(crate) enum Note {
     Foreign,
     /// A mask, filter or blend mode on a container of elements.
     ContainerEffect,
+    /// The opacity of a container of things that overlap.
+    ContainerOpacity,
     /// A path without extent.
     ZeroSize,
     /// An element beyond the frame.
@@ -94,6 +96,10 @@ impl Note {
             Self::ContainerEffect => {
                 ("mask, filter or blend mode on a group of many elements ignored", "put it on each element")
             }
+            Self::ContainerOpacity => (
+                "opacity of a group of things that overlap given to each of them, so that they show through one another",
+                "put it on each thing, or mark the group data-arabesque=\"element\"",
+            ),
             Self::ZeroSize => ("element without extent ignored", "delete it, or give it a size"),
             Self::Outside => ("element outside the frame ignored", "delete it, or make the page larger"),
             Self::Border => ("stroke along the frame ignored", "mark it data-arabesque=\"element\" to keep it"),

@@ -17,7 +17,6 @@ use crate::svg::{
         guard,
         notes::{Note, Notes},
         sheet::rules::{self, Plain},
-        style::is_known,
     },
 };
 use crate::text::short::short;
@@ -78,7 +77,7 @@ pub(crate) fn with_source<T>(
         return Err(Error::input(name, format!("the root is <{found}>, expected <svg>"), "choose an SVG file"));
     }
     let css = style_text(&xml);
-    let Plain { css: plain, values, unknown } = rules::plain(&css, is_known);
+    let Plain { css: plain, values, unknown } = rules::plain(&css);
     let plain = css::sparing_comments(plain);
     let source = Source {
         name,

@@ -250,7 +250,7 @@ fn declarations<'a>(source: &Source<'a>, node: Xml<'a, 'a>) -> Vec<(&'a str, Str
 }
 
 /// Whether a property says anything here; custom ones do.
-pub(crate) fn is_known(name: &str) -> bool {
+fn is_known(name: &str) -> bool {
     let inherited = PROPERTIES.iter().map(|(_, n, _)| *n);
     matches!(name, "marker" | "transform") || name.starts_with("--") || inherited.chain(OWN).any(|n| n == name)
 }

@@ -47,14 +47,13 @@ pub(crate) fn misfit(
             }
         }
     }
-    let of_strokes = links.loose.iter().find_map(|&[p, chain, which]| {
+    links.loose.iter().find_map(|&[p, chain, which]| {
         let at = pieces[p].chains[chain].end(which);
         let side = (0..4).find(|side| cell.is_on(*side, at))?;
         let there = at - cell.shift(beyond(side));
         let is_met = is_on_line(pieces, units, cell, (units[pieces[p].unit].look, there));
         (!is_met).then(|| found(side, along(side, at), pieces[p].unit))
-    });
-    of_strokes
+    })
 }
 
 /// Whether a shape ends at an edge: it is made of straight lines, and nothing like it is cut at about the same place of the opposite edge.

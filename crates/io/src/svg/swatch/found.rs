@@ -11,7 +11,7 @@ use crate::svg::swatch::{
 };
 
 /// Things beyond which a page is not taken for a period: it shows enough as it is.
-pub(crate) const MOST: usize = 60;
+pub(crate) const MOST: usize = 40;
 /// Boxes whose sides differ by less, as a share of their longer side, are those of things alike.
 const ALIKE: f64 = 0.01;
 
@@ -38,8 +38,9 @@ fn goes_on(pieces: &[Piece], links: &Links, cell: &Cell, axis: usize) -> bool {
     });
     let of_strokes = links.ends.iter().any(|(&[p, chain, which], _)| {
         let chain = &pieces[p].chains[chain];
-        let on_side = (0..4).any(|side| is_across(side) && cell.is_on(side, chain.end(which)));
-        on_side && !is_straight(std::slice::from_ref(chain), axis)
+        // What ends at a corner meets others there, whatever it is.
+        let sides: Vec<usize> = SIDES.into_iter().filter(|side| cell.is_on(*side, chain.end(which))).collect();
+        matches!(sides[..], [side] if is_across(side)) && !is_straight(std::slice::from_ref(chain), axis)
     });
     of_fills || of_strokes
 }

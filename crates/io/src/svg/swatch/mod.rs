@@ -15,3 +15,6 @@ pub(crate) mod pieces;
 pub(crate) mod units;
 pub(crate) mod unroll;
 pub(crate) mod weld;
+
+#[cfg(test)]
+mod tests;

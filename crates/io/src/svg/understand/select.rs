@@ -149,6 +149,9 @@ impl Selector<'_, '_, '_> {
             // A shape that holds others has markers.
             self.painter.source.notes.add(Note::Marker, || node.meta.id.clone().unwrap_or_default());
         }
+        if node.own.get("opacity").is_some_and(|o| fraction(o) < 1.0) && self.overlaps(node, world)? {
+            self.painter.source.notes.add(Note::ContainerOpacity, || node.meta.id.clone().unwrap_or_default());
+        }
         if node.own.has_effects() {
             self.painter.source.notes.add(Note::ContainerEffect, || node.meta.id.clone().unwrap_or_default());
         }
@@ -190,6 +193,13 @@ impl Selector<'_, '_, '_> {
         self.take(node, at, (Kind::Element, Origin::Whole, Reason::Group))
     }
 
+    /// Whether things in a container lie on one another.
+    fn overlaps(&self, node: &Node, world: Affine) -> Result<bool> {
+        let boxes: Vec<_> =
+            node.children().iter().map(|child| bounds(child, world)).filter(|b| !b.is_empty()).collect();
+        Ok(clusters(&boxes, 0.0, self.painter.source.budget)? < boxes.len())
+    }
+
     /// Box around what the clips leave of a node.
     fn visible(&self, node: &Node, at: &Surroundings) -> Result<Bounds<2>> {
         self.painter.source.budget.spend(weight(node))?;
@@ -203,7 +213,7 @@ impl Selector<'_, '_, '_> {
 
     fn is_container(&self, node: &Rc<Node>, extent: &Bounds<2>, at: &Surroundings) -> Result<bool> {
         let share = self.share(extent);
-        if share >= HALF {
+        if share >= HALF || self.is_marked_line(node, extent) {
             return Ok(true);
         }
         if node.meta.tag == "use" || share < ROOMY {
@@ -212,6 +222,13 @@ impl Selector<'_, '_, '_> {
         let world = at.parent * node.transform;
         let boxes: Vec<_> = node.children().iter().map(|child| bounds(child, world)).collect();
         Ok(clusters(&boxes, GAP, self.painter.source.budget)? >= 4)
+    }
+
+    /// Whether a node is a stroke with markers that runs through half of the frame: it is continued, and its markers are things beside it.
+    fn is_marked_line(&self, node: &Node, extent: &Bounds<2>) -> bool {
+        let line = node.children().first().filter(|_| geometry::is_shape(node.meta.tag));
+        let is_open = line.is_some_and(|line| is_all_strokes(line));
+        is_open && (0..2).any(|k| extent.size()[k] >= HALF * self.frame.size()[k])
     }
 
     /// Takes a node as a whole.

@@ -217,3 +217,14 @@ fn tiles_and_bars_are_no_bands() {
     assert_eq!(read(&(0..40).map(brick).collect::<String>()).exemplar.curves.len(), 0);
     assert_eq!(read(&at_places("<rect x='-6' width='14' height='3'/>")).exemplar.curves.len(), 0);
 }
+
+#[test]
+fn a_wave_of_one_width_is_a_stroke() {
+    let top: String = "q10 -8 20 0t20 0".repeat(3);
+    let back: String = "q-10 8 -20 0t-20 0".repeat(3);
+    let wave = |k: u32| format!("<path d='M-10 {}{top}v5{back}z' fill='#08a'/>", 5 + 18 * k);
+    let d = read(&(0..6).map(wave).collect::<String>());
+    assert_eq!((counts(&d), because(&d, Reason::Traced)), ((0, 6), 6));
+    let short = wave(2).replace("M-10", "M5").replace(&top, "q10 -8 20 0").replace(&back, "q-10 -8 -20 0");
+    assert_eq!(counts(&read(&format!("{short}{}", at_places("<circle r='4'/>")))), (10, 0));
+}

@@ -13,11 +13,15 @@ use crate::svg::{
         source::Source,
     },
     reason::Reason,
+    shape::extent::longer,
     understand::{
         item::{Item, Kind, Origin},
         parts::bands::follow_bands,
     },
 };
+
+/// How near to a side of the frame something reaches it, as a share of the frame.
+const NEAR: f64 = 1e-3;
 
 /// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as
 /// a curve.
@@ -30,6 +34,11 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
     for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
         if follow(source, item, window)? {
             paints.insert(item.painted.colours_key());
+        }
+    }
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Element && runs_through(item, window)) {
+        if is_plain_fill(item) {
+            follow(source, item, window)?;
         }
     }
     // Smaller pieces of the same paint are parts of the same net.
@@ -52,6 +61,12 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
         }
     }
     Ok(())
+}
+
+/// Whether an item reaches from one side of the frame to the opposite one: a wave of one width.
+fn runs_through(item: &Item, window: &Bounds<2>) -> bool {
+    let (extent, near) = (item.outline.bounds(), NEAR * longer(window));
+    (0..2).any(|k| extent.min[k] <= window.min[k] + near && extent.max[k] >= window.max[k] - near)
 }
 
 /// Makes an item a curve where it is the outline of lines.

@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Error, Role, Vector};
-use arabesque_io::svg::{Drawing, Method, ReadOptions, Reason, read_exemplar};
+use arabesque_io::svg::{Drawing, Method, ReadOptions, Reason, Tiling, read_exemplar};
 
 const NAMESPACES: &str = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
      xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'";
 
 fn read_with(body: &str, method: Method) -> Result<Drawing, Error> {
     let text = format!("<svg {NAMESPACES} width='100' height='100' viewBox='0 0 100 100'>{body}</svg>");
-    read_exemplar(&text, &ReadOptions { method, ..ReadOptions::new("t.svg") })
+    read_exemplar(&text, &ReadOptions { method, tiling: Tiling::Page, ..ReadOptions::new("t.svg") })
 }
 
 fn read(body: &str) -> Drawing {
@@ -121,14 +121,14 @@ fn strokes_of_no_length_are_dots_or_squares() {
 #[test]
 fn closed_outlines_that_share_edges_are_one_net_without_doubles() {
     let cell = |k: u32| {
-        let (x, y) = (f64::from(k % 6) * 20.005 - 10.0, f64::from(k / 6) * 20.0 - 10.0);
-        format!("<rect x='{x:.2}' y='{y:.2}' width='20' height='20'/>")
+        let (x, y) = (f64::from(k % 7) * 18.005 - 10.0, f64::from(k / 7) * 18.0 - 10.0);
+        format!("<rect x='{x:.2}' y='{y:.2}' width='18' height='18'/>")
     };
-    let d = read(&stroked(&(0..36).map(cell).collect::<String>()));
+    let d = read(&stroked(&(0..49).map(cell).collect::<String>()));
     let length: f64 = d.exemplar.curves.iter().flat_map(|c| &c.path.cubics).map(|c| (c[3] - c[0]).norm()).sum();
     assert!(d.exemplar.elements.is_empty() && d.exemplar.curves.iter().all(|c| !c.path.closed));
-    assert!((1100.0..1500.0).contains(&length), "{length}, of 2880 with doubles");
-    let tiles = (0..36).map(cell).collect::<String>().replace("/>", " fill='red'/>");
+    assert!((1300.0..2100.0).contains(&length), "{length}, of 3528 with doubles");
+    let tiles = (0..49).map(cell).collect::<String>().replace("/>", " fill='red'/>");
     assert_eq!(read(&tiles).exemplar.curves.len(), 0, "filled tiles stay elements");
 }
 
@@ -216,4 +216,15 @@ fn tiles_and_bars_are_no_bands() {
     };
     assert_eq!(read(&(0..40).map(brick).collect::<String>()).exemplar.curves.len(), 0);
     assert_eq!(read(&at_places("<rect x='-6' width='14' height='3'/>")).exemplar.curves.len(), 0);
+}
+
+#[test]
+fn a_wave_of_one_width_is_a_stroke() {
+    let top: String = "q10 -8 20 0t20 0".repeat(3);
+    let back: String = "q-10 8 -20 0t-20 0".repeat(3);
+    let wave = |k: u32| format!("<path d='M-10 {}{top}v5{back}z' fill='#08a'/>", 5 + 18 * k);
+    let d = read(&(0..6).map(wave).collect::<String>());
+    assert_eq!((counts(&d), because(&d, Reason::Traced)), ((0, 6), 6));
+    let short = wave(2).replace("M-10", "M5").replace(&top, "q10 -8 20 0").replace(&back, "q-10 -8 -20 0");
+    assert_eq!(counts(&read(&format!("{short}{}", at_places("<circle r='4'/>")))), (10, 0));
 }

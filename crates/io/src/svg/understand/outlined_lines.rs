@@ -13,13 +13,14 @@ use crate::svg::{
         source::Source,
     },
     reason::Reason,
+    shape::extent::longer,
     understand::{
         frame,
         item::{Item, Kind, Origin},
     },
 };
 
-/// A fill reaches a side of the frame when it is this near to it, as a share of its diagonal.
+/// How near to a side of the frame something reaches it, as a share of the frame.
 const NEAR: f64 = 1e-3;
 
 /// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as
@@ -32,6 +33,11 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
     for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item)) {
         if follow(source, item, window)? {
             paints.insert(item.painted.colours_key());
+        }
+    }
+    for item in items.iter_mut().filter(|item| item.kind == Kind::Element && runs_through(item, window)) {
+        if is_plain_fill(item) {
+            follow(source, item, window)?;
         }
     }
     // Smaller pieces of the same paint are parts of the same net.
@@ -58,7 +64,7 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
 
 /// Takes fills that run through the frame for areas, with what is painted like them and cut by the frame.
 pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
-    let runs_through = |item: &Item| {
+    let reaches_over = |item: &Item| {
         let b = item.outline.bounds();
         let near = NEAR * window.size().norm();
         let reaches =
@@ -66,7 +72,15 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
         reaches(0) + reaches(1) >= 2
     };
     let mut paints = BTreeSet::new();
-    for item in items.iter_mut().filter(|item| item.kind == Kind::Large && is_plain_fill(item) && runs_through(item)) {
+    for item in items.iter_mut().filter(|item| is_plain_fill(item)) {
+        let is_area = match item.kind {
+            Kind::Large => reaches_over(item),
+            Kind::Element => runs_through(item, window),
+            Kind::Curve | Kind::Area => false,
+        };
+        if !is_area {
+            continue;
+        }
         (item.kind, item.reason) = (Kind::Area, Reason::Area);
         paints.insert(item.painted.colours_key());
     }
@@ -76,6 +90,12 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
             (item.kind, item.reason) = (Kind::Area, Reason::Area);
         }
     }
+}
+
+/// Whether an item reaches from one side of the frame to the opposite one: a wave of one width.
+fn runs_through(item: &Item, window: &Bounds<2>) -> bool {
+    let (extent, near) = (item.outline.bounds(), NEAR * longer(window));
+    (0..2).any(|k| extent.min[k] <= window.min[k] + near && extent.max[k] >= window.max[k] - near)
 }
 
 /// Makes an item a curve where it is the outline of lines.

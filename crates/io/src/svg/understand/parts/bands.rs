@@ -119,7 +119,7 @@ fn corners(item: &Item) -> Option<Ring<2>> {
     }
     let size = Bounds::around(ring.iter().copied()).size().norm();
     let ring = straightened(ring, 1e-6 * size);
-    let covered = arabesque_core::Outline::union(&[ring.clone()], FillRule::NonZero).area();
+    let covered = arabesque_core::Outline::union(std::slice::from_ref(&ring), FillRule::NonZero).area();
     ((4..=CORNERS).contains(&ring.len()) && (ring::area(&ring).abs() - covered).abs() <= 1e-3 * covered).then_some(ring)
 }
 
@@ -155,7 +155,7 @@ fn straightened(ring: Ring<2>, off: f64) -> Ring<2> {
 /// The band whose border is a ring: the longest, where its ends could be found in several ways.
 fn band(ring: &[Vector<2>], frame: &Bounds<2>) -> Option<Band> {
     let n = ring.len();
-    if n % 2 != 0 {
+    if !n.is_multiple_of(2) {
         return None;
     }
     let half = n / 2;
@@ -203,7 +203,7 @@ fn middle(left: &[Vector<2>], right: &[Vector<2>], frame: &Bounds<2>) -> Option<
     for (end, next, sides) in [(0, 1, [left[0], right[0]]), (n - 1, n - 2, [left[n - 1], right[n - 1]])] {
         let way = (points[end] - points[next]).unit();
         let reach = sides.iter().map(|&side| way.dot(side - points[end])).fold(0.0, f64::max);
-        points[end] = points[end] + way * if reach > 1e-9 * longer(frame) { reach } else { 0.0 };
+        points[end] += way * if reach > 1e-9 * longer(frame) { reach } else { 0.0 };
     }
     Some(Band { points, width: 0.5 * (least + most) })
 }

@@ -32,7 +32,10 @@ const PAIR: u64 = 10;
 /// How near to a side of the frame something reaches it, as a share of the frame.
 const NEAR: f64 = 1e-3;
 /// Space around a piece painted like a net that makes it a thing of its own, as a share of its size.
-const CLEAR: f64 = 0.25;
+const CLEAR: f64 = 0.2;
+
+/// How much wider one stroke of a pen may be than another.
+const PEN: f64 = 1.5;
 
 /// Whether a stroke is sorted by what it is joined to.
 fn is_loose(item: &Item) -> bool {
@@ -55,9 +58,9 @@ pub(crate) fn sort_strokes(mut items: Vec<Item>, painter: &Painter<'_, '_>, fram
         .filter(|group| is_loose(&items[group[0]]))
         .map(|group| Component::new(group, &items, &frame))
         .collect();
-    let looks: Vec<String> = items.iter().map(|item| if is_loose(item) { look(item) } else { String::new() }).collect();
-    weave(&mut pieces, &items, &looks, &frame, painter.source.budget)?;
-    claim(&mut pieces, &items, &looks, painter)?;
+    let pens = pens(&items);
+    weave(&mut pieces, &items, &pens, &frame, painter.source.budget)?;
+    claim(&mut pieces, &items, &pens, painter)?;
     for piece in &pieces {
         if let Fate::Net(reason) = piece.fate {
             for &i in &piece.members {
@@ -108,26 +111,33 @@ impl Component {
         Self { members, extent, is_at_side: (0..2).any(|k| low(k) || high(k)), fate }
     }
 
-    fn looks<'i>(&'i self, looks: &'i [String]) -> impl Iterator<Item = &'i str> {
-        self.members.iter().map(|&i| looks[i].as_str())
+    fn pens<'i>(&'i self, pens: &'i [usize]) -> impl Iterator<Item = usize> + 'i {
+        self.members.iter().map(|&i| pens[i])
     }
 }
 
-/// Colour and width of a stroke as text: what is painted alike has the same.
-fn look(item: &Item) -> String {
-    let width = item
-        .parts
-        .first()
-        .map_or(0.0, |(parent, node)| growth(*parent * node.transform) * node.style.number(P::StrokeWidth));
-    format!("{} {width:.1e}", item.painted.colours_key())
+/// Numbers of the pens that items are drawn with: of one colour and about one width.
+fn pens(items: &[Item]) -> Vec<usize> {
+    let mut order: Vec<(String, f64, usize)> =
+        items.iter().enumerate().map(|(i, item)| (item.painted.colours_key(), width(item), i)).collect();
+    order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let mut pens = vec![0; items.len()];
+    let mut pen = (0, "", 0.0);
+    for (colour, width, i) in &order {
+        if pen.1 != colour || *width > PEN * pen.2 {
+            pen = (pen.0 + 1, colour, *width);
+        }
+        pens[*i] = pen.0;
+    }
+    pens
 }
 
 /// Makes nets of pieces painted alike that leave no clear space between them: cells with a narrow gap around each,
 /// stitches.
-fn weave(pieces: &mut [Component], items: &[Item], looks: &[String], frame: &Bounds<2>, budget: &Budget) -> Result<()> {
-    let mut alike: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+fn weave(pieces: &mut [Component], items: &[Item], pens: &[usize], frame: &Bounds<2>, budget: &Budget) -> Result<()> {
+    let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (k, piece) in pieces.iter().enumerate() {
-        alike.entry(&looks[piece.members[0]]).or_default().push(k);
+        alike.entry(pens[piece.members[0]]).or_default().push(k);
     }
     for numbers in alike.into_values() {
         let outlines: Vec<Vec<&Outline<2>>> =
@@ -144,20 +154,21 @@ fn weave(pieces: &mut [Component], items: &[Item], looks: &[String], frame: &Bou
 }
 
 /// Gives small pieces to the nets that they are painted like, where these are near or the frame may have cut them off.
-fn claim(pieces: &mut [Component], items: &[Item], looks: &[String], painter: &Painter<'_, '_>) -> Result<()> {
+fn claim(pieces: &mut [Component], items: &[Item], pens: &[usize], painter: &Painter<'_, '_>) -> Result<()> {
     let is_net = |piece: &Component| matches!(piece.fate, Fate::Net(_));
-    let nets: BTreeSet<&str> =
-        pieces.iter().filter(|piece| is_net(piece)).flat_map(|piece| piece.looks(looks)).collect();
+    let nets: BTreeSet<usize> =
+        pieces.iter().filter(|piece| is_net(piece)).flat_map(|piece| piece.pens(pens)).collect();
     if nets.is_empty() {
         return Ok(());
     }
-    let is_like = |piece: &Component| piece.looks(looks).all(|look| nets.contains(look));
+    let is_like = |piece: &Component| piece.pens(pens).all(|pen| nets.contains(&pen));
     let mut reach = BTreeMap::new();
-    let mut claimed = BTreeSet::new();
+    let (mut at_side, mut near_net) = (Vec::new(), BTreeMap::new());
     for (k, piece) in pieces.iter().enumerate().filter(|(_, piece)| !is_net(piece) && is_like(piece)) {
         if piece.is_at_side {
-            claimed.insert(k);
+            at_side.push(k);
         } else {
+            near_net.insert(k, false);
             reach.extend(piece.members.iter().map(|&i| (i, (k, CLEAR * longer(&piece.extent)))));
         }
     }
@@ -173,19 +184,43 @@ fn claim(pieces: &mut [Component], items: &[Item], looks: &[String], painter: &P
         painter.source.budget,
         |m, n| {
             let (small, gap) = match (reach.get(&involved[m]), reach.get(&involved[n])) {
-                (Some(&(k, gap)), None) | (None, Some(&(k, gap))) if !claimed.contains(&k) => (k, gap),
+                (Some(&(k, gap)), None) | (None, Some(&(k, gap))) if !near_net[&k] => (k, gap),
                 _ => return true,
             };
             let near = edges_meet(&edges[m], &edges[n], gap, &mut left);
             if near == Some(true) {
-                claimed.insert(small);
+                near_net.insert(small, true);
             }
             near.is_some()
         },
     )?;
     painter.source.budget.spend(PAIR * (EDGE_PAIRS - left.0))?;
-    claimed.into_iter().for_each(|k| pieces[k].fate = Fate::Net(Reason::Beside));
+    at_side.into_iter().for_each(|k| pieces[k].fate = Fate::Net(Reason::Beside));
+    agree(pieces, &near_net, items);
     Ok(())
+}
+
+/// Claims for nets the pieces of a kind, drawn with one width, most of which are near a net: all of them or none.
+fn agree(pieces: &mut [Component], near_net: &BTreeMap<usize, bool>, items: &[Item]) {
+    let kind = |piece: &Component| {
+        let item = &items[piece.members[0]];
+        (item.painted.colours_key(), (50.0 * width(item).ln()).round() as i64)
+    };
+    let mut kinds: BTreeMap<(String, i64), Vec<usize>> = BTreeMap::new();
+    near_net.keys().for_each(|&k| kinds.entry(kind(&pieces[k])).or_default().push(k));
+    for members in kinds.into_values() {
+        let near = members.iter().filter(|&k| near_net[k]).count();
+        if 2 * near > members.len() {
+            members.iter().for_each(|&k| pieces[k].fate = Fate::Net(Reason::Beside));
+        }
+    }
+}
+
+/// Width of the widest stroke of an item.
+fn width(item: &Item) -> f64 {
+    let widths =
+        item.parts.iter().map(|(parent, node)| growth(*parent * node.transform) * node.style.number(P::StrokeWidth));
+    widths.fold(0.0, f64::max)
 }
 
 /// Makes one item of each connected piece that is an element, with the fills that it touches, and of those that lie

@@ -71,9 +71,11 @@ pub(crate) fn repair(
     if violations.is_empty() && outside.is_empty() {
         return Ok(summary);
     }
+    let before = repair.arrangement.bodies.clone();
     let violations = repair.make_room(violations)?;
     repair.settle(&violations, &outside)?;
     repair.thin_out(violations, 0)?;
+    summary.restored = repair.fill_holes(&before)?;
     repair.write_back(placements, &mut summary);
     Ok(summary)
 }
@@ -105,6 +107,17 @@ impl<'a> Repair<'a> {
             reach,
             slack,
         })
+    }
+
+    /// Whether body `i` is still there.
+    pub(crate) fn is_alive(&self, i: usize) -> bool {
+        self.alive[i]
+    }
+
+    /// Makes body `i` what it was.
+    pub(crate) fn put_back(&mut self, i: usize, body: PlacedFigure) {
+        self.alive[i] = true;
+        self.arrangement.bodies[i] = body;
     }
 
     /// Every violation at the start; decides which allowed overlaps are too many.

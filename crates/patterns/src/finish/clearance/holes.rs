@@ -58,7 +58,8 @@ impl Repair<'_> {
         let mut restored = 0;
         for i in changed {
             if self.leaves_hole(&before[i], widest, &mut meter)? && self.may_return(i, &before[i], &mut meter)? {
-                self.put_back(i, before[i].clone());
+                self.alive[i] = true;
+                self.arrangement.bodies[i] = before[i].clone();
                 restored += 1;
             }
         }
@@ -67,7 +68,7 @@ impl Repair<'_> {
 
     fn is_changed(&self, i: usize, before: &PlacedFigure) -> bool {
         let now = &self.arrangement.bodies[i];
-        !before.fixed && (!self.is_alive(i) || now.centre != before.centre || now.figure != before.figure)
+        !before.fixed && (!self.alive[i] || now.centre != before.centre || now.figure != before.figure)
     }
 
     /// Whether a place that was covered by a body is farther from any ink than `widest`, times its scale.
@@ -80,7 +81,7 @@ impl Repair<'_> {
         let reach = FARTHEST * self.limits.spacing * before.place.scale;
         for p in places {
             let p = before.place.apply(p);
-            let counts = |j: usize| self.is_alive(j);
+            let counts = |j: usize| self.alive[j];
             if self.arrangement.distance_to_ink(p, reach, self.slack, &counts, meter)? > widest * before.place.scale {
                 return Ok(true);
             }
@@ -95,7 +96,7 @@ impl Repair<'_> {
             return Ok(false);
         }
         let mut covered = 0.0;
-        for j in self.arrangement.neighbours(i, self.slack, meter)?.into_iter().filter(|&j| self.is_alive(j)) {
+        for j in self.arrangement.neighbours(i, self.slack, meter)?.into_iter().filter(|&j| self.alive[j]) {
             let other = &self.arrangement.bodies[j];
             let area = self.arrangement.overlap_area(before, other, false, meter)?;
             let excess = (area - self.limits.allowed_area(before, other)).max(0.0);

@@ -50,7 +50,8 @@ pub(crate) struct Repair<'a> {
     pub(crate) border_check: BorderCheck<'a>,
     /// Pairs that must be apart although the exemplar has such: there are too many of them.
     surplus: BTreeSet<(usize, usize)>,
-    alive: Vec<bool>,
+    /// Which bodies are still there.
+    pub(crate) alive: Vec<bool>,
     /// Longest shift of each body.
     reach: Vec<f64>,
     /// Longest shift of any body.
@@ -107,17 +108,6 @@ impl<'a> Repair<'a> {
             reach,
             slack,
         })
-    }
-
-    /// Whether body `i` is still there.
-    pub(crate) fn is_alive(&self, i: usize) -> bool {
-        self.alive[i]
-    }
-
-    /// Makes body `i` what it was.
-    pub(crate) fn put_back(&mut self, i: usize, body: PlacedFigure) {
-        self.alive[i] = true;
-        self.arrangement.bodies[i] = body;
     }
 
     /// Every violation at the start; decides which allowed overlaps are too many.

@@ -126,6 +126,7 @@ fn sheet<'a>(drawing: &'a Drawing, curves: &'a [Drawn<2>], domain: &'a Domain<2>
         drawing,
         placements: &[],
         sequence: &[],
+        areas: &[],
         curves,
         kept: None,
         host: None,

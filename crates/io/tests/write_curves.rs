@@ -30,6 +30,7 @@ fn written(drawing: &Drawing, curves: &[Drawn<2>], domain: &Domain<2>, shape: Op
         drawing,
         placements: &[],
         sequence: &[],
+        areas: &[],
         curves,
         kept: None,
         host: None,

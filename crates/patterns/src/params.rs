@@ -71,7 +71,8 @@ choices! {
     pub enum Clearance {
         /// The pattern stays as it was optimised.
         Ignored = "ignored",
-        /// Exact outlines are moved apart, exchanged or removed.
+        /// Exact outlines are moved apart, exchanged or removed, unless they lie as those of the exemplar do: classes that
+        /// touch there may touch, and those that overlap may overlap as deeply.
         Repaired = "repaired",
     }
 }
@@ -115,7 +116,7 @@ params! {
         attributes "attributes": Attributes = Attributes::Selected;
         /// How elements follow their samples.
         deform "deform": Deform = Deform::Rigid;
-        /// Whether overlaps are repaired at the end.
+        /// Whether overlaps deeper than the exemplar's are repaired at the end, where that leaves no wider holes than it has.
         clearance "clearance": Clearance = Clearance::Repaired;
         /// Levels of the hierarchy.
         levels "levels": usize = 3, in 1..=5;

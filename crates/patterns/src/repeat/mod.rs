@@ -6,6 +6,7 @@
 //! shortest that are independent span the lattice, which least squares over all marks then place exactly
 //! ([Pauly 2008] for voting in the space of transformations, [Liu 2004] for near-regular lattices).
 
+pub(crate) mod description;
 pub(crate) mod find;
 pub(crate) mod lattice;
 pub(crate) mod lines;
@@ -16,7 +17,8 @@ pub(crate) mod straight;
 pub(crate) mod support;
 pub(crate) mod tile;
 
-pub use find::{Explains, Extent, Repeat, find};
+pub use description::{Explains, Extent, Repeat};
+pub use find::find;
 pub use lattice::Lattice;
 pub use marks::Anchor;
 pub use tile::TileFit;

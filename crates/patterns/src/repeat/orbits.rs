@@ -7,7 +7,7 @@ use arabesque_core::{Bounds, Budget, Exemplar, Result, Role, Vector};
 use crate::{
     exemplar::library::farthest,
     repeat::{
-        find::Repeat,
+        description::Repeat,
         lattice::{Lattice, Node},
         marks::{place_of, touches},
     },

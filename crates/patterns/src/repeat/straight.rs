@@ -3,7 +3,7 @@
 use arabesque_core::{Budget, Result, Vector};
 
 use crate::repeat::{
-    find::{Explains, Extent, Repeat},
+    description::{Explains, Extent, Repeat},
     lattice::Lattice,
     lines::Lines,
     marks::Anchor,

@@ -3,7 +3,7 @@
 use arabesque_core::Vector;
 
 use crate::repeat::{
-    find::{Extent, Repeat},
+    description::{Extent, Repeat},
     lattice::{Lattice, Node},
 };
 
@@ -149,7 +149,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
     use super::*;
-    use crate::repeat::{find::Explains, marks::Anchor};
+    use crate::repeat::{description::Explains, marks::Anchor};
 
     fn repeat(a: (f64, f64), b: (f64, f64), extent: Extent) -> Repeat {
         let lattice = Lattice::new(Vector::xy(a.0, a.1), Vector::xy(b.0, b.1)).unwrap();

@@ -148,10 +148,7 @@ impl Note {
                 "strokes go over and under something in turn; the result has all strokes of one look in one layer",
                 "draw what goes over as a shape of its own, with a gap in what goes under",
             ),
-            Self::ManyPaints => (
-                "stroke left out that lies under more than thirty others on the same line",
-                "draw the line with fewer strokes",
-            ),
+            Self::ManyPaints => ("stroke left out that lies under thirty others", "use fewer strokes"),
             Self::UnevenWidth => (
                 "stroke that is stretched more one way than the other; its mean width is used",
                 "apply the transform to the path, or convert the stroke to a path",

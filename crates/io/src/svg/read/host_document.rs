@@ -19,7 +19,8 @@ use crate::{
         parse::{definitions::Definitions, geometry::LARGEST, guard, source::Source},
         read::{
             document::{Document, Opened},
-            placed::{Matcher, Sorted, Sorter},
+            matcher::Matcher,
+            sorter::{Sorted, Sorter},
         },
         shape::{extent::bounds, idle::without_idle_clips, painted_area::Painter},
         understand::{

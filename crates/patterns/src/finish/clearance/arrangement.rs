@@ -197,6 +197,35 @@ impl<'a> Arrangement<'a> {
         Ok(self.figure(a.figure).gap(self.figure(b.figure), &place, meter)? * a.place.scale)
     }
 
+    /// Distance of `p` from the nearest ink of the bodies that `counts` lets through, none of which has moved by more than
+    /// `slack`; at most `reach`.
+    pub(crate) fn distance_to_ink(
+        &self,
+        p: Vector<2>,
+        reach: f64,
+        slack: f64,
+        counts: &dyn Fn(usize) -> bool,
+        meter: &mut Meter<'_>,
+    ) -> Result<f64> {
+        let mut near = Vec::new();
+        for layer in &self.layers {
+            let visit = |slot: usize, _| near.push(layer.members[slot]);
+            meter.spend(NEAR * layer.grid.within(p, reach + layer.largest + slack, visit))?;
+        }
+        let mut nearest = reach;
+        for body in near.into_iter().filter(|&j| counts(j)).map(|j| &self.bodies[j]) {
+            let offset = self.domain.offset(p, body.centre);
+            if offset.norm() - body.radius >= nearest {
+                continue;
+            }
+            let figure = self.figure(body.figure);
+            meter.spend(NEAR * figure.complexity() as u64)?;
+            let own = body.place.inverse().apply(body.centre - offset);
+            nearest = nearest.min(figure.distance(own) * body.place.scale);
+        }
+        Ok(nearest)
+    }
+
     /// Whether two bodies share area, however little, or touch so closely that they may.
     pub(crate) fn meet(&self, a: &PlacedFigure, b: &PlacedFigure, meter: &mut Meter<'_>) -> Result<bool> {
         for offset in self.images(a, b) {

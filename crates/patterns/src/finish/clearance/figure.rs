@@ -70,6 +70,14 @@ impl Figure {
         self.edges.covers(p)
     }
 
+    /// Distance of `p` from the ink: 0 on it.
+    pub(crate) fn distance(&self, p: Vector<2>) -> f64 {
+        if self.covers(p) {
+            return 0.0;
+        }
+        self.outline.edges().map(|edge| segment::distance(edge, p)).fold(f64::INFINITY, f64::min)
+    }
+
     /// The edges after `place`.
     pub(crate) fn placed_edges(&self, place: &Similarity<2>) -> impl Iterator<Item = Edge> {
         self.outline.rings.iter().flat_map(move |ring| {

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use arabesque_core::{Budget, Domain, Exemplar, Held, Outline, Placement, Result, Role, Similarity, Warp};
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, Held, Outline, Placement, Result, Role, Similarity, Warp};
 
 use crate::finish::clearance::{
     arrangement::{Arrangement, Overlap, PlacedFigure},
@@ -11,6 +11,13 @@ use crate::finish::clearance::{
 
 /// Overlaps below this share of the smaller element are rounding.
 pub(crate) const NEGLIGIBLE: f64 = 1e-6;
+
+/// Share of the smaller element by which elements may overlap whose classes touch in the exemplar, and share of what
+/// classes that overlap do there by which they may overlap more: rounding, and an unsteady hand.
+const UNSTEADY: (f64, f64) = (0.02, 0.05);
+
+/// Elements nearer than this touch, in mean spacings.
+const TOUCHING: f64 = 1e-3;
 
 /// Elements of two classes that overlap by more than this share of the smaller one lie on top of each other on purpose.
 const LAYERED: f64 = 0.5;
@@ -37,6 +44,16 @@ struct Allowance {
     share: f64,
     /// Smallest distance between elements that do not overlap, at most [`WIDEST_GAP`].
     gap: Option<f64>,
+    /// Whether elements touch without overlapping by more than rounding.
+    touches: bool,
+}
+
+impl Allowance {
+    /// Largest common area that two elements may have, as a share of the smaller one.
+    fn largest(&self) -> f64 {
+        let touching = if self.touches { UNSTEADY.0 } else { 0.0 };
+        ((1.0 + UNSTEADY.1) * self.share).max(touching)
+    }
 }
 
 /// Outlines of the exemplar's elements, and how they lie to each other.
@@ -53,8 +70,10 @@ pub(crate) struct ExemplarClearance {
     /// Mean element spacing.
     pub(crate) spacing: f64,
     allowed: BTreeMap<ClassPair, Allowance>,
-    /// Common area as a share of all ink, classes that are layered on purpose left out.
+    /// Common area as a share of all ink, classes that are layered on purpose, or only touch, left out.
     ratio: f64,
+    /// The frame of the exemplar.
+    pub(crate) window: Bounds<2>,
     _held: Arc<Held>,
 }
 
@@ -78,8 +97,17 @@ impl ExemplarClearance {
         let sources = sources(exemplar, &figures);
         let spacing = exemplar.spacing();
         let allowed = BTreeMap::new();
-        let mut clearance =
-            Self { figures, class, overlaps: Vec::new(), sources, spacing, allowed, ratio: 0.0, _held: held };
+        let mut clearance = Self {
+            figures,
+            class,
+            overlaps: Vec::new(),
+            sources,
+            spacing,
+            allowed,
+            ratio: 0.0,
+            window: exemplar.window,
+            _held: held,
+        };
         clearance.measure(&Domain::Box(exemplar.window), &budget)?;
         Ok(Some(clearance))
     }
@@ -93,16 +121,29 @@ impl ExemplarClearance {
             let share = overlap.area / smaller_area(&arrangement, overlap);
             let entry = allowed.entry(pair(self.class[overlap.a], self.class[overlap.b])).or_default();
             entry.share = entry.share.max(share);
+            entry.touches |= share <= NEGLIGIBLE;
         }
         for (classes, gap) in smallest_gaps(&arrangement, &overlaps, WIDEST_GAP * self.spacing)? {
-            allowed.entry(classes).or_default().gap = Some(gap);
+            let entry = allowed.entry(classes).or_default();
+            entry.gap = Some(gap);
+            entry.touches |= gap <= TOUCHING * self.spacing;
         }
-        let ratio =
-            |this: &Self| this.unlayered_area(&arrangement, &overlaps) / ink(&arrangement).max(f64::MIN_POSITIVE);
-        self.allowed.clone_from(&allowed);
-        self.ratio = ratio(self);
+        self.allowed = allowed;
+        let all = self.unlayered_area(&arrangement, &overlaps) / ink(&arrangement).max(f64::MIN_POSITIVE);
+        self.ratio = all.max(self.inner_ratio(&arrangement, &overlaps));
         self.overlaps = overlaps;
         Ok(())
+    }
+
+    /// Common area as a share of the ink of elements all of whose neighbours are known: those at the frame have fewer.
+    fn inner_ratio(&self, arrangement: &Arrangement<'_>, overlaps: &[Overlap]) -> f64 {
+        let bodies = &arrangement.bodies;
+        let is_inner = |i: usize| self.window.signed_distance(bodies[i].centre) >= 2.0 * bodies[i].radius;
+        let ink: f64 = (0..bodies.len()).filter(|&i| is_inner(i)).map(|i| bodies[i].area).sum();
+        let halves = |o: &Overlap| f64::from(u8::from(is_inner(o.a)) + u8::from(is_inner(o.b)));
+        let counts = |o: &&Overlap| !self.is_free(&bodies[o.a], &bodies[o.b]);
+        let common: f64 = overlaps.iter().filter(counts).map(|o| 0.5 * halves(o) * o.area).sum();
+        if ink > 0.0 { common / ink } else { 0.0 }
     }
 
     /// PlacedFigure of exemplar element `source` under `place`.
@@ -145,18 +186,20 @@ impl ExemplarClearance {
 
     /// Largest common area that two bodies may have.
     pub(crate) fn allowed_area(&self, a: &PlacedFigure, b: &PlacedFigure) -> f64 {
-        let share = self.allowance(a, b).map_or(0.0, |allowance| allowance.share);
+        let share = self.allowance(a, b).map_or(0.0, Allowance::largest);
         share.max(NEGLIGIBLE) * (1.0 + NEGLIGIBLE) * a.area.min(b.area)
     }
 
     /// Whether any overlap at all is too much for two bodies.
     pub(crate) fn must_be_apart(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
-        self.allowance(a, b).is_none_or(|allowance| allowance.share <= NEGLIGIBLE)
+        self.allowance(a, b).is_none_or(|allowance| allowance.largest() <= NEGLIGIBLE)
     }
 
-    /// Whether the classes of two bodies lie on top of each other on purpose.
-    fn layered(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
-        self.allowance(a, b).is_some_and(|allowance| allowance.share > LAYERED)
+    /// Whether how much two bodies overlap is not counted: their classes lie on top of each other on purpose, or touch
+    /// and nothing more.
+    fn is_free(&self, a: &PlacedFigure, b: &PlacedFigure) -> bool {
+        let touch = |allowance: &Allowance| allowance.touches && allowance.share <= NEGLIGIBLE;
+        self.allowance(a, b).is_some_and(|allowance| allowance.share > LAYERED || touch(allowance))
     }
 
     /// Distance to leave between two bodies that are pushed apart, for elements of exemplar size: as close as the
@@ -164,7 +207,7 @@ impl ExemplarClearance {
     pub(crate) fn gap(&self, a: &PlacedFigure, b: &PlacedFigure) -> f64 {
         let widest = WIDEST_GAP * self.spacing;
         match self.allowance(a, b) {
-            Some(allowance) if allowance.share > NEGLIGIBLE => 0.0,
+            Some(allowance) if allowance.largest() > NEGLIGIBLE => 0.0,
             Some(allowance) => allowance.gap.unwrap_or(widest),
             None => widest,
         }
@@ -175,20 +218,20 @@ impl ExemplarClearance {
     }
 
     fn unlayered_area(&self, arrangement: &Arrangement, overlaps: &[Overlap]) -> f64 {
-        let counts = |o: &&Overlap| !self.layered(&arrangement.bodies[o.a], &arrangement.bodies[o.b]);
+        let counts = |o: &&Overlap| !self.is_free(&arrangement.bodies[o.a], &arrangement.bodies[o.b]);
         overlaps.iter().filter(counts).fold(0.0, |sum, o| sum + o.area)
     }
 
     /// Pairs that have to go, largest first, so that the common area of the rest is no larger a share of the ink than
     /// in the exemplar: pairs that are allowed one by one can still be too many.
     pub(crate) fn surplus(&self, arrangement: &Arrangement, allowed: &[Overlap]) -> Vec<(usize, usize)> {
-        let budget = self.ratio * ink(arrangement);
+        let budget = self.ratio * (1.0 + UNSTEADY.1) * ink(arrangement);
         let mut sum = self.unlayered_area(arrangement, allowed);
-        let is_free = |o: &&Overlap| {
+        let is_candidate = |o: &&Overlap| {
             let (a, b) = (&arrangement.bodies[o.a], &arrangement.bodies[o.b]);
-            !(self.layered(a, b) || a.fixed && b.fixed) && o.a != o.b && o.area > NEGLIGIBLE * a.area.min(b.area)
+            !(self.is_free(a, b) || a.fixed && b.fixed) && o.a != o.b && o.area > NEGLIGIBLE * a.area.min(b.area)
         };
-        let mut candidates: Vec<_> = allowed.iter().filter(is_free).collect();
+        let mut candidates: Vec<_> = allowed.iter().filter(is_candidate).collect();
         candidates.sort_by(|x, y| y.area.total_cmp(&x.area).then((x.a, x.b).cmp(&(y.a, y.b))));
         let mut surplus = Vec::new();
         for overlap in candidates {

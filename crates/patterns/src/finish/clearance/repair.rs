@@ -50,7 +50,8 @@ pub(crate) struct Repair<'a> {
     pub(crate) border_check: BorderCheck<'a>,
     /// Pairs that must be apart although the exemplar has such: there are too many of them.
     surplus: BTreeSet<(usize, usize)>,
-    alive: Vec<bool>,
+    /// Which bodies are still there.
+    pub(crate) alive: Vec<bool>,
     /// Longest shift of each body.
     reach: Vec<f64>,
     /// Longest shift of any body.
@@ -71,9 +72,11 @@ pub(crate) fn repair(
     if violations.is_empty() && outside.is_empty() {
         return Ok(summary);
     }
+    let before = repair.arrangement.bodies.clone();
     let violations = repair.make_room(violations)?;
     repair.settle(&violations, &outside)?;
     repair.thin_out(violations, 0)?;
+    summary.restored = repair.fill_holes(&before)?;
     repair.write_back(placements, &mut summary);
     Ok(summary)
 }

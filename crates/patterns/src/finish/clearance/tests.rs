@@ -157,7 +157,7 @@ fn a_pair_may_overlap_as_much_as_in_the_exemplar() {
     let (mended, summary) = mend(&e, &on_page(20.0), &placements);
     assert_eq!(summary.pairs, 1);
     let left = ratio(&e, &mended, &on_page(20.0));
-    assert!(left <= 0.05 + 1e-6 && left > 0.03, "pushed just as far as needed: {left}");
+    assert!(left <= 0.0525 + 1e-6 && left > 0.03, "pushed just as far as needed: {left}");
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn more_overlapping_pairs_than_the_exemplar_has_are_too_many() {
     assert!(ratio(&e, &placements, &request) > 0.06);
     let (mended, summary) = mend(&e, &request, &placements);
     assert_eq!((mended.len(), summary.removed), (9, 0));
-    assert!(ratio(&e, &mended, &request) <= 0.05 + 1e-6);
+    assert!(ratio(&e, &mended, &request) <= 0.0525 + 1e-6);
 }
 
 #[test]

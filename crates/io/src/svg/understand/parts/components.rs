@@ -21,7 +21,10 @@ use crate::svg::{
     understand::{
         item::{HALF, Item, Kind, Origin},
         join::{SEAM, connected},
-        parts::{crowds::crowds, groups::together},
+        parts::{
+            crowds::crowds,
+            groups::{is_small_fill, together},
+        },
     },
 };
 
@@ -253,11 +256,6 @@ fn put_together(
     let merged = merge(&items, &touching, Reason::Touching, painter, frame)?;
     let groups = together(&merged, frame, painter.source.budget)?;
     merge(&merged, &groups, Reason::Together, painter, frame)
-}
-
-/// Whether something filled may be a part of a thing that is drawn with strokes too.
-pub(crate) fn is_small_fill(item: &Item) -> bool {
-    item.kind == Kind::Element && matches!(item.origin, Origin::Fill | Origin::Piece)
 }
 
 /// The groups, those larger than elements taken apart into what `apart` says and single items.

@@ -10,10 +10,7 @@ use crate::svg::{
     shape::extent::longer,
     understand::{
         item::{HALF, Item, Kind, Origin},
-        parts::{
-            components::is_small_fill,
-            gaps::{Link, links},
-        },
+        parts::gaps::{Link, links},
     },
 };
 
@@ -73,6 +70,11 @@ fn jumps(links: &[Link], parts: usize) -> Vec<usize> {
     let floor = links.iter().map(|link| link.gap).sum::<f64>() / links.len().max(1) as f64 * 0.02;
     let is_jump = |k: &usize| links[*k].gap >= JUMP * links[*k - 1].gap.max(floor);
     (least..links.len()).rev().filter(is_jump).take(JUMPS).collect()
+}
+
+/// Whether something filled may be a part of a thing that is drawn with strokes too.
+pub(crate) fn is_small_fill(item: &Item) -> bool {
+    item.kind == Kind::Element && matches!(item.origin, Origin::Fill | Origin::Piece)
 }
 
 #[cfg(test)]

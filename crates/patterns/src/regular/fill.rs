@@ -17,7 +17,8 @@ use crate::{
         strokes::Strokes,
     },
     repeat::{
-        Explains, Repeat, find,
+        Explains, Repeat,
+        find::find_for,
         orbits::{Orbit, orbits},
     },
 };
@@ -61,7 +62,11 @@ impl Regular {
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
-        let Some(repeat) = find(exemplar, budget)? else { return Ok(None) };
+        find_for(exemplar, budget, |repeat| Self::of(exemplar, repeat.clone(), budget))
+    }
+
+    /// With a repeat; `None` where that does not explain enough.
+    fn of(exemplar: &Exemplar<2>, repeat: Repeat, budget: &Budget) -> Result<Option<Self>> {
         let has_lines = !exemplar.curves.is_empty() || !exemplar.areas.is_empty();
         if has_lines && repeat.explains == Explains::Places {
             return Ok(None);

@@ -36,12 +36,13 @@ const EXACT: f64 = 0.02;
 const NEAR: f64 = 0.2;
 
 /// The ways of comparing, in the order of how much they explain.
-const MODES: [Mode; 6] = [
+const MODES: [Mode; 7] = [
     Mode { kinds: Kinds::Looks, anchor: Anchor::Centre, tolerance: EXACT, least: 3, seen: FEW },
     Mode { kinds: Kinds::Looks, anchor: Anchor::Centre, tolerance: NEAR, least: 16, seen: MANY },
     Mode { kinds: Kinds::Any, anchor: Anchor::Centre, tolerance: EXACT, least: 9, seen: FEW },
     Mode { kinds: Kinds::Any, anchor: Anchor::Box, tolerance: EXACT, least: 9, seen: FEW },
     Mode { kinds: Kinds::Classes, anchor: Anchor::Centre, tolerance: NEAR, least: 16, seen: MANY },
+    Mode { kinds: Kinds::Any, anchor: Anchor::Centre, tolerance: NEAR, least: 16, seen: MANY },
     Mode { kinds: Kinds::Any, anchor: Anchor::Box, tolerance: NEAR, least: 16, seen: MANY },
 ];
 
@@ -68,9 +69,21 @@ const OFFSET: u64 = 60;
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
 pub fn find(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
+    find_for(exemplar, budget, |repeat| Ok(Some(repeat.clone())))
+}
+
+/// What the first repeat of an exemplar gives of which `make` makes something.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop, and what `make` gives.
+pub(crate) fn find_for<T>(
+    exemplar: &Exemplar<2>,
+    budget: &Budget,
+    mut make: impl FnMut(&Repeat) -> Result<Option<T>>,
+) -> Result<Option<T>> {
     let budget = &budget.stage("finding the repeat");
     let lines = Lines::new(exemplar, budget)?;
-    let index = LineIndex::new(&lines, exemplar.window, budget)?;
+    let index = LineIndex::new(&lines, exemplar, budget)?;
     for mode in MODES {
         // Lines either go over into themselves or they do not.
         if mode.tolerance > EXACT && !lines.is_empty() {
@@ -81,12 +94,17 @@ pub fn find(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
             continue;
         }
         let search = Search { marks: &marks, lines: &index, mode, side: exemplar.view().side(), budget };
-        if let Some(found) = search.lattice()? {
-            return Ok(Some(found));
+        if let Some(found) = search.lattice()?
+            && let Some(made) = make(&found)?
+        {
+            return Ok(Some(made));
         }
     }
     if exemplar.elements.is_empty() {
-        return straight::stripes(&lines, &index, budget);
+        return match straight::stripes(&lines, &index, budget)? {
+            Some(found) => make(&found),
+            None => Ok(None),
+        };
     }
     Ok(None)
 }
@@ -237,7 +255,9 @@ impl Search<'_> {
                     let by = lattice.at(step);
                     let (partner, looked) = marks.find(mark.place + by, mark.kind, tolerance);
                     work += 8 * (4 + looked);
-                    if window.contains(mark.extent.min + by) && window.contains(mark.extent.max + by) {
+                    let is_unknown = || mark.element.is_none() && marks.unknown.contains(mark.place + by);
+                    let is_in = window.contains(mark.extent.min + by) && window.contains(mark.extent.max + by);
+                    if is_in && (partner.is_some() || !is_unknown()) {
                         seen += 1;
                         found += usize::from(partner.is_some());
                     }

@@ -45,6 +45,24 @@ pub(crate) struct Mark {
     pub(crate) is_context: bool,
 }
 
+/// Where an exemplar does not show what it would: the boxes around elements that its frame has cut, which may be lines
+/// elsewhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Unknown(Vec<Bounds<2>>);
+
+impl Unknown {
+    pub(crate) fn of(exemplar: &Exemplar<2>) -> Self {
+        let near = TOUCH * exemplar.window.size().norm();
+        let boxes = exemplar.elements.iter().map(|e| (e.role, e.outline.bounds()));
+        let cut = |(role, b): &(Role, Bounds<2>)| *role == Role::Context || touches(b, &exemplar.window);
+        Self(boxes.filter(cut).map(|(_, b)| b.grown(near)).collect())
+    }
+
+    pub(crate) fn contains(&self, place: Vector<2>) -> bool {
+        self.0.iter().any(|b| b.contains(place))
+    }
+}
+
 /// The marks of an exemplar.
 #[derive(Clone, Debug)]
 pub(crate) struct Marks {
@@ -52,6 +70,7 @@ pub(crate) struct Marks {
     pub(crate) window: Bounds<2>,
     /// Mean distance of marks.
     pub(crate) unit: f64,
+    pub(crate) unknown: Unknown,
     index: GridIndex<2>,
 }
 
@@ -114,7 +133,7 @@ impl Marks {
         let unit = (window.measure() / all.len().max(1) as f64).sqrt();
         let places: Vec<_> = all.iter().map(|mark| mark.place).collect();
         let index = GridIndex::new(&places, 0.25 * unit, &Domain::Box(window));
-        Ok(Some(Self { all, window, unit, index }))
+        Ok(Some(Self { all, window, unit, unknown: Unknown::of(exemplar), index }))
     }
 
     /// The mark of this kind that is nearest to a place, within a distance.

@@ -1,11 +1,11 @@
 //! What a translation is supported by: the share of marks, and of the length of lines, that it takes to another of
 //! their kind.
 
-use arabesque_core::{Bounds, Budget, Domain, GridIndex, Result, Segment, Vector, segment};
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Segment, Vector, segment};
 
 use crate::repeat::{
     lines::{AT_FRAME, Lines},
-    marks::Marks,
+    marks::{Marks, Unknown},
 };
 
 /// A share of marks that must have a partner.
@@ -53,6 +53,9 @@ pub(crate) fn is_supported(
             let group = usize::from(mark.element.is_none());
             let (partner, looked) = marks.find(mark.place + way, mark.kind, tolerance);
             work += LOOK * (4 + looked);
+            if partner.is_none() && mark.element.is_none() && marks.unknown.contains(mark.place + way) {
+                continue;
+            }
             seen[group] += 1;
             found[group] += usize::from(partner.is_some());
         }
@@ -84,6 +87,7 @@ pub(crate) struct LineIndex<'a> {
     index: GridIndex<2>,
     /// Longest piece.
     step: f64,
+    unknown: Unknown,
 }
 
 impl<'a> LineIndex<'a> {
@@ -91,7 +95,8 @@ impl<'a> LineIndex<'a> {
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
-    pub(crate) fn new(lines: &'a Lines, window: Bounds<2>, budget: &Budget) -> Result<Self> {
+    pub(crate) fn new(lines: &'a Lines, exemplar: &Exemplar<2>, budget: &Budget) -> Result<Self> {
+        let window = exemplar.window;
         let length: f64 = lines.tracks.iter().flat_map(|t| t.points.windows(2)).map(|w| (w[1] - w[0]).norm()).sum();
         let step = (length / PLACES).max(1e-4 * window.size().norm());
         let mut pieces = Vec::new();
@@ -107,7 +112,7 @@ impl<'a> LineIndex<'a> {
         }
         let middles: Vec<_> = pieces.iter().map(|((a, b), _)| (*a + *b) * 0.5).collect();
         let index = GridIndex::new(&middles, step, &Domain::Box(window));
-        Ok(Self { lines, window, pieces, index, step })
+        Ok(Self { lines, window, pieces, index, step, unknown: Unknown::of(exemplar) })
     }
 
     /// Whether no line reaches over the sides of the frame that lie across an axis.
@@ -154,6 +159,9 @@ impl<'a> LineIndex<'a> {
                 }
                 let (near, looked) = self.distance(place + by, way, *style, tolerance);
                 work += LOOK * (8 + looked);
+                if near.is_none() && self.unknown.contains(place + by) {
+                    continue;
+                }
                 seen += 1;
                 found += usize::from(near.is_some());
             }

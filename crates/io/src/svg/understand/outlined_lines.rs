@@ -3,7 +3,7 @@
 
 use std::{collections::BTreeSet, rc::Rc};
 
-use arabesque_core::{Bounds, Error, Result, Role};
+use arabesque_core::{Bounds, Error, Result};
 
 use crate::svg::{
     centreline::centrelines,
@@ -14,10 +14,7 @@ use crate::svg::{
     },
     reason::Reason,
     shape::extent::longer,
-    understand::{
-        frame,
-        item::{Item, Kind, Origin},
-    },
+    understand::item::{Item, Kind, Origin},
 };
 
 /// How near to a side of the frame something reaches it, as a share of the frame.
@@ -62,7 +59,7 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
     Ok(())
 }
 
-/// Takes fills that run through the frame for areas, with what is painted like them and cut by the frame.
+/// Takes fills that run through the frame for areas.
 pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
     let reaches_over = |item: &Item| {
         let b = item.outline.bounds();
@@ -71,7 +68,6 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
             |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
         reaches(0) + reaches(1) >= 2
     };
-    let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| is_plain_fill(item)) {
         let is_area = match item.kind {
             Kind::Large => reaches_over(item),
@@ -82,13 +78,6 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
             continue;
         }
         (item.kind, item.reason) = (Kind::Area, Reason::Area);
-        paints.insert(item.painted.colours_key());
-    }
-    // What the frame has cut off is a part of the same.
-    for item in items.iter_mut().filter(|item| item.kind == Kind::Element && item.origin == Origin::Piece) {
-        if paints.contains(&item.painted.colours_key()) && frame::role(item, Some(window)) == Role::Context {
-            (item.kind, item.reason) = (Kind::Area, Reason::Area);
-        }
     }
 }
 

@@ -8,6 +8,7 @@ mod place;
 mod redo;
 mod request;
 mod surroundings;
+mod tile;
 
 pub(crate) use fields::constant_factor;
 pub(crate) use made::{snapshot, unfinished};
@@ -93,6 +94,7 @@ impl Ready for Plane {
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        self.settle_tile(&mut context)?;
         let request = Arc::new(self.exemplar.resolve(&mut context)?);
         let origin = context.origin();
         let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);

@@ -41,6 +41,7 @@ pub use shape::{
     simplify::simplified,
 };
 pub use write::{
+    cell::{RepeatCell, with_cell},
     document::recipe_of,
     result::write_svg,
     ribbon::{

@@ -8,7 +8,7 @@ use crate::repeat::{
     description::{Explains, Extent, Repeat},
     lattice::{Lattice, are_parallel},
     lines::Lines,
-    marks::{Anchor, Kinds, Marks},
+    marks::{Anchor, Kinds, Mark, Marks},
     straight,
     support::{LineIndex, is_supported},
 };
@@ -60,6 +60,11 @@ const JITTER: f64 = 0.12;
 /// Most marks in a cell where they lie about where they should.
 const FEW_IN_CELL: f64 = 6.5;
 
+/// More jitter than this, in mean distances of marks, was made by a hand. A lattice that was found by looking exactly may then be
+/// one that some marks keep to by chance, with a smaller one in it, of at most this share of its cell.
+const BY_HAND: f64 = 0.002;
+const SMALLER: f64 = 0.7;
+
 /// Work for each offset.
 const OFFSET: u64 = 60;
 
@@ -71,9 +76,10 @@ pub fn find(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
     let budget = &budget.stage("finding the repeat");
     let lines = Lines::new(exemplar, budget)?;
     let index = LineIndex::new(&lines, exemplar.window, budget)?;
+    let mut doubtful: Option<Repeat> = None;
     for mode in MODES {
         // Lines either go over into themselves or they do not.
-        if mode.tolerance > EXACT && !lines.is_empty() {
+        if mode.tolerance > EXACT && !lines.is_empty() || mode.tolerance <= EXACT && doubtful.is_some() {
             continue;
         }
         let Some(marks) = Marks::new(exemplar, &lines, mode.kinds, mode.anchor, budget)? else { continue };
@@ -81,9 +87,17 @@ pub fn find(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
             continue;
         }
         let search = Search { marks: &marks, lines: &index, mode, side: exemplar.view().side(), budget };
-        if let Some(found) = search.lattice()? {
-            return Ok(Some(found));
+        let Some(found) = search.lattice()? else { continue };
+        match doubtful {
+            None if mode.tolerance <= EXACT && lines.is_empty() && found.jitter > BY_HAND * marks.unit => {
+                doubtful = Some(found);
+            }
+            Some(large) if found.lattice.cell() > SMALLER * large.lattice.cell() => return Ok(Some(large)),
+            _ => return Ok(Some(found)),
         }
+    }
+    if doubtful.is_some() {
+        return Ok(doubtful);
     }
     if exemplar.elements.is_empty() {
         return straight::stripes(&lines, &index, budget);
@@ -134,7 +148,13 @@ impl Search<'_> {
         let slack = 1e-6 * size.norm();
         let is_inside = |min: f64, max: f64| min >= window.min[across] - slack && max <= window.max[across] + slack;
         let along = a[across].abs() <= 1e-3 * a.norm();
-        let marks_inside = self.marks.all.iter().all(|m| is_inside(m.extent.min[across], m.extent.max[across]));
+        // What is cut at the sides shows that there is more beyond them.
+        let is_cut = |m: &Mark| {
+            let (low, high) = (m.extent.min[across] - window.min[across], window.max[across] - m.extent.max[across]);
+            m.is_context && low.min(high) <= slack
+        };
+        let marks_inside =
+            self.marks.all.iter().all(|m| is_inside(m.extent.min[across], m.extent.max[across]) && !is_cut(m));
         if !(along && marks_inside && self.lines.are_within(across)) {
             return Ok(None);
         }
@@ -242,7 +262,8 @@ impl Search<'_> {
                         found += usize::from(partner.is_some());
                     }
                     let there = [at[0] + step[0], at[1] + step[1]];
-                    if let Some(j) = partner.filter(|&j| node[j].is_none()) {
+                    // What the frame has cut is not where it would be as a whole.
+                    if let Some(j) = partner.filter(|&j| node[j].is_none() && !marks.all[j].is_context) {
                         node[j] = Some(there);
                         walk.push((j, there));
                     }

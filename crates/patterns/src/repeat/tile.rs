@@ -10,8 +10,9 @@ use crate::repeat::{
 /// Nodes are looked for so many vectors away.
 const FAR: i64 = 64;
 
-/// A vector lies along an axis when it leaves it by less than this share of its length.
-const ALONG: f64 = 2e-4;
+/// A vector lies along an axis when it leaves it by less than this share of its length, or, drawn by hand, by less than so
+/// many times the jitter in terms of the shorter vector: no better is it known.
+const ALONG: (f64, f64) = (2e-4, 0.3);
 
 /// How a tile fits a repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,11 +32,22 @@ impl Repeat {
     /// Width and height of the smallest rectangle along the axes that tiles the plane with this repeat; `None` where no
     /// multiple of its vectors, within reason, lies along both axes.
     pub fn smallest_tile(&self) -> Option<[f64; 2]> {
+        self.tile_within(self.slack())
+    }
+
+    /// The smallest rectangle along the axes of which the sides are vectors that leave them by at most `slack`.
+    pub(crate) fn tile_within(&self, slack: f64) -> Option<[f64; 2]> {
         if let Extent::Stripes(along) = self.extent {
             return stripes_tile(along, self.period_of_stripes());
         }
-        let sides = [0, 1].map(|axis| along_axis(&self.lattice, axis).map(|node| self.lattice.at(node)[axis].abs()));
-        Some([sides[0]?, sides[1]?])
+        let side = |axis| along_axis(&self.lattice, axis, slack).map(|node| self.lattice.at(node)[axis].abs());
+        Some([side(0)?, side(1)?])
+    }
+
+    /// How far a vector may lie off an axis, as a share of its length.
+    fn slack(&self) -> f64 {
+        let shorter = self.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        ALONG.0.max(ALONG.1 * self.jitter / shorter)
     }
 
     /// Distance after which stripes repeat.
@@ -55,7 +67,7 @@ impl Repeat {
             return fit_stripes(along, across, edges);
         }
         let on_axis = |axis: usize| {
-            let node = along_axis(&lattice, axis)?;
+            let node = along_axis(&lattice, axis, self.slack())?;
             let step = lattice.at(node)[axis];
             let count = (size[axis] / step.abs()).round().max(1.0) * step.signum();
             Some(node.map(|n| n * count as i64))
@@ -117,8 +129,8 @@ fn strain(from: [Vector<2>; 2], to: [Vector<2>; 2]) -> f64 {
     (large - 1.0).abs().max((1.0 - small).abs())
 }
 
-/// The shortest vector of a lattice along an axis.
-fn along_axis(lattice: &Lattice, axis: usize) -> Option<Node> {
+/// The shortest vector of a lattice along an axis, as nearly as `slack`.
+fn along_axis(lattice: &Lattice, axis: usize, slack: f64) -> Option<Node> {
     let mut best: Option<(f64, Node)> = None;
     for i in -FAR..=FAR {
         for j in 0..=FAR {
@@ -126,7 +138,7 @@ fn along_axis(lattice: &Lattice, axis: usize) -> Option<Node> {
             let length = v.norm();
             let shorter = best.is_none_or(|(least, _)| length < least * (1.0 - 1e-9));
             // Far away, a direction is known no better than the vectors are.
-            if length > 0.0 && v[1 - axis].abs() <= ALONG * length && shorter {
+            if length > 0.0 && v[1 - axis].abs() <= slack * length && shorter {
                 best = Some((length, [i, j]));
             }
         }

@@ -131,6 +131,8 @@ impl Search<'_> {
             match (holds, first) {
                 (false, _) => {}
                 (true, None) => first = Some(by),
+                // Two steps of about one vector differ by what is no vector at all.
+                (true, Some(a)) if are_one(a, by, 2.0 * tolerance) => {}
                 (true, Some(a)) => return self.refined(a, by, Extent::Plane),
             }
         }
@@ -280,6 +282,11 @@ impl Search<'_> {
 /// Mean number of marks in a cell.
 fn marks_in(marks: &Marks, lattice: &Lattice) -> f64 {
     marks.all.len() as f64 * lattice.cell() / marks.window.measure()
+}
+
+/// Whether two vectors span nothing but multiples of one, as nearly as `within`.
+fn are_one(a: Vector<2>, b: Vector<2>, within: f64) -> bool {
+    Lattice::new(a, b).is_none_or(|lattice| lattice.vectors.iter().any(|v| v.norm() < within))
 }
 
 /// Fitted vectors, and how well they fit.

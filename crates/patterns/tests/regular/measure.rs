@@ -55,7 +55,7 @@ pub(crate) fn assert_same(
     assert!(surplus.is_empty(), "{name}: {} too many, such as {:?}", surplus.len(), surplus[0]);
     let (found, wanted) = (found.iter().filter(|f| counts(f.0)), wanted.iter().filter(|w| counts(w.0)));
     let (found, wanted) = (found.count(), wanted.count());
-    assert!(wanted > 3 && found.abs_diff(wanted) * 50 <= wanted + 49, "{name}: {found} for {wanted}");
+    assert!(wanted > 3 && found.abs_diff(wanted) * 25 <= wanted + 49, "{name}: {found} for {wanted}");
 }
 
 fn unmatched(

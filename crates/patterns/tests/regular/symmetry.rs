@@ -57,3 +57,30 @@ fn groups_of_strokes() {
         check(name, &groups::of_strokes(name).scaled(scale), k + 2);
     }
 }
+
+#[test]
+fn stripes_are_told_by_whether_they_read_the_same_from_both_sides() {
+    let window = Bounds::new(Vector::ZERO, xy(30.0, 75.0));
+    for (gap, name) in [(7.0, "stripes"), (10.0, "mirrored stripes")] {
+        let at = |k: usize| 3.0 + 20.0 * (k / 2) as f64 + gap * (k % 2) as f64;
+        let lines: Vec<_> = (0..7).map(|k| (vec![xy(0.0, at(k)), xy(30.0, at(k))], k % 2)).collect();
+        let exemplar = crate::drawing::exemplar(&[], &lines, window);
+        let prepared = prepared(&exemplar, name);
+        let found = symmetry(&exemplar, prepared.repeat().unwrap(), &Budget::default()).unwrap();
+        assert_eq!(found.name(), name);
+    }
+}
+
+#[test]
+fn places_with_different_things_have_the_symmetry_of_the_places() {
+    let window = Bounds::new(Vector::ZERO, xy(80.0, 70.0));
+    let dot = |i: i64, j: i64| {
+        let ring = crate::drawing::polygon(xy(i as f64 * 10.0 + 5.0, j as f64 * 10.0 + 5.0), 3.0, 20, 0.0);
+        (arabesque_core::Outline { rings: vec![ring] }, ((crate::drawing::noise(i, j, 9) + 1.0) * 2.0) as usize)
+    };
+    let dots: Vec<_> = (0..8).flat_map(|i| (0..7).map(move |j| dot(i, j))).collect();
+    let exemplar = crate::drawing::exemplar(&dots, &[], window);
+    let prepared = prepared(&exemplar, "colours");
+    let found = symmetry(&exemplar, prepared.repeat().unwrap(), &Budget::default()).unwrap();
+    assert_eq!(found.name(), "p4m");
+}

@@ -2,7 +2,6 @@
 
 pub(crate) mod areas;
 pub(crate) mod background;
-pub(crate) mod cell;
 pub(crate) mod curves;
 pub(crate) mod cut;
 pub(crate) mod document;

@@ -83,6 +83,15 @@ mod tests {
     }
 
     #[test]
+    fn an_oblique_lattice_nearly_suits_a_larger_tile() {
+        let lattice = Lattice::new(Vector::xy(17.0, 3.1), Vector::xy(5.3, 15.0)).unwrap();
+        let oblique = Repeat { lattice, ..bricks() };
+        assert_eq!(oblique.smallest_tile(), None);
+        let near = oblique.near_tile(&Matrix::identity(), 1.0).unwrap();
+        assert!(near.stretch < 0.01 && near.size[0] > 100.0, "{near:?}");
+    }
+
+    #[test]
     fn what_varies_from_place_to_place_takes_a_tile_as_large_as_the_exemplar() {
         let (shown, upright) = (Vector::xy(130.0, 90.0), Matrix::identity());
         let places = Repeat { explains: Explains::Places, ..bricks() };

@@ -14,6 +14,9 @@ const FAR: i64 = 64;
 /// many times the jitter in terms of the shorter vector: no better is it known.
 const ALONG: (f64, f64) = (2e-4, 0.3);
 
+/// Most cells along stripes in a tile.
+const MOST_CELLS: f64 = 1e5;
+
 /// How a tile fits a repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileFit {
@@ -64,13 +67,15 @@ impl Repeat {
         if let Extent::Stripes(along) = self.extent {
             let along = map(along).unit_or_zero();
             let across = lattice.vectors.map(|v| v.cross(along).abs()).into_iter().fold(0.0, f64::max);
-            return fit_stripes(along, across, edges);
+            let length = lattice.vectors.map(|v| v.dot(along).abs()).into_iter().fold(0.0, f64::max);
+            return fit_stripes(along, across, length, edges);
         }
         let on_axis = |axis: usize| {
             let node = along_axis(&lattice, axis, self.slack())?;
             let step = lattice.at(node)[axis];
-            let count = (size[axis] / step.abs()).round().max(1.0) * step.signum();
-            Some(node.map(|n| n * count as i64))
+            let count = (size[axis] / step.abs()).round() * step.signum();
+            // A tile that is shorter than this may still come near to another vector.
+            (count != 0.0).then(|| node.map(|n| n * count as i64))
         };
         let nearest = |axis: usize| lattice.nearest(edges[axis]).0;
         let sides = [0, 1].map(|axis| on_axis(axis).unwrap_or_else(|| nearest(axis)));
@@ -90,23 +95,21 @@ fn fitted(lattice: &Lattice, sides: [Node; 2], edges: [Vector<2>; 2]) -> Option<
     Some(TileFit { sides, lattice: Lattice { vectors }, stretch })
 }
 
-/// Stripes go on along themselves as far as is wanted: only what lies across the edges must fit.
-fn fit_stripes(along: Vector<2>, across: f64, edges: [Vector<2>; 2]) -> Option<TileFit> {
+/// Stripes go on along themselves as far as is wanted: only what lies across the edges must fit. Along them, cells of at most the
+/// `length` that the exemplar has them in follow one another, so that none leaves a gap.
+fn fit_stripes(along: Vector<2>, across: f64, length: f64, edges: [Vector<2>; 2]) -> Option<TileFit> {
     let normal = Vector::xy(-along[1], along[0]);
     let counts = edges.map(|edge| (edge.dot(normal) / across).round());
     let [x, y] = counts;
-    let vectors = match (x != 0.0, y != 0.0) {
-        (true, _) => {
-            let a = edges[0] * (1.0 / x);
-            [a, edges[1] - a * y]
-        }
-        (false, true) => {
-            let a = edges[1] * (1.0 / y);
-            [a, edges[0]]
-        }
+    let (a, rest) = match (x != 0.0, y != 0.0) {
+        (true, _) => (edges[0] * (1.0 / x), edges[1] - edges[0] * (y / x)),
+        (false, true) => (edges[1] * (1.0 / y), edges[0]),
         (false, false) => return None,
     };
-    let sides = if x != 0.0 { [[x as i64, 0], [y as i64, 1]] } else { [[0, 1], [y as i64, 0]] };
+    let cells = (rest.norm() / length - 1e-6).ceil().clamp(1.0, MOST_CELLS);
+    let vectors = [a, rest * (1.0 / cells)];
+    let n = cells as i64;
+    let sides = if x != 0.0 { [[x as i64, 0], [y as i64, n]] } else { [[0, n], [y as i64, 0]] };
     let along_now = vectors[1].unit_or_zero();
     let across_now = vectors[0].cross(along_now).abs();
     let turned = along_now.cross(along).abs();

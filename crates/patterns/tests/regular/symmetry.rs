@@ -60,7 +60,7 @@ fn groups_of_strokes() {
 
 #[test]
 fn stripes_are_told_by_whether_they_read_the_same_from_both_sides() {
-    let window = Bounds::new(Vector::ZERO, xy(30.0, 75.0));
+    let window = Bounds::new(Vector::ZERO, xy(30.0, 69.0));
     for (gap, name) in [(7.0, "stripes"), (10.0, "mirrored stripes")] {
         let at = |k: usize| 3.0 + 20.0 * (k / 2) as f64 + gap * (k % 2) as f64;
         let lines: Vec<_> = (0..7).map(|k| (vec![xy(0.0, at(k)), xy(30.0, at(k))], k % 2)).collect();

@@ -161,3 +161,19 @@ fn any_number_of_threads_gives_the_same() {
     assert_eq!(made[0], made[1]);
     assert_eq!(made[1], made[2]);
 }
+
+#[test]
+fn stripes_fill_a_tile_of_any_length() {
+    let window = Bounds::new(Vector::ZERO, xy(70.0, 40.0));
+    let at = |k: usize| 3.0 + 20.0 * (k / 2) as f64 + 7.0 * (k % 2) as f64;
+    let lines: Vec<_> = (0..7).map(|k| (vec![xy(at(k), 0.0), xy(at(k), 40.0)], k % 2)).collect();
+    let exemplar = exemplar(&[], &lines, window);
+    let prepared = prepared(&exemplar, "stripes");
+    for length in [20.0, 33.0, 40.0, 75.0] {
+        let outcome = run(&prepared, &Request::new(torus([60.0, length]).0));
+        let total: f64 = outcome.curves.iter().map(|c| c.path.bounds().size()[1]).sum();
+        // Six lines, none shorter than the tile, and none much longer.
+        assert_eq!(outcome.curves.len(), 6, "{length}");
+        assert!(total >= 6.0 * length - 1e-6 && total <= 6.0 * (length + 20.0), "{length}: {total}");
+    }
+}

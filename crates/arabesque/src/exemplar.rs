@@ -6,9 +6,10 @@ use arabesque_core::{Budget, Error, Exemplar, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
-    svg::{self, Drawing, Fragment, Job, Layer, PALETTE, Page, ReadOptions, Unit},
+    svg::{self, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, ReadOptions, Unit},
     table::csv::{self, Points},
 };
+use arabesque_patterns::repeats;
 
 use crate::recipe::{Input, Reading};
 
@@ -54,6 +55,12 @@ impl LoadedExemplar {
             });
         }
         let options = ReadOptions { budget: budget.clone(), ..options };
+        let drawing = svg::read_exemplar(&text, &options)?;
+        if drawing.exemplar.areas.is_empty() || repeats(&drawing.exemplar, budget)? {
+            return Ok(Self::Drawing(Box::new(drawing)));
+        }
+        // Without a repeat, lines are all that can be made of areas.
+        let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
         Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
 }

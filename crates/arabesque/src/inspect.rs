@@ -1,5 +1,9 @@
 //! What was understood of an exemplar.
 
+mod repeat;
+
+pub use repeat::RepeatReport;
+
 use std::fmt;
 
 use arabesque_core::{Budget, Error, Exemplar, Result, Role, Warning};
@@ -53,6 +57,9 @@ pub struct Report {
     pub suggested_radius: f64,
     /// What everything in the file was taken for, and why; empty for points.
     pub understood: Vec<UnderstoodReport>,
+    /// What it repeats by; `None` where it is treated as irregular.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub repeat: Option<RepeatReport>,
     /// Layers that make the file a whole job.
     pub layers: Vec<&'static str>,
     /// What was noticed while reading.
@@ -150,9 +157,11 @@ const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 /// As [`LoadedExemplar::read`] and [`Resources::read`].
 pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources) -> Result<Report> {
     let bytes = resources.read(input)?;
-    Ok(match LoadedExemplar::read(input, &bytes, reading, &resources.budget())? {
+    let budget = resources.budget();
+    Ok(match LoadedExemplar::read(input, &bytes, reading, &budget)? {
         LoadedExemplar::Drawing(drawing) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
+            report.repeat = RepeatReport::of(&drawing.exemplar, &budget)?;
             report.unit = Some(drawing.page.unit.name());
             report.unit_per_user = Some(drawing.page.unit_per_user);
             report.understood = UnderstoodReport::of(&drawing);
@@ -163,7 +172,8 @@ pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources
         }
         LoadedExemplar::Points(exemplar) => {
             let drawing = points_as_drawing(&exemplar);
-            Report { drawing: Some(drawing), ..describe(input, "points", &exemplar) }
+            let repeat = RepeatReport::of(&exemplar, &budget)?;
+            Report { drawing: Some(drawing), repeat, ..describe(input, "points", &exemplar) }
         }
         LoadedExemplar::Space(exemplar, warnings) => {
             let kind = if exemplar.curves.is_empty() { "points in space" } else { "curves in space" };
@@ -210,6 +220,7 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
         spacing,
         suggested_radius: spacing * (SUGGESTED_NEIGHBOURS / ball).powf(1.0 / D as f64),
         understood: Vec::new(),
+        repeat: None,
         layers: Vec::new(),
         warnings: Vec::new(),
         drawing: None,
@@ -234,14 +245,17 @@ fn describe_style<const D: usize>(exemplar: &Exemplar<D>, style: usize) -> Style
 
 impl Report {
     /// A picture of what was understood: the exemplar faded, every outline in the colour of its class, every
-    /// curve in that of its style, the frame, the centres and ends.
+    /// curve in that of its style, the frame, the centres and ends, and a cell of the repeat.
     ///
     /// # Errors
     /// [`Error::Unsupported`] for points in space, and for formats other than SVG and PNG.
     pub fn picture(&self, format: Format, budget: &Budget) -> Result<Vec<u8>> {
         let unsupported = |what: &str| Error::Unsupported { what: what.into(), advice: "leave the picture out".into() };
         let drawing = self.drawing.as_ref().ok_or_else(|| unsupported("a picture of what lies in space"))?;
-        let svg = write_survey(drawing);
+        let mut svg = write_survey(drawing);
+        if let Some(repeat) = &self.repeat {
+            svg = repeat.drawn_over(svg, drawing);
+        }
         match format {
             Format::Svg => Ok(svg.into_bytes()),
             Format::Png => {

@@ -79,12 +79,12 @@ pub use arabesque_core::{
 pub use arabesque_ribbons::Closing;
 pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
-pub use inspect::{ClassReport, Report, StyleReport, UnderstoodReport, inspect};
+pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
     Carrier, Cuboid, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
-    OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, WidthSource, carried_recipe,
+    OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, Tile, WidthSource, carried_recipe,
     is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

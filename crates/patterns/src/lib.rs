@@ -65,4 +65,4 @@ pub use finish::clearance::overlap_ratio;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Repeats, Search, Switch};
 #[doc(hidden)]
 pub use prepared::Compiled;
-pub use prepared::{Prepared, repeats};
+pub use prepared::{Prepared, repeat_of, repeats};

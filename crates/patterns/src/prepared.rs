@@ -35,6 +35,15 @@ pub struct Prepared<const D: usize> {
     irregular: OnceLock<Irregular<D>>,
 }
 
+/// The repeat by which an exemplar is continued; `None` where it is treated as irregular. The same as
+/// [`Prepared::repeat`], without the analysis that irregular ones need.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub fn repeat_of(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
+    Ok(Regular::new(exemplar, budget)?.map(Regular::into_repeat))
+}
+
 /// The engine for one dimension, compiled in this crate: left generic, it would be compiled again in every crate that calls it.
 #[doc(hidden)]
 pub trait Compiled<const D: usize>: Dimension<D> {

@@ -16,6 +16,9 @@ pub struct Summary {
     pub curves: usize,
     /// How many of each style.
     pub styles: BTreeMap<String, usize>,
+    /// Width and height of the seamless tile that was made, in the units of the exemplar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tile: Option<[f64; 2]>,
     /// Of ribbons alone.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub ribbons: Option<RibbonSummary>,
@@ -44,6 +47,7 @@ impl Summary {
             classes: counts(classes),
             curves: outcome.curves.len(),
             styles: counts(styles),
+            tile: None,
             ribbons: None,
             energy: outcome.energy.last().map(|e| e.energy),
         }

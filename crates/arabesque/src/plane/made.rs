@@ -161,7 +161,8 @@ impl Made for PlaneMade {
     }
 
     fn summary(&self) -> Summary {
-        Summary::of(&self.exemplar.drawing.exemplar, &self.outcome)
+        let tile = self.request.engine.domain.period().map(|sides| sides.0);
+        Summary { tile, ..Summary::of(&self.exemplar.drawing.exemplar, &self.outcome) }
     }
 
     fn geometry(&self) -> Geometry {

@@ -8,6 +8,7 @@ mod place;
 mod redo;
 mod request;
 mod surroundings;
+mod tile;
 
 pub(crate) use fields::constant_factor;
 pub(crate) use made::{snapshot, unfinished};
@@ -17,7 +18,7 @@ use std::sync::Arc;
 
 use arabesque_core::{Error, Result, Watch};
 use arabesque_io::svg::LargeFills;
-use arabesque_patterns::{Prepared as Engine, Repeats, repeats};
+use arabesque_patterns::{Prepared as Engine, Repeats};
 
 use crate::{
     artwork::Artwork,
@@ -42,17 +43,9 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     // What is wrong with the parameters is told before what is wrong in a file.
     let params = fill.params.engine_params()?;
     let bytes = preparation.files.read(input)?;
-    let areas = if params.repeat == Repeats::Off { LargeFills::Lines } else { LargeFills::Areas };
-    let reading = |large_fills| Reading { method: fill.method, exemplar_tile: fill.exemplar_tile, large_fills };
-    let budget = preparation.files.budget();
-    let mut loaded = LoadedExemplar::read(input, &bytes, reading(areas), budget)?;
-    if let LoadedExemplar::Drawing(drawing) = &loaded
-        && !drawing.exemplar.areas.is_empty()
-        && !repeats(&drawing.exemplar, budget)?
-    {
-        // Without a repeat, lines are all that can be made of them.
-        loaded = LoadedExemplar::read(input, &bytes, reading(LargeFills::Lines), budget)?;
-    }
+    let large_fills = if params.repeat == Repeats::Off { LargeFills::Lines } else { LargeFills::Areas };
+    let reading = Reading { method: fill.method, exemplar_tile: fill.exemplar_tile, large_fills };
+    let loaded = LoadedExemplar::read(input, &bytes, reading, preparation.files.budget())?;
     let (drawing, points) = match loaded {
         LoadedExemplar::Drawing(drawing) => (*drawing, None),
         LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar))),
@@ -93,6 +86,7 @@ impl Ready for Plane {
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        self.settle_tile(&mut context)?;
         let request = Arc::new(self.exemplar.resolve(&mut context)?);
         let origin = context.origin();
         let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);

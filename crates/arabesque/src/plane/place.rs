@@ -6,7 +6,7 @@ use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Outline, Result, S
 use arabesque_io::svg::{self, Drawing, Page, ReadOptions};
 
 use crate::{
-    recipe::{Fill, Input, Size, pixels_per_user},
+    recipe::{Fill, Input, Size, Tile, pixels_per_user},
     resources::Files,
     spacing::spacing,
 };
@@ -38,8 +38,13 @@ impl Place {
         if given.iter().filter(|g| **g).count() > 1 {
             return Err(Error::parameter("domain", "more than one", "only one of size, tile and domain"));
         }
-        if let Some(size) = fill.size.or(fill.tile) {
-            return Self::sized(&size, fill.tile.is_some(), drawing, units);
+        let tile = match fill.tile {
+            Some(Tile::Of(size)) => Some(size),
+            Some(Tile::Auto) => return Err(Error::parameter("tile", "auto", "a size here, such as 400x400")),
+            None => None,
+        };
+        if let Some(size) = fill.size.or(tile) {
+            return Self::sized(&size, tile.is_some(), drawing, units);
         }
         if let Some(input) = &mut fill.domain {
             files.embed(input)?;

@@ -16,7 +16,7 @@ use crate::recipe::{
     job::{ExemplarTile, Fill, Job, Method, Parameters, Redo, Ribbon, Space, WidthSource, plain_values},
     output::OutputOptions,
     region::Region,
-    size::{Cuboid, Size},
+    size::{Cuboid, Size, Tile},
     version::version,
 };
 
@@ -243,7 +243,7 @@ impl FlatRecipe {
         Job::Fill(Fill {
             exemplar_tile: ExemplarTile::Auto,
             size: self.size.take(),
-            tile: self.tile.take(),
+            tile: self.tile.take().map(Tile::Of),
             border: self.border.take(),
             method: self.method,
             domain: self.domain.take(),

@@ -22,7 +22,7 @@ pub use input::{EMBEDDED_BYTES, Encoding, Input};
 pub use job::{ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, WidthSource, ribbon_options};
 pub use output::OutputOptions;
 pub use region::Region;
-pub use size::{Cuboid, Size};
+pub use size::{Cuboid, Size, Tile};
 
 pub(crate) use embedded::NO_RECIPE;
 pub(crate) use input::encode;

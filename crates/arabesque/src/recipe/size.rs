@@ -86,6 +86,32 @@ impl fmt::Display for Size {
     }
 }
 
+/// What is said of a seamless tile: its size, or that the repeat of the exemplar decides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tile {
+    /// As small as the repeat of the exemplar allows.
+    Auto,
+    /// Of this size.
+    Of(Size),
+}
+
+impl FromStr for Tile {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        if text.trim().eq_ignore_ascii_case("auto") { Ok(Self::Auto) } else { text.parse().map(Self::Of) }
+    }
+}
+
+impl fmt::Display for Tile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Of(size) => size.fmt(f),
+        }
+    }
+}
+
 /// Width, depth and height of a box in space, in the units of the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid(pub [f64; 3]);
@@ -148,6 +174,10 @@ macro_rules! written_as_text {
 }
 
 written_as_text!(Size, "width x height, such as 800x600, 210mmx297mm or 8inx8in (px, mm, cm, in, pt, pc, q)");
+written_as_text!(
+    Tile,
+    "width x height, such as 400x400, or auto for the smallest tile that the repeat of the exemplar fills"
+);
 written_as_text!(Cuboid, "width x depth x height in the units of the exemplar, such as 10x10x5");
 
 #[cfg(test)]
@@ -173,6 +203,14 @@ mod tests {
         }
         let size = Size { sides: [800.0, 600.0], unit: Some(Unit::Px) };
         assert_eq!(size.to_string().parse::<Size>().unwrap(), size);
+    }
+
+    #[test]
+    fn a_tile_may_leave_its_size_to_the_exemplar() {
+        for text in ["auto", "400x300", "10mmx20mm"] {
+            assert_eq!(text.parse::<Tile>().unwrap().to_string(), text);
+        }
+        assert!("automatic".parse::<Tile>().is_err());
     }
 
     #[test]

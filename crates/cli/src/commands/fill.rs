@@ -52,8 +52,8 @@ struct Place {
     /// Fill the closed shapes of an SVG file, holes included; #ID takes one of them
     #[arg(long, value_name = "SHAPE.svg[#ID]", group = "where")]
     domain: Option<String>,
-    /// Make a tile that repeats without a seam
-    #[arg(long, value_name = "WxH", group = "where")]
+    /// Make a tile that repeats without a seam; auto is the smallest that the repeat of the exemplar fills exactly
+    #[arg(long, value_name = "WxH|auto", group = "where")]
     tile: Option<String>,
     /// Fill a box in space, in the units of the exemplar: curves (OBJ) or points (CSV with a column z)
     #[arg(long = "box", value_name = "XxYxZ", group = "where")]
@@ -212,10 +212,9 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
         let (from, params) = (place.from, engine.parameters());
         return Ok(Job::from(Redo { border, method, from, orient, scale, density, avoid, params, ..Redo::of(region) }));
     }
-    let size = |text: Option<String>| text.map(|text| text.parse()).transpose();
     Ok(Job::from(FillJob {
-        size: size(place.size)?,
-        tile: size(place.tile)?,
+        size: place.size.map(|text| text.parse()).transpose()?,
+        tile: place.tile.map(|text| text.parse()).transpose()?,
         border,
         method,
         exemplar_tile,

@@ -26,7 +26,7 @@ use crate::{
 pub(crate) struct Inspect {
     /// An SVG drawing, points as CSV, or curves in space as OBJ; - is standard input
     file: String,
-    /// Draw it as well, SVG or PNG: outlines in the colours of their classes, curves in those of their styles, the frame
+    /// Draw it as well, SVG or PNG: outlines in the colours of their classes, curves in those of their styles, the frame, a cell of the repeat
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<String>,
     /// What the exemplar is made of
@@ -124,6 +124,11 @@ fn print(report: &Report) -> Result<(), Failure> {
         writeln!(out, "  curves: {}{junctions}", report.curves)?;
     }
     writeln!(out, "  spacing: {:.4}; suggested radius: {:.4}", report.spacing, report.suggested_radius)?;
+    if let Some(repeat) = &report.repeat {
+        for line in repeat.lines() {
+            writeln!(out, "  {line}")?;
+        }
+    }
     if !report.layers.is_empty() {
         writeln!(out, "  a whole job, with the layers {}", report.layers.join(", "))?;
     }

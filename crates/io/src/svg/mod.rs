@@ -6,6 +6,7 @@
 //! layers of the result (`layers`). `read` holds what callers ask for, `write` the way back to text; both speak of a
 //! [`Drawing`].
 
+mod cell;
 mod centreline;
 mod drawing;
 mod layers;
@@ -21,6 +22,7 @@ mod understand;
 mod write;
 
 pub use crate::text::unit::Unit;
+pub use cell::{RepeatCell, with_cell};
 pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page, Placed, Stroke};
 pub use namespace::NAMESPACE;
 pub use options::{LargeFills, Method, ReadOptions, Tiling};

@@ -135,6 +135,11 @@ impl Regular {
         Ok(Filled::Done(Outcome { placements, sequence, curves, areas, energy, warnings, stopped }))
     }
 
+    /// The repeat by which it is continued.
+    pub(crate) fn into_repeat(self) -> Repeat {
+        self.repeat
+    }
+
     fn strokes(
         &self,
         exemplar: &Exemplar<2>,

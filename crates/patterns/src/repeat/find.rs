@@ -8,7 +8,7 @@ use crate::repeat::{
     description::{Explains, Extent, Repeat},
     lattice::{Lattice, are_parallel},
     lines::Lines,
-    marks::{Anchor, Kinds, Marks},
+    marks::{Anchor, Kinds, Mark, Marks},
     straight,
     support::{LineIndex, is_supported},
 };
@@ -61,6 +61,11 @@ const JITTER: f64 = 0.12;
 /// Most marks in a cell where they lie about where they should.
 const FEW_IN_CELL: f64 = 6.5;
 
+/// More jitter than this, in mean distances of marks, was made by a hand. A lattice that was found by looking exactly may then be
+/// one that some marks keep to by chance, with a smaller one in it, of at most this share of its cell.
+const BY_HAND: f64 = 0.002;
+const SMALLER: f64 = 0.7;
+
 /// Work for each offset.
 const OFFSET: u64 = 60;
 
@@ -84,9 +89,10 @@ pub(crate) fn find_for<T>(
     let budget = &budget.stage("finding the repeat");
     let lines = Lines::new(exemplar, budget)?;
     let index = LineIndex::new(&lines, exemplar, budget)?;
+    let mut doubtful: Option<Repeat> = None;
     for mode in MODES {
         // Lines either go over into themselves or they do not.
-        if mode.tolerance > EXACT && !lines.is_empty() {
+        if mode.tolerance > EXACT && !lines.is_empty() || mode.tolerance <= EXACT && doubtful.is_some() {
             continue;
         }
         let Some(marks) = Marks::new(exemplar, &lines, mode.kinds, mode.anchor, budget)? else { continue };
@@ -94,11 +100,26 @@ pub(crate) fn find_for<T>(
             continue;
         }
         let search = Search { marks: &marks, lines: &index, mode, side: exemplar.view().side(), budget };
-        if let Some(found) = search.lattice()?
-            && let Some(made) = make(&found)?
-        {
-            return Ok(Some(made));
+        let Some(found) = search.lattice()? else { continue };
+        let tried = match doubtful.take() {
+            None if mode.tolerance <= EXACT && lines.is_empty() && found.jitter > BY_HAND * marks.unit => {
+                doubtful = Some(found);
+                continue;
+            }
+            None => vec![found],
+            Some(large) if found.lattice.cell() > SMALLER * large.lattice.cell() => vec![large, found],
+            Some(large) => vec![found, large],
+        };
+        for repeat in tried {
+            if let Some(made) = make(&repeat)? {
+                return Ok(Some(made));
+            }
         }
+    }
+    if let Some(large) = doubtful
+        && let Some(made) = make(&large)?
+    {
+        return Ok(Some(made));
     }
     if exemplar.elements.is_empty() {
         return match straight::stripes(&lines, &index, budget)? {
@@ -135,6 +156,8 @@ impl Search<'_> {
             match (holds, first) {
                 (false, _) => {}
                 (true, None) => first = Some(by),
+                // Two steps of about one vector differ by what is no vector at all.
+                (true, Some(a)) if are_one(a, by, 2.0 * tolerance) => {}
                 (true, Some(a)) => return self.refined(a, by, Extent::Plane),
             }
         }
@@ -152,7 +175,13 @@ impl Search<'_> {
         let slack = 1e-6 * size.norm();
         let is_inside = |min: f64, max: f64| min >= window.min[across] - slack && max <= window.max[across] + slack;
         let along = a[across].abs() <= 1e-3 * a.norm();
-        let marks_inside = self.marks.all.iter().all(|m| is_inside(m.extent.min[across], m.extent.max[across]));
+        // What is cut at the sides shows that there is more beyond them.
+        let is_cut = |m: &Mark| {
+            let (low, high) = (m.extent.min[across] - window.min[across], window.max[across] - m.extent.max[across]);
+            m.is_context && low.min(high) <= slack
+        };
+        let marks_inside =
+            self.marks.all.iter().all(|m| is_inside(m.extent.min[across], m.extent.max[across]) && !is_cut(m));
         if !(along && marks_inside && self.lines.are_within(across)) {
             return Ok(None);
         }
@@ -262,7 +291,8 @@ impl Search<'_> {
                         found += usize::from(partner.is_some());
                     }
                     let there = [at[0] + step[0], at[1] + step[1]];
-                    if let Some(j) = partner.filter(|&j| node[j].is_none()) {
+                    // What the frame has cut is not where it would be as a whole.
+                    if let Some(j) = partner.filter(|&j| node[j].is_none() && !marks.all[j].is_context) {
                         node[j] = Some(there);
                         walk.push((j, there));
                     }
@@ -279,6 +309,11 @@ impl Search<'_> {
 /// Mean number of marks in a cell.
 fn marks_in(marks: &Marks, lattice: &Lattice) -> f64 {
     marks.all.len() as f64 * lattice.cell() / marks.window.measure()
+}
+
+/// Whether two vectors span nothing but multiples of one, as nearly as `within`.
+fn are_one(a: Vector<2>, b: Vector<2>, within: f64) -> bool {
+    Lattice::new(a, b).is_none_or(|lattice| lattice.vectors.iter().any(|v| v.norm() < within))
 }
 
 /// Fitted vectors, and how well they fit.

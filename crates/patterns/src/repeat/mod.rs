@@ -12,13 +12,18 @@ pub(crate) mod lattice;
 pub(crate) mod lines;
 pub(crate) mod looks;
 pub(crate) mod marks;
+pub(crate) mod one_way;
 pub(crate) mod orbits;
+pub(crate) mod seamless;
 pub(crate) mod straight;
 pub(crate) mod support;
+pub(crate) mod symmetry;
 pub(crate) mod tile;
 
 pub use description::{Explains, Extent, Repeat};
 pub use find::find;
 pub use lattice::Lattice;
 pub use marks::Anchor;
+pub use seamless::NearTile;
+pub use symmetry::{FriezeGroup, PlaneGroup, Symmetry, symmetry};
 pub use tile::TileFit;

@@ -10,8 +10,12 @@ use crate::repeat::{
 /// Nodes are looked for so many vectors away.
 const FAR: i64 = 64;
 
-/// A vector lies along an axis when it leaves it by less than this share of its length.
-const ALONG: f64 = 2e-4;
+/// A vector lies along an axis when it leaves it by less than this share of its length, or, drawn by hand, by less than so
+/// many times the jitter in terms of the shorter vector: no better is it known.
+const ALONG: (f64, f64) = (2e-4, 0.3);
+
+/// Most cells along stripes in a tile.
+const MOST_CELLS: f64 = 1e5;
 
 /// How a tile fits a repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,11 +35,22 @@ impl Repeat {
     /// Width and height of the smallest rectangle along the axes that tiles the plane with this repeat; `None` where no
     /// multiple of its vectors, within reason, lies along both axes.
     pub fn smallest_tile(&self) -> Option<[f64; 2]> {
+        self.tile_within(self.slack())
+    }
+
+    /// The smallest rectangle along the axes of which the sides are vectors that leave them by at most `slack`.
+    pub(crate) fn tile_within(&self, slack: f64) -> Option<[f64; 2]> {
         if let Extent::Stripes(along) = self.extent {
             return stripes_tile(along, self.period_of_stripes());
         }
-        let sides = [0, 1].map(|axis| along_axis(&self.lattice, axis).map(|node| self.lattice.at(node)[axis].abs()));
-        Some([sides[0]?, sides[1]?])
+        let side = |axis| along_axis(&self.lattice, axis, slack).map(|node| self.lattice.at(node)[axis].abs());
+        Some([side(0)?, side(1)?])
+    }
+
+    /// How far a vector may lie off an axis, as a share of its length.
+    fn slack(&self) -> f64 {
+        let shorter = self.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        ALONG.0.max(ALONG.1 * self.jitter / shorter)
     }
 
     /// Distance after which stripes repeat.
@@ -52,13 +67,15 @@ impl Repeat {
         if let Extent::Stripes(along) = self.extent {
             let along = map(along).unit_or_zero();
             let across = lattice.vectors.map(|v| v.cross(along).abs()).into_iter().fold(0.0, f64::max);
-            return fit_stripes(along, across, edges);
+            let length = lattice.vectors.map(|v| v.dot(along).abs()).into_iter().fold(0.0, f64::max);
+            return fit_stripes(along, across, length, edges);
         }
         let on_axis = |axis: usize| {
-            let node = along_axis(&lattice, axis)?;
+            let node = along_axis(&lattice, axis, self.slack())?;
             let step = lattice.at(node)[axis];
-            let count = (size[axis] / step.abs()).round().max(1.0) * step.signum();
-            Some(node.map(|n| n * count as i64))
+            let count = (size[axis] / step.abs()).round() * step.signum();
+            // A tile that is shorter than this may still come near to another vector.
+            (count != 0.0).then(|| node.map(|n| n * count as i64))
         };
         let nearest = |axis: usize| lattice.nearest(edges[axis]).0;
         let sides = [0, 1].map(|axis| on_axis(axis).unwrap_or_else(|| nearest(axis)));
@@ -78,23 +95,21 @@ fn fitted(lattice: &Lattice, sides: [Node; 2], edges: [Vector<2>; 2]) -> Option<
     Some(TileFit { sides, lattice: Lattice { vectors }, stretch })
 }
 
-/// Stripes go on along themselves as far as is wanted: only what lies across the edges must fit.
-fn fit_stripes(along: Vector<2>, across: f64, edges: [Vector<2>; 2]) -> Option<TileFit> {
+/// Stripes go on along themselves as far as is wanted: only what lies across the edges must fit. Along them, cells of at most the
+/// `length` that the exemplar has them in follow one another, so that none leaves a gap.
+fn fit_stripes(along: Vector<2>, across: f64, length: f64, edges: [Vector<2>; 2]) -> Option<TileFit> {
     let normal = Vector::xy(-along[1], along[0]);
     let counts = edges.map(|edge| (edge.dot(normal) / across).round());
     let [x, y] = counts;
-    let vectors = match (x != 0.0, y != 0.0) {
-        (true, _) => {
-            let a = edges[0] * (1.0 / x);
-            [a, edges[1] - a * y]
-        }
-        (false, true) => {
-            let a = edges[1] * (1.0 / y);
-            [a, edges[0]]
-        }
+    let (a, rest) = match (x != 0.0, y != 0.0) {
+        (true, _) => (edges[0] * (1.0 / x), edges[1] - edges[0] * (y / x)),
+        (false, true) => (edges[1] * (1.0 / y), edges[0]),
         (false, false) => return None,
     };
-    let sides = if x != 0.0 { [[x as i64, 0], [y as i64, 1]] } else { [[0, 1], [y as i64, 0]] };
+    let cells = (rest.norm() / length - 1e-6).ceil().clamp(1.0, MOST_CELLS);
+    let vectors = [a, rest * (1.0 / cells)];
+    let n = cells as i64;
+    let sides = if x != 0.0 { [[x as i64, 0], [y as i64, n]] } else { [[0, n], [y as i64, 0]] };
     let along_now = vectors[1].unit_or_zero();
     let across_now = vectors[0].cross(along_now).abs();
     let turned = along_now.cross(along).abs();
@@ -117,8 +132,8 @@ fn strain(from: [Vector<2>; 2], to: [Vector<2>; 2]) -> f64 {
     (large - 1.0).abs().max((1.0 - small).abs())
 }
 
-/// The shortest vector of a lattice along an axis.
-fn along_axis(lattice: &Lattice, axis: usize) -> Option<Node> {
+/// The shortest vector of a lattice along an axis, as nearly as `slack`.
+fn along_axis(lattice: &Lattice, axis: usize, slack: f64) -> Option<Node> {
     let mut best: Option<(f64, Node)> = None;
     for i in -FAR..=FAR {
         for j in 0..=FAR {
@@ -126,7 +141,7 @@ fn along_axis(lattice: &Lattice, axis: usize) -> Option<Node> {
             let length = v.norm();
             let shorter = best.is_none_or(|(least, _)| length < least * (1.0 - 1e-9));
             // Far away, a direction is known no better than the vectors are.
-            if length > 0.0 && v[1 - axis].abs() <= ALONG * length && shorter {
+            if length > 0.0 && v[1 - axis].abs() <= slack * length && shorter {
                 best = Some((length, [i, j]));
             }
         }

@@ -9,7 +9,7 @@ use crate::recipe::{
     field::FieldSource,
     input::Input,
     job::parameters::{self, Parameters},
-    size::Size,
+    size::{Size, Tile},
 };
 
 /// A page, a shape or a seamless tile that is filled. One of `size`, `tile` and `domain` may be given; with none of them the layer
@@ -20,9 +20,9 @@ pub struct Fill {
     /// Width and height of the page, such as `800x600` or `210mmx297mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<Size>,
-    /// Width and height of a seamless tile.
+    /// Width and height of a seamless tile, or `auto` for the smallest that the repeat of the exemplar fills exactly.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tile: Option<Size>,
+    pub tile: Option<Tile>,
     /// What happens at the border of the domain. Default: clip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub border: Option<Border>,
@@ -103,14 +103,21 @@ impl ExemplarTile {
 }
 
 /// What an exemplar is taken for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// What it is made of. Default: auto.
     pub method: Method,
     /// Whether it is one period of a pattern. Default: auto.
     pub exemplar_tile: ExemplarTile,
-    /// What fills are taken for that run through the frame. Default: the outlines of lines.
+    /// What fills are taken for that run through the frame. Default: areas, where the exemplar repeats.
     pub large_fills: svg::LargeFills,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        let (method, exemplar_tile) = (Method::default(), ExemplarTile::default());
+        Self { method, exemplar_tile, large_fills: svg::LargeFills::Areas }
+    }
 }
 
 impl From<Method> for Reading {

@@ -55,7 +55,16 @@ impl LoadedExemplar {
             });
         }
         let options = ReadOptions { budget: budget.clone(), ..options };
-        let drawing = svg::read_exemplar(&text, &options)?;
+        let mut drawing = svg::read_exemplar(&text, &options)?;
+        if options.tiling == svg::Tiling::Auto && drawing.exemplar.period.is_some() {
+            // A page that repeats by itself is no period, even if what its edges cut fits together by chance.
+            let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
+            if let Ok(page) = svg::read_exemplar(&text, &as_page)
+                && repeats(&page.exemplar, budget)?
+            {
+                drawing = page;
+            }
+        }
         if drawing.exemplar.areas.is_empty() || repeats(&drawing.exemplar, budget)? {
             return Ok(Self::Drawing(Box::new(drawing)));
         }

@@ -36,6 +36,8 @@ pub struct Report {
     pub cut_at_frame: usize,
     /// Number of curves.
     pub curves: usize,
+    /// Number of filled areas that run through the frame.
+    pub areas: usize,
     /// Places where three or more pieces of curves in space meet; `None` in the plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub junctions: Option<usize>,
@@ -203,6 +205,7 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
     let sources = elements.iter().filter(|e| e.role == Role::Source).count();
     let ball = if D == 3 { 4.0 / 3.0 * std::f64::consts::PI } else { std::f64::consts::PI };
     let spacing = spacing(exemplar);
+    let drawn_with = |style: &usize| exemplar.curves.iter().any(|c| c.style == *style);
     Report {
         file: input.name().to_owned(),
         kind,
@@ -210,8 +213,9 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
         sources,
         cut_at_frame: elements.len() - sources,
         curves: exemplar.curves.len(),
+        areas: exemplar.areas.len(),
         junctions: None,
-        styles: (0..exemplar.styles.len()).map(|style| describe_style(exemplar, style)).collect(),
+        styles: (0..exemplar.styles.len()).filter(drawn_with).map(|style| describe_style(exemplar, style)).collect(),
         classes: classes.collect(),
         frame_min: exemplar.window.min.0.to_vec(),
         frame_size: exemplar.window.size().0.to_vec(),

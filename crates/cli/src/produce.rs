@@ -290,10 +290,12 @@ fn counted(made: &Summary) -> String {
     if let Some(r) = &made.ribbons {
         return format!("{} in {}", many(r.pieces, "piece"), many(r.ribbons, "ribbon"));
     }
-    match (made.curves, made.elements) {
-        (0, n) => format!("{n} elements"),
-        (n, 0) => many(n, "curve"),
-        (c, e) => format!("{} and {}", many(c, "curve"), many(e, "element")),
+    let kinds = [(made.areas, "area"), (made.curves, "curve"), (made.elements, "element")];
+    let said: Vec<String> = kinds.iter().filter(|(n, _)| *n > 0).map(|&(n, what)| many(n, what)).collect();
+    match said.as_slice() {
+        [] => many(0, "element"),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 

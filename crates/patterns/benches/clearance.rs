@@ -30,7 +30,15 @@ fn exemplar() -> Exemplar<2> {
     let element = |k: usize| {
         let centre = Vector::xy((k % 4) as f64 + 0.5, (k / 4) as f64 + 0.5) * 5.0;
         let outline = leaf(centre, 1.0 + 0.8 * (k % 2) as f64);
-        Element { class: k % 2, centre, pose: Similarity::identity(), outline, colour: [0.0; 3], role: Role::Source }
+        Element {
+            class: k % 2,
+            centre,
+            pose: Similarity::identity(),
+            outline,
+            colour: [0.0; 3],
+            lean: [Vector::ZERO; 3],
+            role: Role::Source,
+        }
     };
     let classes = ["small", "large"].map(|name| Class { name: name.into() });
     let window = Bounds::new(Vector::ZERO, Vector::splat(20.0));

@@ -45,7 +45,15 @@ fn discs() -> Exemplar<2> {
             centre + Vector::xy(turn.cos(), turn.sin()) * radius
         };
         let outline = Outline { rings: vec![(0..24).map(corner).collect()] };
-        Element { class: k % 2, centre, pose: Similarity::identity(), outline, colour: [0.5; 3], role: Role::Source }
+        Element {
+            class: k % 2,
+            centre,
+            pose: Similarity::identity(),
+            outline,
+            colour: [0.5; 3],
+            lean: [Vector::ZERO; 3],
+            role: Role::Source,
+        }
     });
     let window = Bounds::new(Vector::ZERO, Vector::splat(10.0));
     Exemplar::new("benchmark", elements.collect(), classes(2), window).expect("the exemplar is valid")

@@ -34,6 +34,7 @@ fn squares(n: usize) -> Vec<Element<2>> {
                 pose: Similarity::shift(centre),
                 outline: Outline { rings: vec![ring] },
                 colour: [0.0; 3],
+                lean: [Vector::ZERO; 3],
                 role: Role::Source,
             }
         })

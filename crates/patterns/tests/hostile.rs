@@ -22,6 +22,7 @@ fn square(class: usize, centre: Vector<2>, half: f64) -> Element<2> {
         pose: Similarity::shift(centre),
         outline: Outline { rings: vec![ring] },
         colour: [0.0; 3],
+        lean: [Vector::ZERO; 3],
         role: Role::Source,
     }
 }

@@ -16,6 +16,9 @@ pub struct Summary {
     pub curves: usize,
     /// How many of each style.
     pub styles: BTreeMap<String, usize>,
+    /// Number of filled areas that run through the result.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub areas: usize,
     /// Width and height of the seamless tile that was made, in the units of the exemplar.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tile: Option<[f64; 2]>,
@@ -47,11 +50,17 @@ impl Summary {
             classes: counts(classes),
             curves: outcome.curves.len(),
             styles: counts(styles),
+            areas: outcome.areas.len(),
             tile: None,
             ribbons: None,
             energy: outcome.energy.last().map(|e| e.energy),
         }
     }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 fn counts<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<String, usize> {

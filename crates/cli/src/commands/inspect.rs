@@ -116,12 +116,15 @@ fn print(report: &Report) -> Result<(), Failure> {
         .map_or_else(String::new, |(unit, n)| format!(" (1 unit = {} {unit})", rounded(n)));
     writeln!(out, "{}: {}", report.file, report.kind)?;
     writeln!(out, "  frame: {}{unit}", join(&report.frame_size))?;
-    if report.elements > 0 || report.curves == 0 {
+    if report.elements > 0 || report.curves + report.areas == 0 {
         writeln!(out, "  elements: {}, of these {} cut at the frame", report.elements, report.cut_at_frame)?;
     }
     if report.curves > 0 {
         let junctions = report.junctions.map(|n| format!(", {n} junctions")).unwrap_or_default();
         writeln!(out, "  curves: {}{junctions}", report.curves)?;
+    }
+    if report.areas > 0 {
+        writeln!(out, "  areas: {}", report.areas)?;
     }
     writeln!(out, "  spacing: {:.4}; suggested radius: {:.4}", report.spacing, report.suggested_radius)?;
     if let Some(repeat) = &report.repeat {

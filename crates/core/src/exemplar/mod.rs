@@ -35,6 +35,9 @@ pub struct Element<const D: usize> {
     pub outline: Outline<D>,
     /// Mean colour of the ink, sRGB in [0, 1].
     pub colour: [f64; 3],
+    /// Which way each channel of the colour leans: the mean, over the ink, of its difference from the mean colour times the vector
+    /// from the centre. Zero for ink of one colour; it tells how something lies whose outline does not.
+    pub lean: [Vector<D>; 3],
     /// Whether it may be copied.
     pub role: Role,
 }
@@ -185,6 +188,7 @@ impl<const D: usize> Exemplar<D> {
             pose: Similarity::shift(p),
             outline: Outline::default(),
             colour: [0.0; 3],
+            lean: [Vector::ZERO; 3],
             role: Role::Source,
         });
         let classes = names.iter().map(|name| Class { name: name.clone() }).collect();

@@ -170,6 +170,7 @@ mod tests {
             pose: Similarity::shift(centre),
             outline,
             colour: [0.0; 3],
+            lean: [Vector::ZERO; 3],
             role: Role::Source,
         };
         let window = Bounds::new(Vector::xy(-10.0, -10.0), Vector::xy(10.0, 10.0));

@@ -82,12 +82,15 @@ fn most_similar<const D: usize>(
     budget: &Budget,
 ) -> Result<Vec<u32>> {
     const MAX_COMPARED: usize = 256;
+    // Of more than that many, the fewer the more there are: what all of them cost stays in proportion to their number.
+    const LEAST_COMPARED: usize = 64;
     let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
     let others = &level.of_key[level.key[i]];
     let around = exemplar_surroundings(level, i);
     let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
     let mut meter = budget.meter();
-    for &j in others.iter().step_by(others.len().div_ceil(MAX_COMPARED)).filter(|&&j| j != i) {
+    let compared = (MAX_COMPARED * MAX_COMPARED / others.len().max(MAX_COMPARED)).max(LEAST_COMPARED);
+    for &j in others.iter().step_by(others.len().div_ceil(compared)).filter(|&&j| j != i) {
         let full = best.len() == number;
         let limit = if full { best.last().map_or(0.0, |b| b.0) } else { f32::INFINITY };
         let cost = matcher.cost(&around, j, limit, &|_| true, &mut meter)?;

@@ -19,6 +19,9 @@ const APART: f64 = 0.02;
 /// The same as the cosine of the angle at which they meet.
 const SMOOTH: f64 = 0.9;
 
+/// Lengths that differ by less than this share are the same.
+const SAME_LENGTH: f64 = 1e-3;
+
 /// Work for each segment that is cut, and for each pair of ends.
 const WORK: (u64, u64) = (4000, 10);
 
@@ -56,17 +59,27 @@ impl Cell {
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, lattice: &Lattice, budget: &Budget) -> Result<Option<Self>> {
-        let mut best: Option<(f64, Self)> = None;
+        let mut found = Vec::new();
         for origin in origins(&exemplar.window, lattice) {
-            if let Some((quality, cell)) = Self::at(exemplar, lattice, origin, budget)?
-                && best.as_ref().is_none_or(|(most, _)| quality > *most)
-            {
-                best = Some((quality, cell));
-            }
+            found.extend(
+                Self::at(exemplar, lattice, origin, budget)?.map(|(quality, cell)| (quality, cell.length(), cell)),
+            );
         }
-        let Some((_, mut cell)) = best else { return Ok(None) };
+        // Wherever the cell lies, it holds the same: where a stroke runs along its side, it may hold none or two of them.
+        let mut lengths: Vec<f64> = found.iter().map(|(_, length, _)| *length).collect();
+        lengths.sort_by(f64::total_cmp);
+        let Some(&usual) = lengths.get(lengths.len() / 2) else { return Ok(None) };
+        found.retain(|(_, length, _)| (length - usual).abs() <= SAME_LENGTH * usual);
+        let best = found.into_iter().reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let Some((_, _, mut cell)) = best else { return Ok(None) };
         cell.areas = cell_areas(exemplar, lattice, cell.origin, budget)?;
         Ok(Some(cell))
+    }
+
+    /// Length of all pieces.
+    fn length(&self) -> f64 {
+        let chords = self.parts.iter().flat_map(|part| &part.path.cubics).flat_map(|c| c.windows(2));
+        chords.map(|w| (w[1] - w[0]).norm()).sum()
     }
 
     /// The cell at `origin`, and how well it is placed: how squarely the strokes pass its sides.

@@ -5,11 +5,14 @@ use arabesque_core::{Budget, Element, Exemplar, Outline, Result, Vector};
 /// Directions in which the extent of an outline is measured.
 const DIRECTIONS: usize = 16;
 
-/// Numbers that describe a look: extents, moments of area, colour.
-const NUMBERS: usize = DIRECTIONS + 4 + 3;
+/// Numbers that describe a look: extents, moments of area, colour, and which way that leans.
+const NUMBERS: usize = DIRECTIONS + 4 + 3 + 6;
 
 /// Looks differ by less than this in each number, lengths in terms of the radius of the element.
 const ALIKE: f64 = 0.06;
+
+/// Weight of the ways in which colours lean.
+const LEAN: f64 = 6.0;
 
 /// With more looks than this, what repeats is not how the elements look.
 const MOST: usize = 512;
@@ -62,7 +65,11 @@ impl Look {
             }
             numbers[DIRECTIONS..DIRECTIONS + 4].copy_from_slice(&moments(outline, centre, radius));
         }
-        numbers[DIRECTIONS + 4..].copy_from_slice(&element.colour);
+        numbers[DIRECTIONS + 4..DIRECTIONS + 7].copy_from_slice(&element.colour);
+        for (k, lean) in element.lean.iter().enumerate().filter(|_| radius > 0.0) {
+            let at = DIRECTIONS + 7 + 2 * k;
+            (numbers[at], numbers[at + 1]) = (LEAN * lean[0] / radius, LEAN * lean[1] / radius);
+        }
         Self { class: element.class, radius, numbers }
     }
 
@@ -115,7 +122,7 @@ mod tests {
         let outline = Outline { rings };
         let centre = outline.centroid().unwrap();
         let pose = Similarity::shift(centre);
-        Element { class: 0, centre, pose, outline, colour: [0.0; 3], role: Role::Source }
+        Element { class: 0, centre, pose, outline, colour: [0.0; 3], lean: [Vector::ZERO; 3], role: Role::Source }
     }
 
     #[test]

@@ -146,7 +146,15 @@ pub(crate) fn exemplar(
         let Some(centre) = shown.centroid().filter(|_| shown.area() > 1e-6 * outline.area()) else { continue };
         let role = if is_whole { Role::Source } else { Role::Context };
         let pose = Similarity::shift(centre);
-        elements.push(Element { class: *class, centre, pose, outline: shown, colour: COLOURS[*class], role });
+        elements.push(Element {
+            class: *class,
+            centre,
+            pose,
+            outline: shown,
+            colour: COLOURS[*class],
+            lean: [Vector::ZERO; 3],
+            role,
+        });
     }
     let curve = |(points, style): &(Vec<Vector<2>>, usize)| Curve {
         path: Path::polyline(points),

@@ -5,3 +5,4 @@ pub(crate) mod coincide;
 pub(crate) mod covering;
 pub(crate) mod order;
 pub(crate) mod stacks;
+pub(crate) mod visible;

@@ -3,7 +3,7 @@
 
 use std::{rc::Rc, sync::Arc};
 
-use arabesque_core::{Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role};
+use arabesque_core::{Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role, Vector};
 use kurbo::Affine;
 
 use crate::{
@@ -13,6 +13,7 @@ use crate::{
             covering::{Counts, Painted, counts},
             order::{Kinds, Layered, layered},
             stacks::{Stacked, stacked},
+            visible::keep_visible,
         },
         options::{LargeFills, Method, ReadOptions},
         parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
@@ -106,7 +107,11 @@ impl Document<'_> {
         }
         let drawn = Drawn { is_line: &is_line, lines: &lines, styles_of: &styles_of, items: &items, classes: &classes };
         let layers = layers(source, &drawn, (paints, &stack.paints), &window)?;
-        let Stacked { curves, areas, fills, styles, strokes, .. } = stack;
+        let Stacked { curves, mut areas, fills, styles, strokes, .. } = stack;
+        let is_opaque = |k: usize| {
+            !fills[k].paint.contains("opacity") && !fills[k].paint.contains("url(") && fills[k].effects.is_empty()
+        };
+        keep_visible(&mut areas, &is_opaque, source.budget)?;
         let contents = Contents { elements, classes: classes.classes, curves, areas, styles };
         let period = unrolled.as_ref().map(|unrolled| unrolled.period);
         let exemplar = Exemplar { period, ..Exemplar::with_curves(source.name, contents, window)? };
@@ -333,18 +338,24 @@ fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
     Error::input(source.name, format!("no element and no curve found{why}"), advice)
 }
 
+/// Centre of area of an item.
+fn centre_of(item: &Item) -> Vector<2> {
+    item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre())
+}
+
 fn elements(source: &Source<'_>, items: &[Item], window: Option<&Bounds<2>>) -> Result<(Vec<Element<2>>, Classes)> {
-    let roles: Vec<Role> = items.iter().map(|item| frame::role(item, window)).collect();
+    let roles = frame::roles(items, window);
     let cut = roles.iter().filter(|r| **r == Role::Context).count();
     (0..cut).for_each(|_| source.notes.add(Note::Cut, String::new));
     let is_whole: Vec<bool> = roles.iter().map(|r| *r == Role::Source).collect();
     let classes = classes::classify(items, &is_whole, &source.sheet, source.budget)?;
     let element = |((item, role), &(class, pose)): ((&Item, Role), &(usize, _))| Element {
         class,
-        centre: item.outline.centroid().unwrap_or_else(|| item.outline.bounds().centre()),
+        centre: centre_of(item),
         pose,
         outline: item.outline.clone(),
         colour: item.painted.colour(),
+        lean: item.painted.lean(centre_of(item)),
         role,
     };
     Ok((items.iter().zip(roles).zip(&classes.members).map(element).collect(), classes))

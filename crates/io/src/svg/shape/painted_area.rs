@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
-use arabesque_core::{Budget, Error, FillRule, Outline, Result, Ring, rounded};
+use arabesque_core::{Budget, Error, FillRule, Outline, Result, Ring, Vector, rounded};
 use kurbo::{Affine, Shape as _};
 
 use crate::svg::{
@@ -45,6 +45,24 @@ impl PaintedArea {
         let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
         let mean = |k: usize| self.colours.iter().map(|(c, area)| c[k] * area).sum::<f64>() / total;
         if total > 0.0 { std::array::from_fn(mean) } else { [0.0; 3] }
+    }
+
+    /// Which way each channel leans, as [`arabesque_core::Element::lean`] has it; zero where shapes and colours are not known one by
+    /// one.
+    pub(crate) fn lean(&self, centre: Vector<2>) -> [Vector<2>; 3] {
+        let total: f64 = self.colours.iter().map(|(_, area)| area).sum();
+        if self.shapes.len() != self.colours.len() || self.shapes.len() < 2 || total <= 0.0 {
+            return [Vector::ZERO; 3];
+        }
+        let mean = self.colour();
+        let mut lean = [Vector::ZERO; 3];
+        for (shape, (colour, area)) in self.shapes.iter().zip(&self.colours) {
+            let Some(at) = shape.centroid() else { continue };
+            for k in 0..3 {
+                lean[k] += (at - centre) * ((colour[k] - mean[k]) * area / total);
+            }
+        }
+        lean
     }
 
     /// The colours that cover at least a tenth of the painted area each, rounded, as text: items alike in paint have

@@ -1,5 +1,7 @@
 //! The frame of an exemplar, and what lies on it.
 
+use std::collections::BTreeSet;
+
 use arabesque_core::{Bounds, Outline, Role, Vector};
 use kurbo::{Affine, BezPath, ParamCurve as _};
 
@@ -28,6 +30,9 @@ const EXACTLY_NEAR: f64 = 1e-5;
 /// How near to a side of the frame a stroke ends that is cut there, as a share of the frame.
 const ENDS_NEAR: f64 = 1e-4;
 
+/// Sizes that differ by less than this share of the frame are the same.
+const SAME_SIZE: f64 = 2e-4;
+
 /// A box is thin when its shorter side is less than this share of the longer one.
 const THIN: f64 = 0.03;
 
@@ -35,6 +40,30 @@ const THIN: f64 = 0.03;
 pub(crate) fn role(item: &Item, frame: Option<&Bounds<2>>) -> Role {
     let is_cut = item.is_cut || frame.is_some_and(|frame| is_cut_along(&item.outline, frame) || ends_on(item, frame));
     if is_cut { Role::Context } else { Role::Source }
+}
+
+/// Whether each item is whole. What lies along the frame but is as large and as coloured as something that does not is
+/// a tile that ends there, not a larger thing that is cut.
+pub(crate) fn roles(items: &[Item], frame: Option<&Bounds<2>>) -> Vec<Role> {
+    let mut roles: Vec<Role> = items.iter().map(|item| role(item, frame)).collect();
+    let Some(frame) = frame else { return roles };
+    let unit = SAME_SIZE * longer(frame);
+    let key = |item: &Item| {
+        let size = item.outline.bounds().size();
+        let side = (item.outline.area() / unit).round() as i64;
+        ((size[0] / unit).round() as i64, (size[1] / unit).round() as i64, side, item.painted.colours_key())
+    };
+    if roles.iter().all(|role| *role == Role::Source) {
+        return roles;
+    }
+    let whole: BTreeSet<_> =
+        items.iter().zip(&roles).filter(|(_, r)| **r == Role::Source).map(|(i, _)| key(i)).collect();
+    for (item, role) in items.iter().zip(&mut roles) {
+        if *role == Role::Context && !item.is_cut && whole.contains(&key(item)) {
+            *role = Role::Source;
+        }
+    }
+    roles
 }
 
 /// Whether a good part of the outline runs exactly along a side of the frame and nothing reaches over that side.

@@ -36,6 +36,7 @@ pub fn write_survey(drawing: &Drawing) -> String {
     let _ = writeln!(out, "<path d=\"{frame}\" stroke=\"#000000\"/>");
     elements(&mut out, drawing, d, line);
     curves(&mut out, drawing, d, line);
+    areas(&mut out, drawing, d);
     left_out(&mut out, drawing, d, line);
     out.push_str("</g>\n</svg>\n");
     out
@@ -63,6 +64,9 @@ fn elements(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
 
 /// The curves as the file has them, in all their paints.
 fn faded_curves(out: &mut String, drawing: &Drawing, d: Decimals) {
+    for (area, fill) in drawing.exemplar.areas.iter().zip(&drawing.fills) {
+        let _ = writeln!(out, "<path d=\"{}\"{} fill-rule=\"evenodd\"/>", outline_data(&area.outline, d), fill.paint);
+    }
     let mut of_style = vec![Vec::new(); drawing.exemplar.styles.len()];
     for (curve, strokes) in drawing.exemplar.curves.iter().zip(&drawing.strokes) {
         of_style[curve.style].push((curve, strokes));
@@ -90,6 +94,16 @@ fn curves(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
             let _ = write!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"{colour}\"/>");
         }
         out.push_str("</g>\n");
+    }
+}
+
+/// The areas by their borders.
+fn areas(out: &mut String, drawing: &Drawing, d: Decimals) {
+    for (k, area) in drawing.exemplar.areas.iter().enumerate() {
+        let colour = PALETTE[(drawing.exemplar.classes.len() + area.style) % PALETTE.len()];
+        let label = escape(&format!("area {k}, {}", drawing.exemplar.styles[area.style].name));
+        let data = outline_data(&area.outline, d);
+        let _ = writeln!(out, "<g stroke=\"{colour}\"><title>{label}</title><path d=\"{data}\"/></g>");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Class, Element, Exemplar, Outline, Result, Role, Similarity};
+use arabesque_core::{Budget, Class, Element, Exemplar, Outline, Result, Role, Similarity, Vector};
 
 use crate::exemplar::graph::{
     net::Net,
@@ -46,6 +46,7 @@ impl<const D: usize> PseudoElements<D> {
                 pose: Similarity::shift(node.position),
                 outline: Outline { rings: vec![std::iter::once(node.position).chain(tips).collect()] },
                 colour: exemplar.curves[node.curve as usize].colour,
+                lean: [Vector::ZERO; 3],
                 role: if node.knot == Some(Knot::Cut) { Role::Context } else { Role::Source },
             });
         }

@@ -127,6 +127,7 @@ mod tests {
                 pose: Similarity::identity(),
                 outline: Outline { rings: vec![ring] },
                 colour: [0.0; 3],
+                lean: [Vector::ZERO; 3],
                 role: Role::Source,
             }
         };

@@ -22,6 +22,7 @@ fn element(class: usize, x: f64, y: f64, outline: &Outline<2>) -> Element<2> {
         pose: Similarity::identity(),
         outline: outline.transformed(&Similarity::shift(centre)),
         colour: [0.0; 3],
+        lean: [Vector::ZERO; 3],
         role: Role::Source,
     }
 }

@@ -31,6 +31,7 @@ fn exemplar(discs: &[Disc]) -> Exemplar<2> {
             pose: Similarity::shift(d.centre),
             outline: Outline { rings: vec![(0..24).map(corner).collect()] },
             colour: [0.0; 3],
+            lean: [Vector::ZERO; 3],
             role: Role::Source,
         }
     };

@@ -1,4 +1,5 @@
 //! Strokes on one geometry, and the layers of a drawing: read, written, and read back.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Border, Bounds, Budget, Domain, Drawn, Outline, Placement, Similarity, Vector};
 use arabesque_io::svg::{

@@ -85,7 +85,7 @@ fn cuts(cubic: &Cubic<2>, lattice: &Lattice, origin: Vector<2>) -> Vec<f64> {
             let (a, b) = (at(span[0]), at(span[1]));
             let (first, last) = (a.min(b).ceil() as i64, a.max(b).floor() as i64);
             for side in first..=last.min(first + 10_000) {
-                cuts.push(root(&at, span[0], span[1], side as f64));
+                cuts.push(root(at, span[0], span[1], side as f64));
             }
         }
     }

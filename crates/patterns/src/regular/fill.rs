@@ -1,8 +1,8 @@
 //! Filling a domain from an exemplar that repeats.
 
 use arabesque_core::{
-    Border, Budget, Covered, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role, Snapshot,
-    Warning, Watch,
+    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
+    Snapshot, Warning, Watch,
 };
 
 use crate::{
@@ -102,7 +102,9 @@ impl Regular {
         request: &Request<2>,
         watch: &mut dyn Watch<Snapshot<2>>,
     ) -> Result<Filled<2>> {
-        if self.cell.is_some() && (request.border == Border::Turn || !request.frozen_curves.is_empty()) {
+        // A tile has no border at which strokes could turn.
+        let turns = request.border == Border::Turn && !matches!(request.domain, Domain::Torus(_));
+        if self.cell.is_some() && (turns || !request.frozen_curves.is_empty()) {
             return Ok(Filled::Unfit(Vec::new()));
         }
         let mut grid = match Grid::new(&self.repeat, exemplar, request) {

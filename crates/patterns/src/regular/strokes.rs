@@ -162,7 +162,7 @@ fn join(path: &mut Path<2>, before: usize, after: usize) {
     for k in [2, 3] {
         path.cubics[before][k] += half;
     }
-    path.cubics[after][1] = path.cubics[after][1] - half;
+    path.cubics[after][1] -= half;
     path.cubics[after][0] = path.cubics[before][3];
 }
 

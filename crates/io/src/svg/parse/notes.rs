@@ -141,9 +141,26 @@ impl Note {
                 "resize the page to the drawing, or draw a rectangle with the id \"frame\"",
             ),
             Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
+            Self::ZeroLength
+            | Self::NoWidth
+            | Self::Duplicate
+            | Self::Weaving
+            | Self::ManyPaints
+            | Self::UnevenWidth
+            | Self::CurveFill
+            | Self::Traced
+            | Self::CurveMask => self.stroke_message(),
+            Self::DomainBackground => {
+                ("shape around all others taken for a background, not for the domain", "choose a shape by its id")
+            }
+        }
+    }
+
+    /// The messages about strokes.
+    fn stroke_message(self) -> (&'static str, &'static str) {
+        match self {
             Self::ZeroLength => ("stroke without length ignored", "delete it, or give it round caps if it is a dot"),
             Self::NoWidth => ("stroke of no width ignored", "give it a stroke-width above 0"),
-            Self::Duplicate => ("stroke exactly on top of one like it ignored", "delete one of the two"),
             Self::Weaving => (
                 "strokes go over and under something in turn; the result has all strokes of one look in one layer",
                 "draw what goes over as a shape of its own, with a gap in what goes under",
@@ -159,9 +176,8 @@ impl Note {
                 "mark it data-arabesque=\"element\" to have it copied as it is",
             ),
             Self::CurveMask => ("mask on a curve ignored", "cut the curve instead"),
-            Self::DomainBackground => {
-                ("shape around all others taken for a background, not for the domain", "choose a shape by its id")
-            }
+            // `message` asks for strokes alone.
+            _ => ("stroke exactly on top of one like it ignored", "delete one of the two"),
         }
     }
 }

@@ -43,6 +43,8 @@ pub(crate) struct Source<'a> {
     pub(crate) values: &'a [String],
     pub(crate) notes: Notes,
     ids: Rc<BTreeMap<&'a str, NodeId>>,
+    /// Where in the text each line ends.
+    line_ends: Rc<[usize]>,
     /// Fill and stroke of the shape whose marker is being built: what `context-fill` and `context-stroke` mean.
     pub(crate) context: RefCell<Option<[Rc<str>; 2]>>,
     /// Path segments read so far, against the limit.
@@ -89,6 +91,7 @@ pub(crate) fn with_source<T>(
         values: &values,
         notes: Notes::default(),
         ids: Rc::new(ids(&xml)),
+        line_ends: text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(at, _)| at).collect(),
         context: RefCell::default(),
         segments: Cell::new(0),
         nodes: Cell::new(0),
@@ -170,9 +173,16 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// The line that a node begins in. Counted once for all of them: with thousands of nodes to be named, each of them would be
+    /// another way through the text.
+    pub(crate) fn line(&self, node: &Xml<'_, '_>) -> usize {
+        let start = node.range().start;
+        self.line_ends.partition_point(|end| *end < start) + 1
+    }
+
     /// File, line and tag of a node, for messages.
     pub(crate) fn place(&self, node: Xml<'_, '_>) -> String {
-        let line = self.xml.text_pos_at(node.range().start).row;
+        let line = self.line(node);
         let id = node.attribute("id").map_or_else(String::new, |id| format!(" id=\"{}\"", clip_text(id, 40)));
         format!("{}:{line}: <{}{id}>", self.name, node.tag_name().name())
     }

@@ -82,7 +82,7 @@ impl Document<'_> {
             // Copies beside the window are nothing to speak of.
             found.items.retain(|item| item.outline.bounds().intersects(&window));
         }
-        settle(source, &mut found, window, &self.options)?;
+        settle(source, &mut found, window, self.options)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());

@@ -158,7 +158,7 @@ impl Item {
     pub(crate) fn name(&self, source: &Source<'_>) -> String {
         let meta = &self.meta;
         let own = meta.label.as_ref().or(meta.id.as_ref()).map(|n| format!("\"{n}\""));
-        let line = || source.xml.get_node(meta.xml).map(|xml| source.xml.text_pos_at(xml.range().start).row);
+        let line = || source.xml.get_node(meta.xml).map(|xml| source.line(&xml));
         own.unwrap_or_else(|| format!("<{}> in line {}", meta.tag, line().unwrap_or(1)))
     }
 

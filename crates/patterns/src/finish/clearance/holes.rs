@@ -173,7 +173,8 @@ mod tests {
     fn rows_that_overlap_as_in_the_exemplar_stay_whole() {
         let half: Vec<(f64, f64)> = (0..=12).map(|k| (f64::from(k) / 12.0 * std::f64::consts::PI).sin_cos()).collect();
         let half: Vec<_> = half.iter().map(|&(s, c)| (1.2 * c, 1.2 * s)).collect();
-        let rows = |n: u32| grid(n, n).map(|(x, y)| (x + if (y / 2.0) as u32 % 2 == 0 { 0.0 } else { 1.0 }, y));
+        let rows =
+            |n: u32| grid(n, n).map(|(x, y)| (x + if ((y / 2.0) as u32).is_multiple_of(2) { 0.0 } else { 1.0 }, y));
         let scales = exemplar(rows(10), &half);
         let shaken = |(x, y): (f64, f64)| (x + 0.01 * (7.0 * x + y).sin(), y + 0.01 * (3.0 * y + x).cos());
         assert_eq!(mended(&scales, rows(19).map(shaken)).0, 361);

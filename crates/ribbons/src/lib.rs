@@ -39,6 +39,7 @@ mod constraints;
 mod engine;
 mod exemplar;
 mod geometry;
+mod objects;
 mod params;
 mod pieces;
 mod request;

@@ -82,7 +82,8 @@ impl<const D: usize> Placing<'_, D> {
         if !self.relax && !self.is_wide_enough(object, from, from + length) {
             return Err(Obstacle::Width);
         }
-        match self.rigid(object, from, length, end) {
+        match self.rigid(object, from, length) {
+            Some(rigid) if rigid.to > end + 1e-6 * self.height => Err(Obstacle::End),
             Some(rigid) => Ok(rigid),
             None => self.bent(object, from, length),
         }
@@ -96,11 +97,8 @@ impl<const D: usize> Placing<'_, D> {
     }
 
     /// The object as it is, where the curve leaves its chord by little.
-    fn rigid(&self, object: &Object, from: f64, length: f64, end: f64) -> Option<Placed<D>> {
+    fn rigid(&self, object: &Object, from: f64, length: f64) -> Option<Placed<D>> {
         let to = self.way.reach(from, length)?;
-        if to > end + 1e-6 * self.height {
-            return None;
-        }
         let (a, b) = (self.way.point(from), self.way.point(to));
         let along = (b - a).unit_if_longer(1e-9 * self.height)?;
         let across = self.way.down(0.5 * (from + to));

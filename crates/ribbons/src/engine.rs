@@ -131,6 +131,11 @@ impl Prepared {
         &self.exemplars
     }
 
+    /// How many separate objects the exemplars consist of; `None` where their pattern goes on.
+    pub fn objects(&self) -> Option<usize> {
+        self.objects.as_ref().map(|objects| objects.list.len())
+    }
+
     /// Lays the pattern along curves in the plane.
     ///
     /// When the budget is used up or somebody asks to stop, the pieces that were laid until then are the result, with

@@ -85,21 +85,22 @@ fn ring(centre: f64, r: f64) -> Path<2> {
 #[test]
 fn the_stem_goes_on_at_every_seam() {
     let mut failed = Vec::new();
-    for (width, height, period, reach) in [(240, 48, 60.0, 6.0), (200, 64, 90.0, 12.0)] {
+    for (width, height, period, reach) in [(160, 40, 50.0, 5.0), (140, 48, 64.0, 9.0)] {
         let exemplar = vine(width, height, period, reach);
         let prepared = Prepared::new(vec![exemplar.clone()], RibbonParams::default(), &Budget::default()).unwrap();
         let curves = [
-            ("straight", polyline(&[(40.0, 60.0), (500.0, 60.0)])),
-            ("bent", polyline(&[(40.0, 60.0), (250.0, 60.0), (430.0, 190.0)])),
-            ("ring", ring(200.0, 110.0)),
-            ("square", square(60.0, 320.0)),
+            ("straight", polyline(&[(40.0, 60.0), (340.0, 60.0)])),
+            ("bent", polyline(&[(40.0, 60.0), (180.0, 60.0), (300.0, 150.0)])),
+            ("ring", ring(200.0, 60.0)),
+            ("square", square(60.0, 180.0)),
         ];
         for (name, path) in curves {
             for seed in 0..5 {
                 let request = RibbonRequest { seed, ..RibbonRequest::new(vec![(name.into(), path.clone())]) };
                 let outcome = prepared.run(&request, &mut Unobserved).unwrap();
                 let (jump, seam) = worst(&exemplar.image, &outcome.ribbons[0]);
-                let limit = (0.02 * height as f64).max(1.0);
+                // A pixel; where one piece turns a corner of 90 degrees, a tenth more.
+                let limit = (0.02 * height as f64).max(1.1);
                 if jump > limit {
                     failed.push(format!(
                         "{name}, seed {seed}: {jump:.2} over {limit:.2} at seam {seam} of {}",

@@ -107,7 +107,7 @@ impl Crossing {
     fn gap(self, other: Self, rows: usize) -> f32 {
         let (least, most) = (self.mass.min(other.mass), self.mass.max(other.mass));
         let allowed = BROKEN * rows as f32;
-        let beyond = (self.middle - other.middle).abs() - allowed - self.spread.max(other.spread);
+        let beyond = (self.middle - other.middle).abs() - allowed - 0.5 * self.spread.max(other.spread);
         if beyond <= 0.0 || least <= 0.0 {
             return 0.0;
         }

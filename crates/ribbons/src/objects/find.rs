@@ -159,7 +159,7 @@ fn ends(image: &Image, run: &Range<usize>) -> [f64; 2] {
 fn object(image: &Image, source: usize, run: &Range<usize>) -> Object {
     let middle = 0.5 * image.height as f64;
     let [left, right] = ends(image, run);
-    let n = run.len().min(COLUMNS).max(2);
+    let n = run.len().clamp(2, COLUMNS);
     let mut outline = Vec::new();
     let (mut top, mut bottom) = (image.height, 0);
     for x in run.clone() {

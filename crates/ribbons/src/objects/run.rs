@@ -89,7 +89,7 @@ impl<const D: usize> Course<'_, D> {
             });
             let own: Vec<Piece<D>> = placed.into_iter().flat_map(|object| object.pieces).collect();
             pieces += own.len();
-            laid.ribbons.push(Ribbon { pieces: own, closed: false, cost: 0.0 });
+            laid.ribbons.push(Ribbon { pieces: own, closed: cage.closed, cost: 0.0 });
             let progress = Progress {
                 stage: "laying objects".into(),
                 done: k + 1,

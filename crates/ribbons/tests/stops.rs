@@ -139,7 +139,7 @@ fn work_that_is_used_up_leaves_the_pieces_so_far_and_a_warning() {
         check(&one, &whole.ribbons);
         same(&one, &three);
         if let Ok(outcome) = one
-            && outcome.stopped == StopReason::Stopped
+            && outcome.stopped == StopReason::Limit
         {
             assert!(outcome.warnings.iter().any(|w| w.advice.contains("--limit work=")), "{:?}", outcome.warnings);
             warned += 1;

@@ -8,12 +8,16 @@ use arabesque_core::{
 use rayon::prelude::*;
 
 use crate::{
-    constraints::demands::Plan,
+    constraints::demands::{Plan, changes},
     constraints::mask::{Forbidden, Mask},
     constraints::valid::{Grade, Offset, Position},
     exemplar::columns::Columns,
     exemplar::strip::{self, Strip, StripExemplar, sample},
     geometry::cage::{Cage, CagePlan},
+    objects::{
+        find::{self, Objects},
+        run,
+    },
     params::RibbonParams,
     pieces::piece::{Piece, Ribbon},
     pieces::stitch,
@@ -71,6 +75,8 @@ pub struct Prepared {
     strip: Strip,
     /// Rows of the highest one.
     height: usize,
+    /// What they consist of, where that is separate objects.
+    objects: Option<Arc<Objects>>,
 }
 
 /// One curve of a run.
@@ -116,12 +122,18 @@ impl Prepared {
         strip::check(&exemplars, params.coarse, params.relax, budget)?;
         let strip = Strip::new(&exemplars, params.coarse, budget)?;
         let height = exemplars.iter().map(|e| e.image.height).max().unwrap_or(0);
-        Ok(Self { exemplars: Arc::new(exemplars), params, strip, height })
+        let objects = find::find(&exemplars, budget)?.map(Arc::new);
+        Ok(Self { exemplars: Arc::new(exemplars), params, strip, height, objects })
     }
 
     /// The exemplars.
     pub fn exemplars(&self) -> &[StripExemplar] {
         &self.exemplars
+    }
+
+    /// How many separate objects the exemplars consist of; `None` where their pattern goes on.
+    pub fn objects(&self) -> Option<usize> {
+        self.objects.as_ref().map(|objects| objects.list.len())
     }
 
     /// Lays the pattern along curves in the plane.
@@ -150,6 +162,11 @@ impl Prepared {
         let budget = request.budget.stage(LAYING);
         let cages = self.cages(&request.curves, Cage::<2>::along, &budget)?;
         let mask = request.avoid.as_ref();
+        if self.objects.is_some() {
+            let blocked = mask.map(|mask| move |p: Vector<2>| mask.blocks(p));
+            let blocked = blocked.as_ref().map(|b| b as &dyn Fn(Vector<2>) -> bool);
+            return self.lay_objects(&cages, request, blocked, watch);
+        }
         let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget)?;
         let mut outcome = self.lay(&cages, &free, (request, before), watch)?;
         let Some(mask) = mask else { return Ok(outcome) };
@@ -170,6 +187,9 @@ impl Prepared {
         watch: &mut dyn Watch<Snapshot<3>>,
     ) -> Result<RibbonOutcome<3>> {
         let cages = self.cages(&request.curves, Cage::<3>::in_space, &request.budget.stage(LAYING))?;
+        if self.objects.is_some() {
+            return self.lay_objects(&cages, request, None, watch);
+        }
         self.lay(&cages, &Forbidden::none(&cages), (request, &Memory::default()), watch)
     }
 
@@ -180,7 +200,12 @@ impl Prepared {
         cut: impl Fn(&Path<D>, &CagePlan<'_>) -> Result<Cage<D>>,
         budget: &Budget,
     ) -> Result<Vec<Cage<D>>> {
-        let plan = |place| CagePlan { params: &self.params, height: self.height as f64, place, budget };
+        let plan = |params, place| CagePlan { params, height: self.height as f64, place, budget };
+        let params = match self.objects {
+            Some(_) => &run::fine(&self.params, self.height as f64),
+            None => &self.params,
+        };
+        let plan = |place| plan(params, place);
         plan("").check_width()?;
         let (mut cages, mut pieces, mut stitches) = (Vec::new(), 0, 0_u64);
         let limit = budget.limits().output_elements;
@@ -188,7 +213,7 @@ impl Prepared {
             let cage = cut(path, &plan(name))?;
             pieces += cage.len();
             budget.within("pieces along all curves", pieces, ("output-elements", limit))?;
-            if self.params.stitch {
+            if self.params.stitch && self.objects.is_none() {
                 let (work, bytes) = stitch::demand(cage.forms.iter().map(|form| form.rows()).max().unwrap_or(0));
                 budget.hold("stitches across the whole width of the ribbon", bytes)?;
                 stitches = stitches.saturating_add(work.saturating_mul(cage.len() as u64));
@@ -197,6 +222,40 @@ impl Prepared {
         }
         budget.foresee(stitches)?;
         Ok(cages)
+    }
+
+    /// Separate objects along all curves.
+    fn lay_objects<const D: usize>(
+        &self,
+        cages: &[Cage<D>],
+        request: &RibbonRequest<D>,
+        blocked: Option<&dyn Fn(Vector<D>) -> bool>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<RibbonOutcome<D>> {
+        let mut outcome = RibbonOutcome::new();
+        let Some(objects) = &self.objects else { return Ok(outcome) };
+        let course = run::Course {
+            objects,
+            params: &self.params,
+            curves: &request.curves,
+            cages,
+            changes: &changes(&request.changes, self.exemplars.len())?,
+            first: request.first.map(|(column, _)| column),
+            seed: request.seed,
+            budget: &request.budget.stage(LAYING),
+        };
+        let laid = course.lay(blocked, &mut |progress, ribbons| {
+            let patches = || ribbons.iter().flat_map(|ribbon| ribbon.pieces.iter().map(|p| p.patch)).collect();
+            watch.step(&progress, &|| Snapshot { patches: patches(), ..Snapshot::default() }).is_continue()
+        })?;
+        match laid.ended {
+            None => {}
+            Some(run::Ended::Watch) => outcome.end(Ended::Watch),
+            Some(run::Ended::Budget(error)) => outcome.end(Ended::of(error)?),
+        }
+        outcome.warnings.extend(laid.warnings);
+        outcome.ribbons = laid.ribbons;
+        Ok(outcome)
     }
 
     fn lay<const D: usize>(

@@ -15,6 +15,7 @@
 //! | close closed curves | `solve` | [Zhou 2013 §1.5] |
 //! | stitch | `stitch`, `piece` | [Zhou 2013 §3.2, eqs 2, 3] |
 //! | draw | `render` | |
+//! | separate objects: find, choose, place | `objects` | |
 //!
 //! | symbol | identifier |
 //! |---|---|
@@ -31,7 +32,12 @@
 //! piece whose curve is nearest instead of to none; parts that were shown a short while ago cost more ([`RibbonParams::repetition`]) and a
 //! random preference varies the pattern ([`RibbonParams::variety`]); several exemplars pass into one another; exemplars may have a start and an
 //! end; rows of an earlier run are taken over ([`Prepared::resume`]). A closed curve without a cycle among the paths of the first pass
-//! is searched again from its best start. Lower bounds on the difference of columns make the exact optimum fast.
+//! is searched again from its best start. Lower bounds on the difference of columns make the exact optimum fast. Where the ink of two edges
+//! lies apart, that costs more the farther it is (`columns::Crossing`): pixels alone make every break of a thin stem equally bad.
+//!
+//! An exemplar of separate objects, with transparent columns between them, has no edges to compare. Its objects are laid whole, one after
+//! the other, with gaps drawn from its own: rigid where the curve leaves their chord by at most a tenth of the height of the exemplar, else
+//! in fine slices along it. Corners divide a curve into parts; no object lies across one.
 //!
 //! Not handled: stochastic backgrounds.
 
@@ -39,6 +45,7 @@ mod constraints;
 mod engine;
 mod exemplar;
 mod geometry;
+mod objects;
 mod params;
 mod pieces;
 mod request;

@@ -31,7 +31,12 @@ pub(crate) fn prepare(ribbon: &Ribbon, preparation: &mut Preparation<'_>) -> Res
 impl Ready for Strips {
     fn understood(&self) -> String {
         let sizes = self.0.engine.exemplars().iter().map(|e| format!("{} x {} pixels", e.image.width, e.image.height));
-        format!("exemplar: {}", sizes.collect::<Vec<_>>().join(", then "))
+        let sizes = sizes.collect::<Vec<_>>().join(", then ");
+        match self.0.engine.objects() {
+            Some(1) => format!("exemplar: {sizes}: one object, laid whole"),
+            Some(n) => format!("exemplar: {sizes}: {n} separate objects, laid whole with gaps like its own"),
+            None => format!("exemplar: {sizes}"),
+        }
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {

@@ -15,7 +15,7 @@ use crate::{
 #[command(after_long_help = parameters(), allow_negative_numbers = true)]
 pub(crate) struct Ribbon {
     /// The pattern, from left to right on a transparent background: PNG pictures or SVG drawings; of several, the pattern passes from one
-    /// into the next along each curve
+    /// into the next along each curve; objects with transparent columns between them are laid whole
     #[arg(required = true, value_name = "EXEMPLAR")]
     exemplars: Vec<String>,
     /// The curves: every path and shape of an SVG file, or #ID of one, or of a group or layer; or the lines of an OBJ file, in space

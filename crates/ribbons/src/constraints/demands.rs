@@ -33,7 +33,7 @@ pub(crate) struct Plan<'a, const D: usize> {
 impl<const D: usize> Plan<'_, D> {
     /// What is asked of each piece, beside the pixels that must stay `free`.
     pub(crate) fn demands(&self, free: Vec<Arc<Vec<Offset>>>) -> Result<Vec<Demands>> {
-        let changes = self.changes()?;
+        let changes = changes(&self.request.changes, self.strip.spans.len())?;
         let mut demands: Vec<Demands> = free
             .into_iter()
             .enumerate()
@@ -100,20 +100,6 @@ impl<const D: usize> Plan<'_, D> {
         (middle - wander).ceil() as i64..(middle + wander).floor() as i64 + 1
     }
 
-    /// Shares of the length at which one exemplar passes into the next.
-    fn changes(&self) -> Result<Vec<f64>> {
-        let (given, n) = (&self.request.changes, self.strip.spans.len());
-        if given.is_empty() {
-            return Ok((1..n).map(|k| k as f64 / n as f64).collect());
-        }
-        let rising = given.windows(2).all(|w| w[0] < w[1]) && given.iter().all(|c| (0.0..=1.0).contains(c));
-        if given.len() + 1 != n || !rising {
-            let expected = format!("{} rising numbers from 0 to 1, one between each exemplar and the next", n - 1);
-            return Err(Error::parameter("changes", format!("{given:?}"), expected));
-        }
-        Ok(given.clone())
-    }
-
     /// Columns of the exemplars that are in use where piece `k` lies, without the parts for the ends.
     fn body(&self, k: usize, changes: &[f64]) -> Vec<Range<usize>> {
         let share = (k as f64 + 0.5) / self.cage.len() as f64;
@@ -178,6 +164,22 @@ impl<const D: usize> Plan<'_, D> {
         demand.rows = Some(y..y + 1);
         Ok(())
     }
+}
+
+/// Shares of the length at which one of `n` exemplars passes into the next.
+///
+/// # Errors
+/// [`Error::Parameter`] unless `given` is empty or one rising share between each exemplar and the next.
+pub(crate) fn changes(given: &[f64], n: usize) -> Result<Vec<f64>> {
+    if given.is_empty() {
+        return Ok((1..n).map(|k| k as f64 / n as f64).collect());
+    }
+    let rising = given.windows(2).all(|w| w[0] < w[1]) && given.iter().all(|c| (0.0..=1.0).contains(c));
+    if given.len() + 1 != n || !rising {
+        let expected = format!("{} rising numbers from 0 to 1, one between each exemplar and the next", n - 1);
+        return Err(Error::parameter("changes", format!("{given:?}"), expected));
+    }
+    Ok(given.to_vec())
 }
 
 /// A list of one range of columns.

@@ -11,6 +11,9 @@ pub(crate) const GAMMA: f32 = 1024.0;
 const LARGEST: f32 = 441.68;
 /// Weight of slopes beside pixels where the context counts fully.
 const SLOPES: f64 = 3.0;
+/// How far the ink of two columns may be apart, beside what it spreads, before it counts as broken, in heights of the column; what is
+/// less, stitching mends.
+const BROKEN: f32 = 0.03;
 /// Left columns whose bounds are computed at once.
 pub(crate) const LANES: usize = 8;
 /// Parts of a column whose sums bound its cost from below.
@@ -67,8 +70,50 @@ pub(crate) struct Columns {
     /// Chunks of a block.
     block: usize,
     chunks: Vec<Chunk>,
+    /// Where the ink of each column crosses the edge.
+    crossings: Vec<Crossing>,
     /// Their memory.
-    _held: Held,
+    _held: [Held; 2],
+}
+
+/// Where ink crosses an edge, weighted by alpha.
+#[derive(Clone, Copy, Debug, Default)]
+struct Crossing {
+    /// Rows of it.
+    mass: f32,
+    /// The middle of it, and how far it spreads from there on both sides, in rows.
+    middle: f32,
+    spread: f32,
+}
+
+impl Crossing {
+    fn of(rows: usize, alpha: impl Fn(usize) -> f32) -> Self {
+        let (mut mass, mut moment, mut square) = (0.0, 0.0, 0.0);
+        for row in 0..rows {
+            let (share, at) = (alpha(row) / 255.0, row as f32 + 0.5);
+            mass += share;
+            moment += share * at;
+            square += share * at * at;
+        }
+        if mass <= 0.0 {
+            return Self::default();
+        }
+        let middle = moment / mass;
+        Self { mass, middle, spread: (square / mass - middle * middle).max(0.0).sqrt() }
+    }
+
+    /// What it costs beside the pixels that a pattern breaks off here and goes on elsewhere. Pixels tell nothing of how far that is once
+    /// a thin stem has left itself, so that one large break would be as good as one small one.
+    fn gap(self, other: Self, rows: usize) -> f32 {
+        let (least, most) = (self.mass.min(other.mass), self.mass.max(other.mass));
+        let allowed = BROKEN * rows as f32;
+        let beyond = (self.middle - other.middle).abs() - allowed - 0.5 * self.spread.max(other.spread);
+        if beyond <= 0.0 || least <= 0.0 {
+            return 0.0;
+        }
+        // The middle of a stem beside that of a stem with a leaf says little.
+        GAMMA * rows as f32 * (beyond / allowed) * (least / most)
+    }
 }
 
 impl Columns {
@@ -100,16 +145,20 @@ impl Columns {
         let count = (block * BLOCKS).saturating_mul(positions.len());
         let (mut chunks, held) = budget.list::<Chunk>("edges of one piece at all its places in the exemplar", count)?;
         chunks.resize(count, [[0.0; WIDE]; CHANNELS]);
-        chunks.par_chunks_mut(block * BLOCKS).zip(positions).with_min_len(64).try_for_each(|(column, p)| {
+        let (mut crossings, places) = budget.list("edges of one piece", positions.len())?;
+        crossings.resize(positions.len(), Crossing::default());
+        let columns = chunks.par_chunks_mut(block * BLOCKS).zip(positions).zip(&mut crossings);
+        columns.with_min_len(64).try_for_each(|((column, p), crossing)| {
             budget.spend(SAMPLE * rows as u64)?;
             for (k, tap) in taps.iter().enumerate() {
                 for (channel, value) in tap.sample(strip, *p).into_iter().enumerate() {
                     column[k / WIDE][channel][k % WIDE] = value;
                 }
             }
+            *crossing = Crossing::of(rows, |row| column[row / WIDE][3][row % WIDE]);
             Ok(())
         })?;
-        Ok(Self { rows, block, chunks, _held: held })
+        Ok(Self { rows, block, chunks, crossings, _held: [held, places] })
     }
 
     /// Column `k`, block by block.
@@ -193,7 +242,12 @@ impl Tap {
 
 /// D(v + R, u + L) of column `v` of `right` beside column `u` of `left`: sums of blocks, from top to bottom.
 pub(crate) fn column_cost(right: &Columns, v: usize, left: &Columns, u: usize) -> f32 {
-    right.blocks(v).zip(left.blocks(u)).fold(0.0, |sum, (p, q)| sum + block_cost(p, q))
+    let pixels = right.blocks(v).zip(left.blocks(u)).fold(0.0, |sum, (p, q)| sum + block_cost(p, q));
+    pixels + break_cost(right, v, left, u)
+}
+
+fn break_cost(right: &Columns, v: usize, left: &Columns, u: usize) -> f32 {
+    right.crossings[v].gap(left.crossings[u], right.rows)
 }
 
 fn block_cost(p: &[Chunk], q: &[Chunk]) -> f32 {
@@ -214,16 +268,20 @@ pub(crate) fn column_cost_within(
     if rest > limit {
         return None;
     }
+    let broken = break_cost(right, v, left, u);
+    if rest + broken > limit {
+        return None;
+    }
     let mut sum = 0.0;
     let blocks = right.blocks(v).zip(left.blocks(u)).zip(bounds).filter(|(_, bound)| **bound >= 0.0);
     for ((p, q), bound) in blocks {
         rest -= bound * TRUST;
         sum += block_cost(p, q);
-        if sum + rest > limit {
+        if sum + rest + broken > limit {
             return None;
         }
     }
-    Some(sum)
+    Some(sum + broken)
 }
 
 /// Share of a lower bound that is believed, for the rounding of sums.

@@ -392,7 +392,7 @@ mod tests {
         let wide = |width, scale| RibbonParams { width: Width::Constant(width), scale, ..RibbonParams::default() };
         let profile = Width::Profile(vec![(0.0, 20.0), (1.0, 1e300)]);
         for (path, params, word) in [
-            (&short, wide(1e9, 1.0), "width of the ribbon: 1000000000 pixels"),
+            (&short, wide(1e9, 1.0), "width of the ribbon: 1e9 pixels"),
             (&short, wide(20.0, 1e-300), "width of the ribbon"),
             (&short, RibbonParams { width: profile, ..RibbonParams::default() }, "width of the ribbon"),
             (&short, wide(1e-300, 1.0), "hundredth of a pixel"),

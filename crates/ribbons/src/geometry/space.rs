@@ -61,9 +61,9 @@ fn turn(v: Vector<3>, axis: Vector<3>, radians: f64) -> Vector<3> {
 }
 
 /// The quadrilateral between two edges, laid flat: two triangles that keep the lengths of their sides.
-fn unrolled(a: &Rung<3>, b: &Rung<3>, scale: f64) -> Form {
+pub(crate) fn unrolled<const D: usize>(a: &Rung<D>, b: &Rung<D>, scale: f64) -> Form {
     let left = (a.bottom - a.top).norm();
-    let to = |p: Vector<3>| apex(left, (p - a.top).norm(), (p - a.bottom).norm());
+    let to = |p: Vector<D>| apex(left, (p - a.top).norm(), (p - a.bottom).norm());
     let (top, bottom) = (to(b.top), to(b.bottom));
     Form::new(left / scale, top * (1.0 / scale), bottom * (1.0 / scale))
 }

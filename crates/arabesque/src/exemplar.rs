@@ -57,10 +57,11 @@ impl LoadedExemplar {
         let options = ReadOptions { budget: budget.clone(), ..options };
         let mut drawing = svg::read_exemplar(&text, &options)?;
         if options.tiling == svg::Tiling::Auto && drawing.exemplar.period.is_some() {
-            // A page that repeats by itself is no period, even if what its edges cut fits together by chance.
+            // A page that repeats by itself is no period, even if what its edges cut fits together by chance; strokes
+            // fit too easily to be taken for one without being asked.
             let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
             if let Ok(page) = svg::read_exemplar(&text, &as_page)
-                && repeats(&page.exemplar, budget)?
+                && (!page.exemplar.curves.is_empty() || repeats(&page.exemplar, budget)?)
             {
                 drawing = page;
             }

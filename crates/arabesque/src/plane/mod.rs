@@ -18,14 +18,14 @@ use std::sync::Arc;
 
 use arabesque_core::{Error, Result, Watch};
 use arabesque_io::svg::LargeFills;
-use arabesque_patterns::{Prepared as Engine, Repeats};
+use arabesque_patterns::{Params, Prepared as Engine, Repeats};
 
 use crate::{
     artwork::Artwork,
     exemplar::{LoadedExemplar, points_as_drawing, understood},
     inspect::UnderstoodReport,
     method::{Preparation, Ready, RunContext, Show},
-    recipe::{Fill, Parameters, Reading, Redo},
+    recipe::{Fill, Reading, Redo},
 };
 use exemplar::PlaneExemplar;
 use made::PlaneMade;
@@ -58,21 +58,22 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
         }
     };
     preparation.exemplar = input.embedding(&bytes);
-    Plane::new(PlaneExemplar { drawing, points, region: None }, &fill.params, preparation)
+    Plane::new(PlaneExemplar { drawing, points, region: None }, &params, preparation)
 }
 
 /// Reads a drawing to fill a region of it again.
 pub(crate) fn prepare_region(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Plane> {
-    redo.params.engine_params()?;
+    let params = redo.params.engine_params()?;
     let exemplar = redo::read(redo, preparation)?;
-    Plane::new(exemplar, &redo.params, preparation)
+    // What is around a region need not lie where the repeat of another part has it: the new is fitted to what stays.
+    Plane::new(exemplar, &Params { repeat: Repeats::Off, ..params }, preparation)
 }
 
 impl Plane {
     /// Analyses the exemplar.
-    fn new(mut exemplar: PlaneExemplar, params: &Parameters, preparation: &mut Preparation<'_>) -> Result<Self> {
+    fn new(mut exemplar: PlaneExemplar, params: &Params, preparation: &mut Preparation<'_>) -> Result<Self> {
         preparation.warnings.append(&mut exemplar.drawing.warnings);
-        let engine = Engine::new(Arc::clone(exemplar.exemplar()), &params.engine_params()?, preparation.files.budget())
+        let engine = Engine::new(Arc::clone(exemplar.exemplar()), params, preparation.files.budget())
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
         Ok(Self { exemplar: Arc::new(exemplar), engine })
     }

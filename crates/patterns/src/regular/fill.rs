@@ -26,6 +26,9 @@ use crate::{
 /// Elements that fit no place of the repeat, as a share of all, up to which the repeat explains the exemplar.
 const UNEXPLAINED: f64 = 0.1;
 
+/// Elements nearer to the frame than this share of the shorter vector may have been cut to fit.
+const RIM: f64 = 0.35;
+
 /// Residuals that differ by this share of the shorter vector count half as much as different things.
 const RESIDUAL: f64 = 0.1;
 
@@ -75,7 +78,15 @@ impl Regular {
         let is_giant = |e: &&Element<2>| e.outline.radius(e.centre) > farthest(&exemplar.window);
         let whole = exemplar.elements.iter().filter(|e| e.role == Role::Source).count();
         let giants = exemplar.elements.iter().filter(|e| e.role == Role::Source).filter(is_giant).count();
-        if others.len() as f64 > UNEXPLAINED * whole as f64 || (orbits.is_empty() && !has_lines) {
+        // What people cut to fit at the sides of the page explains nothing.
+        let shorter = repeat.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let inner = exemplar.window.grown(-RIM * shorter);
+        let is_inner = |e: &&u32| {
+            let bounds = exemplar.elements[**e as usize].outline.bounds();
+            inner.contains(bounds.min) && inner.contains(bounds.max)
+        };
+        let unexplained = others.iter().filter(is_inner).count();
+        if unexplained as f64 > UNEXPLAINED * whole as f64 || (orbits.is_empty() && !has_lines) {
             return Ok(None);
         }
         let cell = if has_lines {

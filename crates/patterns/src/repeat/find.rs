@@ -100,7 +100,21 @@ pub(crate) fn find_for<T>(
             continue;
         }
         let search = Search { marks: &marks, lines: &index, mode, side: exemplar.view().side(), budget };
-        let Some(found) = search.lattice()? else { continue };
+        let Some(mut found) = search.lattice()? else { continue };
+        if mode.kinds == Kinds::Any && mode.anchor == Anchor::Centre {
+            // Different things are aligned by their boxes as often as by their centres.
+            let by_box = Mode { anchor: Anchor::Box, ..mode };
+            let marks = Marks::new(exemplar, &lines, mode.kinds, Anchor::Box, budget)?;
+            if let Some(marks) = &marks
+                && let Some(other) = (Search { marks, mode: by_box, ..search }).lattice()?
+                && prefers(&other, &found)
+            {
+                found = other;
+            }
+        }
+        if mode.kinds == Kinds::Any {
+            found = fitted_by_looks(exemplar, &lines, &index, found, budget)?;
+        }
         let tried = match doubtful.take() {
             None if mode.tolerance <= EXACT && lines.is_empty() && found.jitter > BY_HAND * marks.unit => {
                 doubtful = Some(found);
@@ -128,6 +142,31 @@ pub(crate) fn find_for<T>(
         };
     }
     Ok(None)
+}
+
+/// Whether a repeat says more than another: by a smaller cell, or by one as large and more exactly.
+fn prefers(one: &Repeat, other: &Repeat) -> bool {
+    let (cell, than) = (one.lattice.cell(), other.lattice.cell());
+    cell < 0.8 * than || (cell < 1.2 * than && one.jitter < other.jitter)
+}
+
+/// A lattice of places, its vectors fitted to things of one look: the middles of different ones lie differently at
+/// their places.
+fn fitted_by_looks(
+    exemplar: &Exemplar<2>,
+    lines: &Lines,
+    index: &LineIndex<'_>,
+    found: Repeat,
+    budget: &Budget,
+) -> Result<Repeat> {
+    let Some(marks) = Marks::new(exemplar, lines, Kinds::Looks, Anchor::Centre, budget)? else { return Ok(found) };
+    let search = Search { marks: &marks, lines: index, mode: MODES[0], side: exemplar.view().side(), budget };
+    let fit = search.fit(&found.lattice)?;
+    let better = fit.jitter < 0.5 * found.jitter && fit.pairs >= MANY.0;
+    match Lattice::new(fit.vectors[0], fit.vectors[1]).filter(|_| better) {
+        Some(lattice) => Ok(Repeat { lattice, jitter: fit.jitter, ..found }),
+        None => Ok(found),
+    }
 }
 
 /// The search in one way of comparing.
@@ -302,7 +341,8 @@ impl Search<'_> {
         }
         self.budget.spend(work)?;
         let vectors = sums.vectors().unwrap_or(lattice.vectors);
-        Ok(Fit { vectors, jitter: sums.jitter(&vectors), share: found as f64 / seen.max(1) as f64 })
+        let jitter = sums.jitter(&vectors);
+        Ok(Fit { vectors, jitter, share: found as f64 / seen.max(1) as f64, pairs: found })
     }
 }
 
@@ -321,6 +361,8 @@ struct Fit {
     vectors: [Vector<2>; 2],
     jitter: f64,
     share: f64,
+    /// Marks that were found from another.
+    pairs: usize,
 }
 
 /// Normal equations of the vectors, over groups of marks each of which has an unknown origin.

@@ -115,10 +115,10 @@ impl<'a> LineIndex<'a> {
         Ok(Self { lines, window, pieces, index, step, unknown: Unknown::of(exemplar) })
     }
 
-    /// Whether no line reaches over the sides of the frame that lie across an axis.
+    /// Whether no line reaches the sides of the frame that lie across an axis.
     pub(crate) fn are_within(&self, axis: usize) -> bool {
-        let slack = 1e-6 * self.window.size().norm();
-        let (low, high) = (self.window.min[axis] - slack, self.window.max[axis] + slack);
+        let near = AT_FRAME * self.window.size()[axis];
+        let (low, high) = (self.window.min[axis] + near, self.window.max[axis] - near);
         self.lines.tracks.iter().flat_map(|t| &t.points).all(|p| (low..=high).contains(&p[axis]))
     }
 

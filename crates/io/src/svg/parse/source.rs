@@ -182,7 +182,7 @@ impl<'a> Source<'a> {
 
     /// File, line and tag of a node, for messages.
     pub(crate) fn place(&self, node: Xml<'_, '_>) -> String {
-        let line = self.line(node);
+        let line = self.line(&node);
         let id = node.attribute("id").map_or_else(String::new, |id| format!(" id=\"{}\"", clip_text(id, 40)));
         format!("{}:{line}: <{}{id}>", self.name, node.tag_name().name())
     }

@@ -88,7 +88,7 @@ fn the_summary_is_one_json_object() {
 fn a_reader_that_goes_away_before_the_end_is_told() {
     let folder = Folder::new();
     let mut child = folder
-        .command("fill leaves.svg --size 400x400 --iterations 0 -o -")
+        .command("fill leaves.svg --size 400x400 --iterations 0 --set repeat=off -o -")
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -62,7 +62,7 @@ fn links_and_devices_keep_what_they_are() {
 #[cfg(unix)]
 fn long_run(folder: &Folder, more: &str) -> (Child, BufReader<ChildStderr>) {
     let mut child = folder
-        .command(&format!("fill points.csv --size 25x25 --iterations 1000 -o out.csv -v {more}"))
+        .command(&format!("fill points.csv --size 25x25 --iterations 1000 --set repeat=off -o out.csv -v {more}"))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Bounds, Budget, Class, Contents, Curve, Domain, Element, Error, Exemplar, FillRule, Limits, Outcome,
+    Area, Border, Bounds, Budget, Class, Contents, Curve, Domain, Element, Error, Exemplar, FillRule, Limits, Outcome,
     Outline, Path, Request, Role, Shape, Similarity, Stage, StopReason, Stream, Unobserved, Vector,
 };
 use arabesque_patterns::{Compiled, Initialisation, Params, Prepared, Repeats, Search};
@@ -106,6 +106,53 @@ fn from_noise() -> (Prepared<2>, Request<2>) {
     (prepared, Request::new(Domain::Torus(page(60.0, 60.0))))
 }
 
+/// Stripes of a filled area from side to side, one below every row of squares.
+fn stripes(n: usize) -> Vec<Area<2>> {
+    let side = 10.0 * n as f64;
+    let stripe = |k: usize| {
+        let (low, high) = (10.0 * k as f64, 10.0 * k as f64 + 1.5);
+        let ring = [(0.0, low), (side, low), (side, high), (0.0, high)].map(|(x, y)| Vector::xy(x, y)).to_vec();
+        Area { outline: Outline { rings: vec![ring] }, style: 0, colour: [0.0; 3] }
+    };
+    (0..n).map(stripe).collect()
+}
+
+/// An exemplar of 50 by 50 that repeats exactly, with what is asked for: rows of squares, a net, stripes.
+fn repeating(has_squares: bool, has_lines: bool, has_stripes: bool) -> Prepared<2> {
+    let mut squares = if has_squares { squares(5) } else { Vec::new() };
+    for (k, square) in squares.iter_mut().enumerate() {
+        let place = Vector::xy((k % 5) as f64 * 10.0 + 5.0, (k / 5) as f64 * 10.0 + 5.0);
+        (square.centre, square.pose, square.class) = (place, Similarity::shift(place), 0);
+        let corner = |(x, y): (f64, f64)| place + Vector::xy(x, y) * 2.5;
+        square.outline.rings = vec![[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec()];
+    }
+    let straight = |at: f64| {
+        let ends = [(0.0, at), (50.0, at)];
+        [line(&ends.map(|(x, y)| Vector::xy(x, y))), line(&ends.map(|(x, y)| Vector::xy(y, x)))]
+    };
+    let lines = if has_lines { (0..5).flat_map(|k| straight(10.0 * f64::from(k) + 9.0)).collect() } else { Vec::new() };
+    let class = |name: &str| Class { name: name.into() };
+    let contents = Contents {
+        elements: squares,
+        classes: vec![class("a")],
+        curves: lines,
+        styles: vec![class("line")],
+        areas: if has_stripes { stripes(5) } else { Vec::new() },
+    };
+    let exemplar = Exemplar::with_curves("t", contents, page(50.0, 50.0)).unwrap();
+    // What does not repeat would be refused.
+    let params = Params { repeat: Repeats::Exact, ..Params::default() };
+    Prepared::new(Arc::new(exemplar), &params, &Budget::default()).unwrap()
+}
+
+/// A square with a square hole.
+fn frame() -> Domain<2> {
+    let square = |low: f64, high: f64| {
+        [(low, low), (high, low), (high, high), (low, high)].map(|(x, y)| Vector::xy(x, y)).to_vec()
+    };
+    Domain::Region(Arc::new(Shape::new(&[square(0.0, 93.0), square(31.0, 57.0)], FillRule::EvenOdd).unwrap()))
+}
+
 /// A run on so many threads. The exemplar is as nobody used it before: what a run finds out about it is kept.
 fn run<const D: usize>(
     (prepared, request): &(Prepared<D>, Request<D>),
@@ -123,7 +170,9 @@ where
 /// What there is to say about an outcome, in words that are the same when it is the same.
 fn told<const D: usize>(made: &Result<Outcome<D>, Error>) -> String {
     match made {
-        Ok(o) => format!("{:?} {:?} {:?} {:?} {:?}", o.stopped, o.placements, o.curves, o.energy, o.warnings),
+        Ok(o) => {
+            format!("{:?} {:?} {:?} {:?} {:?} {:?}", o.stopped, o.placements, o.curves, o.areas, o.energy, o.warnings)
+        }
         Err(error) => error.to_string(),
     }
 }
@@ -148,6 +197,15 @@ fn check_stops<const D: usize>(case: &(Prepared<D>, Request<D>), check: impl Fn(
 where
     Vector<D>: Compiled<D>,
 {
+    let (early, late) = stops(case, check);
+    assert!(late > early, "{early} {late}");
+}
+
+/// The same, with how many runs left nothing and how many something; both do.
+fn stops<const D: usize>(case: &(Prepared<D>, Request<D>), check: impl Fn(&Outcome<D>)) -> (u32, u32)
+where
+    Vector<D>: Compiled<D>,
+{
     let endless = Budget::stopping_at(Limits::default(), u64::MAX);
     let whole = run(case, &endless, 1).unwrap();
     assert_eq!(whole.stopped, StopReason::Finished);
@@ -165,7 +223,7 @@ where
             Ok(outcome) => {
                 late += 1;
                 assert_eq!(outcome.stopped, StopReason::Stopped, "{n}");
-                assert!(!outcome.placements.is_empty() || !outcome.curves.is_empty());
+                assert!(!(outcome.placements.is_empty() && outcome.curves.is_empty() && outcome.areas.is_empty()));
                 check_valid(&outcome, &case.1);
                 check(&outcome);
             }
@@ -173,7 +231,8 @@ where
             Err(other) => panic!("check {n} of {total}: {other}"),
         }
     }
-    assert!(early > 0 && late > early, "{early} {late}");
+    assert!(early > 0 && late > 0, "{early} {late}");
+    (early, late)
 }
 
 #[test]
@@ -196,6 +255,25 @@ fn curves_that_are_stopped_are_whole() {
 #[test]
 fn mixtures_that_are_stopped_are_whole() {
     check_stops(&mixture(), |_| {});
+}
+
+#[test]
+fn repeats_that_are_stopped_are_whole() {
+    for (squares, lines, stripes) in
+        [(true, false, false), (false, true, false), (false, true, true), (true, true, false), (true, true, true)]
+    {
+        let prepared = repeating(squares, lines, stripes);
+        for domain in [Domain::Box(page(93.0, 81.0)), Domain::Torus(page(80.0, 70.0)), frame()] {
+            let case = (prepared.clone(), Request::new(domain));
+            // Half of the checks of so short a run come before there is anything.
+            stops(&case, |outcome| {
+                let is_whole = outcome.stopped == StopReason::Finished;
+                assert!(!is_whole || outcome.placements.is_empty() != squares);
+                assert!(!is_whole || outcome.curves.is_empty() != lines);
+                assert!(!is_whole || outcome.areas.is_empty() != stripes);
+            });
+        }
+    }
 }
 
 #[test]

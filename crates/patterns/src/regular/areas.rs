@@ -63,14 +63,19 @@ fn parallelogram(origin: Vector<2>, lattice: &Lattice) -> Ring<2> {
     vec![corner, corner + a, corner + a + b, corner + b]
 }
 
-/// The areas in the cells `nodes`, cut at the border of the domain.
+/// Adds the areas in the cells `nodes` to `made`, cut at the border of the domain.
 ///
 /// # Errors
-/// When the budget is used up, or somebody asks to stop.
-pub(crate) fn draw(areas: &[CellArea], grid: &Grid, nodes: &[Node], request: &Request<2>) -> Result<Vec<Covered<2>>> {
+/// When the budget is used up, or somebody asks to stop; what is made by then is whole.
+pub(crate) fn draw(
+    areas: &[CellArea],
+    grid: &Grid,
+    nodes: &[Node],
+    request: &Request<2>,
+    made: &mut Vec<Covered<2>>,
+) -> Result<()> {
     let budget = &request.budget.stage("filling areas");
     let cut = Cut::new(request, budget)?;
-    let mut made = Vec::new();
     for area in areas {
         let whole = united(area, grid, nodes, budget)?;
         let outline = cut.apply(whole, budget)?;
@@ -78,7 +83,7 @@ pub(crate) fn draw(areas: &[CellArea], grid: &Grid, nodes: &[Node], request: &Re
             made.push(Covered { outline, source: area.source });
         }
     }
-    Ok(made)
+    Ok(())
 }
 
 /// The copies of a part in all cells, as one.

@@ -129,10 +129,7 @@ impl Regular {
         let placed = elements.place(&grid, request, watch)?;
         let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), Vec::new(), Vec::new());
         if let (Some(cell), None) = (&self.cell, &cut_short) {
-            match self.strokes(exemplar, cell, &grid, request) {
-                Ok(made) => (curves, areas) = made,
-                Err(error) => cut_short = Some(error),
-            }
+            cut_short = self.strokes(exemplar, cell, &grid, request, (&mut curves, &mut areas)).err();
         }
         if placed.placements.is_empty() && curves.is_empty() && areas.is_empty() {
             return Err(cut_short.unwrap_or_else(|| {
@@ -153,18 +150,20 @@ impl Regular {
         self.repeat
     }
 
+    /// Draws strokes and areas into `made`, where they stay when the run is cut short.
     fn strokes(
         &self,
         exemplar: &Exemplar<2>,
         cell: &Cell,
         grid: &Grid,
         request: &Request<2>,
-    ) -> Result<(Vec<Drawn<2>>, Vec<Covered<2>>)> {
+        made: (&mut Vec<Drawn<2>>, &mut Vec<Covered<2>>),
+    ) -> Result<()> {
         let strokes = Strokes { exemplar, cell };
         let margin = strokes.widest() * grid.scale();
         let nodes = strokes.nodes(grid, request, margin)?;
-        let drawn = strokes.draw(grid, &nodes, request)?;
-        Ok((drawn, areas::draw(&cell.areas, grid, &nodes, request)?))
+        strokes.draw(grid, &nodes, request, made.0)?;
+        areas::draw(&cell.areas, grid, &nodes, request, made.1)
     }
 
     /// Tells what the run will take, and refuses what is too much.

@@ -57,11 +57,17 @@ impl Strokes<'_> {
         grid.nodes(self.cell.origin, &request.domain.bounds().grown(margin), &request.budget)
     }
 
-    /// The strokes in the cells `nodes`, cut at the border of the domain.
+    /// Adds the strokes in the cells `nodes` to `made`, cut at the border of the domain.
     ///
     /// # Errors
-    /// When the budget is used up, or somebody asks to stop.
-    pub(crate) fn draw(&self, grid: &Grid, nodes: &[Node], request: &Request<2>) -> Result<Vec<Drawn<2>>> {
+    /// When the budget is used up, or somebody asks to stop; what is made by then is whole.
+    pub(crate) fn draw(
+        &self,
+        grid: &Grid,
+        nodes: &[Node],
+        request: &Request<2>,
+        made: &mut Vec<Drawn<2>>,
+    ) -> Result<()> {
         let budget = request.budget.stage("drawing strokes");
         let number: BTreeMap<Node, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
         let count = self.cell.parts.len();
@@ -86,12 +92,11 @@ impl Strokes<'_> {
         }
         let border = BorderCut::new(request, grid, &budget)?;
         let width = |drawn: &Drawn<2>| self.exemplar.curves[drawn.source].width * drawn.scale;
-        let mut strokes = Vec::new();
         for line in lines {
             let width = width(&line);
-            border.cut(line, width, &budget, &mut strokes)?;
+            border.cut(line, width, &budget, made)?;
         }
-        Ok(strokes)
+        Ok(())
     }
 
     /// Where the place beyond an end of a piece is.

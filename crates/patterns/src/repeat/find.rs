@@ -66,6 +66,9 @@ const FEW_IN_CELL: f64 = 6.5;
 const BY_HAND: f64 = 0.002;
 const SMALLER: f64 = 0.7;
 
+/// Elements that take one another's places where they lie about where they should differ by less than this in size.
+const OF_A_SIZE: f64 = 4.0;
+
 /// Work for each offset.
 const OFFSET: u64 = 60;
 
@@ -93,6 +96,10 @@ pub(crate) fn find_for<T>(
     for mode in MODES {
         // Lines either go over into themselves or they do not.
         if mode.tolerance > EXACT && !lines.is_empty() || mode.tolerance <= EXACT && doubtful.is_some() {
+            continue;
+        }
+        // Dots between flowers are no flowers: what lies at such places is not left to chance.
+        if mode.kinds == Kinds::Any && mode.tolerance > EXACT && are_of_all_sizes(exemplar) {
             continue;
         }
         let Some(marks) = Marks::new(exemplar, &lines, mode.kinds, mode.anchor, budget)? else { continue };
@@ -167,6 +174,13 @@ fn fitted_by_looks(
         Some(lattice) => Ok(Repeat { lattice, jitter: fit.jitter, ..found }),
         None => Ok(found),
     }
+}
+
+/// Whether some elements are out of all proportion to others.
+fn are_of_all_sizes(exemplar: &Exemplar<2>) -> bool {
+    let radii = exemplar.elements.iter().map(|e| e.outline.radius(e.centre));
+    let (low, high) = radii.fold((f64::INFINITY, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
+    high > OF_A_SIZE * low
 }
 
 /// The search in one way of comparing.

@@ -64,6 +64,14 @@ pub(crate) fn sort_strokes(mut items: Vec<Item>, painter: &Painter<'_, '_>, fram
     let pens = pens(&items);
     weave(&mut pieces, &items, &pens, &frame, painter.source.budget)?;
     claim(&mut pieces, &items, &pens, painter)?;
+    if let [piece] = pieces.as_mut_slice()
+        && items.len() == 1
+        && !piece.is_at_side
+        && items[0].outline.rings.len() > 1
+    {
+        // One ring in the middle of nothing shows no net, however large it is.
+        piece.fate = Fate::Element;
+    }
     for piece in &pieces {
         if let Fate::Net(reason) = piece.fate {
             for &i in &piece.members {

@@ -5,9 +5,16 @@ use arabesque_core::{Bounds, Exemplar, Measured, Path, net_line_spacing};
 /// A path that leaves the window is looked at in at least so many places.
 const FEWEST_STEPS: usize = 500;
 
+/// What stands for a distance where there are areas alone, as a share of the side of the frame.
+const AREAS: f64 = 0.02;
+
 /// Mean distance of elements, or of the lines of a net, whichever is smaller.
 pub(crate) fn spacing<const D: usize>(exemplar: &Exemplar<D>) -> f64 {
     let of_elements = exemplar.spacing();
+    if exemplar.curves.is_empty() && exemplar.elements.is_empty() {
+        // Areas alone: nothing of them is too small to be shown.
+        return AREAS * exemplar.view().side();
+    }
     if exemplar.curves.is_empty() {
         return of_elements;
     }

@@ -17,6 +17,8 @@
 //! | assign edges and tangents, draw strokes | `curves` | [Tu 2020 §4.3.4, §4.4.2] |
 //! | place | `finish` | [Ma 2011 §3.1], [Schaefer 2006] |
 //!
+//! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly.
+//!
 //! Everything knows only what stands above it in this list: `exemplar` (worked out once), `output` (what is made, in
 //! the state it is in), then the steps of `layout`, `optimise`, `curves` and `finish`, which do not know one another,
 //! and `run`, which calls them.

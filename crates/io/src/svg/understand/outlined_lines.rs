@@ -9,8 +9,10 @@ use crate::svg::{
     centreline::centrelines,
     parse::{
         notes::Note,
+        paint::reference,
         scene::{Content, Node},
         source::Source,
+        style::Property as P,
     },
     reason::Reason,
     shape::extent::longer,
@@ -99,12 +101,15 @@ fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> Result<bo
     Ok(item.lines.is_some())
 }
 
-/// Whether everything in an item is filled, and nothing has a stroke.
+/// Whether everything in an item is filled with one colour, and nothing has a stroke.
 fn is_plain_fill(item: &Item) -> bool {
     fn is_plain(node: &Node) -> bool {
         match &node.content {
             Content::Group(children) => children.iter().all(|child| is_plain(child)),
-            Content::Shape(_) => node.style.fills() && !node.style.strokes(),
+            // A gradient is stretched over the box of what it paints, which a straight stroke has not.
+            Content::Shape(_) => {
+                node.style.fills() && !node.style.strokes() && reference(node.style.get(P::Fill)).is_none()
+            }
         }
     }
     item.origin != Origin::Whole && item.parts.iter().all(|(_, node)| is_plain(node))

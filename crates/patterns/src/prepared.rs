@@ -113,6 +113,7 @@ where
             return Err(Error::input("exemplar", problem, advice));
         }
         checks::places(exemplar)?;
+        checks::strokes(exemplar)?;
         let side = exemplar.view().side();
         if let Some(radius) = params.radius.filter(|r| *r > side) {
             return Err(Error::parameter(

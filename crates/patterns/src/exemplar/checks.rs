@@ -10,6 +10,9 @@ const HEAP: f64 = 1000.0;
 /// Most samples on the curves of an exemplar at one level.
 const MAX_NODES: f64 = 10_000.0;
 
+/// A stroke that is alone says something about a pattern when it is as long as this share of the side of the frame.
+const LONE: f64 = 0.25;
+
 /// Refuses elements that lie on top of one another: nothing tells how they are to be laid out, and every one of them would
 /// have to be compared with all others.
 pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
@@ -27,6 +30,20 @@ pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// Refuses a single short stroke: nothing tells what belongs beside it.
+pub(crate) fn strokes<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
+    let ([curve], true) = (exemplar.curves.as_slice(), exemplar.elements.is_empty() && exemplar.areas.is_empty())
+    else {
+        return Ok(());
+    };
+    let extent = curve.path.bounds().size().0.into_iter().fold(0.0, f64::max);
+    if extent >= LONE * exemplar.view().side() {
+        return Ok(());
+    }
+    let advice = "repeat it a few times in the exemplar, so that it shows distances and directions";
+    Err(Error::input("exemplar", "one short stroke only, expected several", advice))
 }
 
 /// Refuses frozen elements that are copies of nothing.

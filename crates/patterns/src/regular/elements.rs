@@ -69,7 +69,7 @@ impl Elements<'_> {
                     Err(error) => return Ok(Placed { placements, ended: Err(error) }),
                 }
             }
-            if (k + 1).is_multiple_of(STEP) {
+            if (k + 1).is_multiple_of(STEP) || k + 1 == nodes.len() {
                 let progress = progress(k + 1, nodes.len(), placements.len());
                 let preview = || Snapshot { placements: placements.clone(), ..Snapshot::default() };
                 if let Err(error) = heard(watch.step(&progress, &preview), &progress) {

@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 
 use arabesque_core::{
-    Border, Bounds, Budget, Domain, Drawn, Exemplar, FillRule, Measured, Path, Region, Request, Result, Shape, Vector,
+    Border, Budget, Domain, Drawn, Exemplar, FillRule, Measured, Path, Region, Request, Result, Shape, Vector,
     spans_inside,
 };
 
 use crate::{
     regular::{
-        cut::{Piece, pieces},
         grid::Grid,
         joints::{Cell, Next},
     },
-    repeat::lattice::{Lattice, Node},
+    repeat::lattice::Node,
 };
 
 /// Scraps that the border leaves of a stroke are dropped when they are shorter than this many widths.
@@ -33,17 +32,6 @@ const WORK: (u64, u64) = (100, 200);
 pub(crate) struct Strokes<'a> {
     pub(crate) exemplar: &'a Exemplar<2>,
     pub(crate) cell: &'a Cell,
-}
-
-/// How a chain of pieces ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
-    /// Where the stroke ends, or where nothing is drawn any more.
-    Open,
-    /// Where it began.
-    Closed,
-    /// On a tile, where it began, so many cells on.
-    Around(Node),
 }
 
 /// A piece in a cell of the output, as its stroke runs through it.
@@ -99,11 +87,7 @@ impl Strokes<'_> {
                 budget.spend(
                     WORK.0 * chain.0.iter().map(|p| self.cell.parts[p.part].path.cubics.len() as u64).sum::<u64>(),
                 )?;
-                let mut line = self.drawn(&chain.0, chain.1 == Ending::Closed, grid);
-                if let (Ending::Around(node), Domain::Torus(tile)) = (chain.1, &request.domain) {
-                    line.path = begun_at_side(line.path, grid.lattice.at(node), tile);
-                }
-                lines.push(line);
+                lines.push(self.drawn(&chain.0, chain.1, grid));
             }
         }
         let border = BorderCut::new(request, grid, &budget)?;
@@ -138,22 +122,21 @@ impl Strokes<'_> {
         first
     }
 
-    /// The pieces from a place on, and how they end.
-    fn chain(&self, start: Place, grid: &Grid, take: &mut dyn FnMut(Place) -> bool) -> (Vec<Place>, Ending) {
+    /// The pieces from a place on, and whether the last one leads back to the first.
+    fn chain(&self, start: Place, grid: &Grid, take: &mut dyn FnMut(Place) -> bool) -> (Vec<Place>, bool) {
         let mut chain = vec![start];
         take(start);
         while let Some(last) = chain.last().copied() {
             let Some(next) = self.beyond(last, 1 - last.enters) else { break };
             if (grid.wrap(next.node), next.part) == (grid.wrap(start.node), start.part) {
-                let around = [next.node[0] - start.node[0], next.node[1] - start.node[1]];
-                return (chain, if around == [0, 0] { Ending::Closed } else { Ending::Around(around) });
+                return (chain, next.node == start.node);
             }
             if !take(next) {
                 break;
             }
             chain.push(next);
         }
-        (chain, Ending::Open)
+        (chain, false)
     }
 
     fn drawn(&self, chain: &[Place], closed: bool, grid: &Grid) -> Drawn<2> {
@@ -176,23 +159,6 @@ impl Strokes<'_> {
         let source = chain.first().map_or(0, |place| self.cell.parts[place.part].curve);
         Drawn { path, source, scale: grid.scale(), frozen: None }
     }
-}
-
-/// A stroke around a tile, which comes back moved by `around`, so that it begins and ends at a side of the tile: in the
-/// middle, a hair line would show where its ends meet.
-fn begun_at_side(path: Path<2>, around: Vector<2>, tile: &Bounds<2>) -> Path<2> {
-    let size = tile.size();
-    let sides = Lattice { vectors: [Vector::xy(size[0], 0.0), Vector::xy(0.0, size[1])] };
-    let axis = usize::from(around[0].abs() * size[1] < around[1].abs() * size[0]);
-    let parts = pieces(&path, &sides, tile.min);
-    let Some(first) = (1..parts.len()).find(|&k| parts[k].cell[axis] != parts[k - 1].cell[axis]) else { return path };
-    let of = |parts: &[Piece]| parts.iter().flat_map(|part| part.path.cubics.clone()).collect::<Vec<_>>();
-    let mut cubics = of(&parts[first..]);
-    let joint = cubics.len();
-    cubics.extend(of(&parts[..first]).into_iter().map(|c| c.map(|p| p + around)));
-    let mut path = Path { cubics, closed: false };
-    join(&mut path, joint - 1, joint);
-    path
 }
 
 /// Makes one segment begin where another ends: both give way by half.

@@ -53,7 +53,7 @@ impl<'a, const D: usize> Extent<'a, D> {
             request,
             exemplar,
             radius,
-            obstacles: obstacles(request)?,
+            obstacles: blocked(request)?,
             drawn: drawn(request, strokes)?,
             margin,
             base,
@@ -252,13 +252,20 @@ fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Result<Option<GridI
     Ok(Some(GridIndex::new(&places, step, &around)))
 }
 
-/// The union of the obstacles as a region; in the plane alone, outlines have no meaning in space.
-fn obstacles<const D: usize>(request: &Request<D>) -> Result<Option<Arc<dyn Region<D>>>>
+/// The union of what is in the way.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn obstacles(request: &Request<2>) -> Result<Option<Shape>> {
+    let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+    Shape::try_new(&rings, FillRule::NonZero, &request.budget.stage("looking at what is in the way"))
+}
+
+/// The same as a region; in the plane alone, outlines have no meaning in space.
+fn blocked<const D: usize>(request: &Request<D>) -> Result<Option<Arc<dyn Region<D>>>>
 where
     Vector<D>: Dimension<D>,
 {
     let Some(plane) = Vector::plane_request(request) else { return Ok(None) };
-    let rings: Vec<_> = plane.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-    let shape = Shape::try_new(&rings, FillRule::NonZero, &request.budget.stage("looking at what is in the way"))?;
-    Ok(shape.and_then(|shape| Vector::from_plane(Arc::new(shape))))
+    Ok(obstacles(plane)?.and_then(|shape| Vector::from_plane(Arc::new(shape))))
 }

@@ -117,7 +117,7 @@ where
             .zip(&extents)
             .map(|(&k, extent)| class_targets(&self.levels[k].library, request, extent, self.levels[k].level.base))
             .collect::<Result<_>>()?;
-        self.check_request(request, targets.iter().map(|t| t.iter().sum()).fold(0.0, f64::max))?;
+        checks::expected(targets.iter().map(|t| t.iter().sum()).fold(0.0, f64::max), &request.budget)?;
         let context = |(n, &k): (usize, &usize)| {
             let shared = n.min(used.len() - 1);
             LevelContext { sampled: &self.levels[k], extent: &extents[shared], targets: &targets[shared] }
@@ -234,19 +234,6 @@ where
 
     fn has_curves(&self) -> bool {
         self.levels.iter().any(|s| s.level.net.is_some())
-    }
-
-    fn check_request(&self, request: &Request<D>, expected: f64) -> Result<()> {
-        let limit = request.budget.limits().output_elements;
-        if expected.is_nan() || expected > limit as f64 {
-            return Err(Error::Limit {
-                what: "elements of the result".into(),
-                found: format!("about {expected:.0}"),
-                limit: limit.to_string(),
-                advice: "fill a smaller domain, or raise the scale".into(),
-            });
-        }
-        Ok(())
     }
 
     /// Levels whose neighbourhoods fit into the domain, and what to say about the rest.

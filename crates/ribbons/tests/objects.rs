@@ -2,10 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use arabesque_core::{Bounds, Budget, Error, Image, Path, Unobserved, Vector, straight};
+mod curves;
+
+use arabesque_core::{Bounds, Budget, Error, Image, Path, Unobserved, Vector};
 use arabesque_ribbons::{
     Canvas, Mask, Prepared, Ribbon, RibbonOutcome, RibbonParams, RibbonRequest, StripExemplar, Width, render,
 };
+use curves::{polyline, ring, square};
 
 /// Widths of the objects, and gaps between them, in pixels.
 const WIDTHS: [usize; 6] = [12, 20, 28, 12, 28, 20];
@@ -26,27 +29,6 @@ fn blocks(widths: &[usize], gaps: &[usize]) -> StripExemplar {
         x += w + gaps.get(k).copied().unwrap_or(0);
     }
     StripExemplar::new(image)
-}
-
-fn polyline(points: &[(f64, f64)]) -> Path<2> {
-    Path::polyline(&points.iter().map(|&(x, y)| Vector::xy(x, y)).collect::<Vec<_>>())
-}
-
-fn square(low: f64, high: f64) -> Path<2> {
-    let c = [(low, low), (high, low), (high, high), (low, high), (low, low)].map(|(x, y)| Vector::xy(x, y));
-    Path { cubics: c.windows(2).map(|w| straight(w[0], w[1])).collect(), closed: true }
-}
-
-fn ring(centre: f64, r: f64) -> Path<2> {
-    let k = 0.552_284_75 * r;
-    let p = |dx: f64, dy: f64| Vector::xy(centre + dx, centre + dy);
-    let cubics = vec![
-        [p(r, 0.0), p(r, k), p(k, r), p(0.0, r)],
-        [p(0.0, r), p(-k, r), p(-r, k), p(-r, 0.0)],
-        [p(-r, 0.0), p(-r, -k), p(-k, -r), p(0.0, -r)],
-        [p(0.0, -r), p(k, -r), p(r, -k), p(r, 0.0)],
-    ];
-    Path { cubics, closed: true }
 }
 
 fn request(path: Path<2>, seed: u64) -> RibbonRequest<2> {

@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use arabesque_core::{Budget, Image, Path, Unobserved, Vector, straight};
+mod curves;
+
+use arabesque_core::{Budget, Image, Unobserved, Vector};
 use arabesque_ribbons::{Piece, Prepared, Ribbon, RibbonParams, RibbonRequest, StripExemplar};
+use curves::{polyline, ring, square};
 
 /// A stem 4 pixels thick that rises and falls `reach` pixels around the middle of a strip.
 fn vine(width: usize, height: usize, period: f64, reach: f64) -> StripExemplar {
@@ -59,27 +62,6 @@ fn worst(image: &Image, ribbon: &Ribbon<2>) -> (f64, usize) {
             (jump, k)
         })
         .fold((0.0, 0), |worst, jump| if jump.0 > worst.0 { jump } else { worst })
-}
-
-fn polyline(points: &[(f64, f64)]) -> Path<2> {
-    Path::polyline(&points.iter().map(|&(x, y)| Vector::xy(x, y)).collect::<Vec<_>>())
-}
-
-fn square(low: f64, high: f64) -> Path<2> {
-    let c = [(low, low), (high, low), (high, high), (low, high), (low, low)].map(|(x, y)| Vector::xy(x, y));
-    Path { cubics: c.windows(2).map(|w| straight(w[0], w[1])).collect(), closed: true }
-}
-
-fn ring(centre: f64, r: f64) -> Path<2> {
-    let k = 0.552_284_75 * r;
-    let p = |dx: f64, dy: f64| Vector::xy(centre + dx, centre + dy);
-    let cubics = vec![
-        [p(r, 0.0), p(r, k), p(k, r), p(0.0, r)],
-        [p(0.0, r), p(-k, r), p(-r, k), p(-r, 0.0)],
-        [p(-r, 0.0), p(-r, -k), p(-k, -r), p(0.0, -r)],
-        [p(0.0, -r), p(k, -r), p(r, -k), p(r, 0.0)],
-    ];
-    Path { cubics, closed: true }
 }
 
 #[test]

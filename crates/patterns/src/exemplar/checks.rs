@@ -1,6 +1,6 @@
 //! Exemplars that nothing can be made of: what is there is told before any work is done.
 
-use arabesque_core::{Domain, Error, Exemplar, GridIndex, Request, Result, Spread, Warning};
+use arabesque_core::{Budget, Domain, Error, Exemplar, GridIndex, Request, Result, Spread, Warning};
 
 use crate::exemplar::level_exemplar::LevelExemplar;
 
@@ -53,6 +53,20 @@ pub(crate) fn frozen<const D: usize>(exemplar: &Exemplar<D>, request: &Request<D
         Some(p) => Err(Error::parameter("frozen source", p.source, format!("below {known}, the number of elements"))),
         None => Ok(()),
     }
+}
+
+/// Refuses results of which so many elements are expected.
+pub(crate) fn expected(count: f64, budget: &Budget) -> Result<()> {
+    let limit = budget.limits().output_elements;
+    if count <= limit as f64 {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "elements of the result".into(),
+        found: format!("about {count:.0}"),
+        limit: limit.to_string(),
+        advice: "fill a smaller domain, or raise the scale".into(),
+    })
 }
 
 /// Refuses an exemplar of elements that are all out of proportion.

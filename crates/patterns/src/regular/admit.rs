@@ -2,7 +2,7 @@
 //! in the way, and what stays.
 
 use arabesque_core::{
-    Border, Bounds, Budget, Domain, FillRule, GridIndex, Outline, Placement, Region, Request, Result, Shape, Vector,
+    Border, Bounds, Budget, Domain, GridIndex, Outline, Placement, Region, Request, Result, Shape, Vector,
 };
 
 /// Shares of an area up to which one outline does not count as reaching into, or over the border of, another.
@@ -19,7 +19,7 @@ pub(crate) struct Admission<'a> {
     request: &'a Request<2>,
     /// The domain as polygons, where it has a border.
     outline: Option<Outline<2>>,
-    obstacles: Option<Shape>,
+    obstacles: Option<&'a Shape>,
     /// What stays and has no place in the lattice, with the boxes around.
     kept: Vec<(Outline<2>, Bounds<2>)>,
     index: GridIndex<2>,
@@ -28,24 +28,19 @@ pub(crate) struct Admission<'a> {
 }
 
 impl<'a> Admission<'a> {
-    /// `kept`: outlines that nothing may lie on.
-    ///
-    /// # Errors
-    /// When the budget is used up, or somebody asks to stop.
-    pub(crate) fn new(request: &'a Request<2>, kept: Vec<Outline<2>>) -> Result<Self> {
-        let budget = request.budget.stage("looking at what is in the way");
-        let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
+    /// `obstacles`: what is in the way; `kept`: outlines that nothing may lie on.
+    pub(crate) fn new(request: &'a Request<2>, obstacles: Option<&'a Shape>, kept: Vec<Outline<2>>) -> Self {
         let kept: Vec<_> = kept.into_iter().map(|o| (o.clone(), o.bounds())).filter(|(_, b)| !b.is_empty()).collect();
         let centres: Vec<_> = kept.iter().map(|(_, b)| b.centre()).collect();
         let reach = kept.iter().map(|(_, b)| 0.5 * b.size().norm()).fold(0.0, f64::max);
-        Ok(Self {
+        Self {
             request,
             outline: request.domain.outline(),
-            obstacles: Shape::try_new(&rings, FillRule::NonZero, &budget)?,
+            obstacles,
             index: GridIndex::new(&centres, reach.max(1e-9), &request.domain),
             kept,
             reach,
-        })
+        }
     }
 
     /// Whether an element with this outline and its centre at `p` may be part of the output.
@@ -91,7 +86,7 @@ impl<'a> Admission<'a> {
     }
 
     fn meets_obstacle(&self, outline: &Outline<2>, p: Vector<2>, radius: f64, budget: &Budget) -> Result<bool> {
-        let Some(obstacles) = &self.obstacles else { return Ok(false) };
+        let Some(obstacles) = self.obstacles else { return Ok(false) };
         let depth = obstacles.signed_distance(p);
         if depth < -radius {
             return Ok(false);

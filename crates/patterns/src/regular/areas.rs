@@ -1,11 +1,9 @@
 //! Filled areas on a lattice: the part of them in one cell, copied to all cells and united again.
 
-use arabesque_core::{
-    Border, Budget, Covered, Domain, Exemplar, FillRule, Outline, Request, Result, Ring, Shape, Vector,
-};
+use arabesque_core::{Border, Budget, Covered, Domain, Exemplar, FillRule, Outline, Result, Ring, Shape, Vector};
 
 use crate::{
-    regular::grid::Grid,
+    regular::grid::{Grid, Ground},
     repeat::lattice::{Lattice, Node},
 };
 
@@ -67,17 +65,11 @@ fn parallelogram(origin: Vector<2>, lattice: &Lattice) -> Ring<2> {
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop; what is made by then is whole.
-pub(crate) fn draw(
-    areas: &[CellArea],
-    grid: &Grid,
-    nodes: &[Node],
-    request: &Request<2>,
-    made: &mut Vec<Covered<2>>,
-) -> Result<()> {
-    let budget = &request.budget.stage("filling areas");
-    let cut = Cut::new(request, budget)?;
+pub(crate) fn draw(areas: &[CellArea], ground: &Ground<'_>, nodes: &[Node], made: &mut Vec<Covered<2>>) -> Result<()> {
+    let budget = &ground.request.budget.stage("filling areas");
+    let cut = Cut::new(ground);
     for area in areas {
-        let whole = united(area, grid, nodes, budget)?;
+        let whole = united(area, ground.grid, nodes, budget)?;
         let outline = cut.apply(whole, budget)?;
         if !outline.rings.is_empty() {
             made.push(Covered { outline, source: area.source });
@@ -106,18 +98,17 @@ fn united(area: &CellArea, grid: &Grid, nodes: &[Node], budget: &Budget) -> Resu
 }
 
 /// Cutting areas at the border and at what is in the way.
-struct Cut {
+struct Cut<'a> {
     domain: Option<Outline<2>>,
-    obstacles: Option<Shape>,
+    obstacles: Option<&'a Shape>,
 }
 
-impl Cut {
-    fn new(request: &Request<2>, budget: &Budget) -> Result<Self> {
-        let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-        let obstacles = Shape::try_new(&rings, FillRule::NonZero, budget)?;
+impl<'a> Cut<'a> {
+    fn new(ground: &Ground<'a>) -> Self {
+        let request = ground.request;
         let endless = matches!(request.domain, Domain::Torus(_)) || request.border == Border::Cross;
         let domain = if endless { None } else { request.domain.outline() };
-        Ok(Self { domain, obstacles })
+        Self { domain, obstacles: ground.obstacles }
     }
 
     fn apply(&self, outline: Outline<2>, budget: &Budget) -> Result<Outline<2>> {
@@ -125,7 +116,7 @@ impl Cut {
             Some(domain) => outline.try_intersection(domain, budget)?,
             None => outline,
         };
-        match &self.obstacles {
+        match self.obstacles {
             Some(obstacles) => inside.try_difference(obstacles.outline(), budget),
             None => Ok(inside),
         }

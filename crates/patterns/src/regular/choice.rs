@@ -31,6 +31,9 @@ const NOISE: f64 = 0.05;
 /// What it costs to go on copying where a neighbour stopped.
 const COPY: f64 = 0.15;
 
+/// Work for each cell that is made.
+const CHOICE: u64 = 300;
+
 /// Work for comparing two cells, for each place.
 const COMPARE: u64 = 10;
 
@@ -138,6 +141,7 @@ impl Cells {
         let mut made: Vec<Option<Node>> = vec![None; nodes.len()];
         let mut chosen = Vec::with_capacity(nodes.len());
         for (k, &node) in nodes.iter().enumerate() {
+            meter.spend(CHOICE)?;
             let mut random = Stream::new(seed, CHOOSE, k as u64);
             if self.nodes.is_empty() {
                 chosen.push(self.features.iter().map(|orbit| random.below(orbit.len()) as u32).collect());

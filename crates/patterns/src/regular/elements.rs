@@ -1,8 +1,8 @@
 //! Elements on a lattice: one at every place of every cell that shows in the output.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use arabesque_core::{Domain, Exemplar, Placement, Progress, Request, Result, Similarity, Snapshot, Vector, Watch};
+use arabesque_core::{Exemplar, Placement, Progress, Request, Result, Shape, Similarity, Snapshot, Vector, Watch};
 
 use crate::{
     ending::heard,
@@ -21,6 +21,10 @@ use crate::{
 
 /// Something that stays has a place in the lattice when it is no farther from it than this share of the shorter vector.
 const KEPT: f64 = 0.2;
+
+/// Work for comparing two offsets; offsets that are compared with one another at most.
+const COMPARE: u64 = 20;
+const AGREEING: usize = 400;
 
 /// Cells between two steps of progress.
 const STEP: usize = 2048;
@@ -45,15 +49,18 @@ impl Elements<'_> {
         &self,
         grid: &Grid,
         request: &Request<2>,
+        obstacles: Option<&Shape>,
         watch: &mut dyn Watch<Snapshot<2>>,
     ) -> Result<Placed> {
         let mut placements: Vec<_> = kept(request);
-        let (taken, others) = self.taken(grid, request);
-        let admission = Admission::new(request, others)?;
+        let (taken, others) = self.taken(grid, request)?;
+        let admission = Admission::new(request, obstacles, others);
         let nodes = self.nodes(grid, request)?;
         let number: BTreeMap<Node, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
         let beside = |node: Node| number.get(&grid.wrap(node)).copied();
         let budget = request.budget.stage("laying out");
+        let each = size_of::<Vec<u32>>() + self.orbits.len() * size_of::<u32>();
+        let _held = budget.hold("cells of the repeat", nodes.len() * each)?;
         let chosen = self.cells.choose(&nodes, &beside, request.seed, &budget)?;
         for (k, (&node, cell)) in nodes.iter().zip(&chosen).enumerate() {
             for (o, (orbit, &instance)) in self.orbits.iter().zip(cell).enumerate() {
@@ -108,20 +115,20 @@ impl Elements<'_> {
         &self,
         grid: &Grid,
         request: &Request<2>,
-    ) -> (BTreeMap<(usize, Node), usize>, Vec<arabesque_core::Outline<2>>) {
-        let shorter = grid.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+    ) -> Result<(BTreeMap<(usize, Node), usize>, Vec<arabesque_core::Outline<2>>)> {
+        let shorter = grid.lattice.shorter();
         let (mut taken, mut others) = (BTreeMap::new(), Vec::new());
+        let of_class = self.orbits_of_class();
         for (n, frozen) in request.frozen.iter().enumerate() {
-            let class = self.exemplar.elements[frozen.source].class;
+            let orbits = &of_class[self.exemplar.elements[frozen.source].class];
+            request.budget.spend(COMPARE * (1 + orbits.len()) as u64)?;
             let p = frozen.transform.apply(place_of(&self.exemplar.elements[frozen.source], self.anchor));
             let near = |o: usize| {
                 let base = grid.place(self.orbits[o].base, [0, 0]);
                 let (node, rest) = grid.lattice.nearest(p - base);
-                let is_like =
-                    self.orbits[o].instances.iter().any(|i| self.exemplar.elements[i.element as usize].class == class);
-                (is_like && rest.norm() <= KEPT * shorter).then_some((rest.norm(), o, node))
+                (rest.norm() <= KEPT * shorter).then_some((rest.norm(), o, node))
             };
-            let best = (0..self.orbits.len()).filter_map(near).min_by(|a, b| a.0.total_cmp(&b.0));
+            let best = orbits.iter().filter_map(|&o| near(o)).min_by(|a, b| a.0.total_cmp(&b.0));
             match best {
                 Some((_, o, node)) => {
                     taken.insert((o, grid.wrap(node)), n);
@@ -129,27 +136,39 @@ impl Elements<'_> {
                 None => others.push(outline_of(frozen, self.exemplar)),
             }
         }
-        (taken, others)
+        Ok((taken, others))
+    }
+
+    /// The orbits at which elements of each class lie.
+    fn orbits_of_class(&self) -> Vec<BTreeSet<usize>> {
+        let mut orbits = vec![BTreeSet::new(); self.exemplar.classes.len()];
+        for (o, orbit) in self.orbits.iter().enumerate() {
+            for instance in &orbit.instances {
+                orbits[self.exemplar.elements[instance.element as usize].class].insert(o);
+            }
+        }
+        orbits
     }
 
     /// Moves the lattice so that it goes through what stays, where most of that agrees on how.
-    pub(crate) fn join_kept(&self, grid: &mut Grid, request: &Request<2>) {
-        if matches!(request.domain, Domain::Torus(_)) && request.frozen.is_empty() {
-            return;
-        }
-        let shorter = grid.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn join_kept(&self, grid: &mut Grid, request: &Request<2>) -> Result<()> {
+        let shorter = grid.lattice.shorter();
         let mut offsets: Vec<Vector<2>> = Vec::new();
+        let of_class = self.orbits_of_class();
         for frozen in &request.frozen {
             let element = &self.exemplar.elements[frozen.source];
             let p = frozen.transform.apply(place_of(element, self.anchor));
-            let of_class = |orbit: &&Orbit| {
-                orbit.instances.iter().any(|i| self.exemplar.elements[i.element as usize].class == element.class)
-            };
-            let off = |orbit: &Orbit| grid.lattice.nearest(p - grid.place(orbit.base, [0, 0])).1;
-            offsets.extend(self.orbits.iter().filter(of_class).map(off));
+            let orbits = &of_class[element.class];
+            request.budget.spend(COMPARE * (1 + orbits.len()) as u64)?;
+            let off = |&o: &usize| grid.lattice.nearest(p - grid.place(self.orbits[o].base, [0, 0])).1;
+            offsets.extend(orbits.iter().map(off));
         }
         // The offset that the most others agree with; with very many, some of them will do.
-        let stride = offsets.len().div_ceil(400).max(1);
+        let stride = offsets.len().div_ceil(AGREEING).max(1);
+        request.budget.spend(COMPARE * (offsets.len().min(AGREEING) as u64).pow(2))?;
         let agreeing = |a: Vector<2>| -> Vec<Vector<2>> {
             let rest = |b: &Vector<2>| grid.lattice.nearest(*b - a).1;
             offsets.iter().step_by(stride).map(rest).filter(|r| r.norm() <= 0.1 * shorter).collect()
@@ -160,6 +179,7 @@ impl Elements<'_> {
             let mean = rests.iter().fold(Vector::ZERO, |sum, r| sum + *r) * (1.0 / rests.len() as f64);
             grid.move_by(a + mean);
         }
+        Ok(())
     }
 }
 

@@ -6,13 +6,14 @@ use arabesque_core::{
 };
 
 use crate::{
+    border::obstacles,
     ending,
-    exemplar::{checks::giants_left_out, library::farthest},
+    exemplar::{checks, library::farthest},
     regular::{
         areas,
         choice::Cells,
         elements::Elements,
-        grid::{Grid, Unfit},
+        grid::{Grid, Ground, Unfit},
         joints::Cell,
         strokes::Strokes,
     },
@@ -79,7 +80,7 @@ impl Regular {
         let whole = exemplar.elements.iter().filter(|e| e.role == Role::Source).count();
         let giants = exemplar.elements.iter().filter(|e| e.role == Role::Source).filter(is_giant).count();
         // What people cut to fit at the sides of the page explains nothing.
-        let shorter = repeat.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let shorter = repeat.lattice.shorter();
         let inner = exemplar.window.grown(-RIM * shorter);
         let is_inner = |e: &&u32| {
             let bounds = exemplar.elements[**e as usize].outline.bounds();
@@ -97,7 +98,7 @@ impl Regular {
         } else {
             None
         };
-        let unit = RESIDUAL * repeat.lattice.vectors[0].norm().min(repeat.lattice.vectors[1].norm());
+        let unit = RESIDUAL * repeat.lattice.shorter();
         let cells = Cells::new(exemplar, &orbits, unit, budget)?;
         Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants }))
     }
@@ -124,12 +125,20 @@ impl Regular {
             Err(Unfit::Tile) => return Ok(Filled::Unfit(vec![self.unfit_tile(request)])),
         };
         self.foresee(&grid, request, watch)?;
+        let obstacles = obstacles(request)?;
         let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
-        elements.join_kept(&mut grid, request);
-        let placed = elements.place(&grid, request, watch)?;
+        elements.join_kept(&mut grid, request)?;
+        let placed = elements.place(&grid, request, obstacles.as_ref(), watch)?;
         let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), Vec::new(), Vec::new());
         if let (Some(cell), None) = (&self.cell, &cut_short) {
-            cut_short = self.strokes(exemplar, cell, &grid, request, (&mut curves, &mut areas)).err();
+            cut_short = self
+                .strokes(
+                    exemplar,
+                    cell,
+                    &Ground { grid: &grid, request, obstacles: obstacles.as_ref() },
+                    (&mut curves, &mut areas),
+                )
+                .err();
         }
         if placed.placements.is_empty() && curves.is_empty() && areas.is_empty() {
             return Err(cut_short.unwrap_or_else(|| {
@@ -155,15 +164,14 @@ impl Regular {
         &self,
         exemplar: &Exemplar<2>,
         cell: &Cell,
-        grid: &Grid,
-        request: &Request<2>,
+        ground: &Ground<'_>,
         made: (&mut Vec<Drawn<2>>, &mut Vec<Covered<2>>),
     ) -> Result<()> {
         let strokes = Strokes { exemplar, cell };
-        let margin = strokes.widest() * grid.scale();
-        let nodes = strokes.nodes(grid, request, margin)?;
-        strokes.draw(grid, &nodes, request, made.0)?;
-        areas::draw(&cell.areas, grid, &nodes, request, made.1)
+        let margin = strokes.widest() * ground.grid.scale();
+        let nodes = strokes.nodes(ground, margin)?;
+        strokes.draw(ground, &nodes, made.0)?;
+        areas::draw(&cell.areas, ground, &nodes, made.1)
     }
 
     /// Tells what the run will take, and refuses what is too much.
@@ -171,22 +179,14 @@ impl Regular {
         let cells = request.domain.measure() / grid.lattice.cell();
         let parts = self.cell.as_ref().map_or(0, |cell| cell.parts.len() + cell.areas.len());
         let count = cells * (self.orbits.len() + parts) as f64;
-        let limit = request.budget.limits().output_elements;
-        if count.is_nan() || count > limit as f64 {
-            return Err(Error::Limit {
-                what: "elements of the result".into(),
-                found: format!("about {count:.0}"),
-                limit: limit.to_string(),
-                advice: "fill a smaller domain, or raise the scale".into(),
-            });
-        }
+        checks::expected(count, &request.budget)?;
         request.budget.allow_elements(count);
         watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed: request.budget.allowed() as f64 });
         Ok(())
     }
 
     fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
-        let mut warnings: Vec<_> = giants_left_out(self.giants).into_iter().collect();
+        let mut warnings: Vec<_> = checks::giants_left_out(self.giants).into_iter().collect();
         if self.others > 0 {
             warnings.push(Warning::new(
                 format!("elements that fit no place of the repeat left out: {}", self.others),

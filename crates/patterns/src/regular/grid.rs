@@ -1,7 +1,7 @@
 //! How the lattice of an exemplar lies in the output.
 
 use arabesque_core::{
-    Bounds, Budget, Domain, Exemplar, Fields, Matrix, OrientationField, Request, Result, ScalarField, Vector,
+    Bounds, Budget, Domain, Exemplar, Fields, Matrix, OrientationField, Request, Result, ScalarField, Shape, Vector,
 };
 
 use crate::repeat::{
@@ -36,6 +36,15 @@ pub(crate) struct Grid {
     pub(crate) tiling: Option<Tiling>,
     /// Largest relative change of a length that fitting it into a tile took.
     pub(crate) stretch: f64,
+}
+
+/// Where strokes and areas are drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    pub(crate) grid: &'a Grid,
+    pub(crate) request: &'a Request<2>,
+    /// What is in the way.
+    pub(crate) obstacles: Option<&'a Shape>,
 }
 
 /// Why a request cannot be served by a lattice.

@@ -106,7 +106,7 @@ impl Cell {
             }
         }
         budget.spend(WORK.1 * (ends.len() as u64).pow(2))?;
-        let shorter = lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let shorter = lattice.shorter();
         let Some(joined) = joined(&ends, lattice, APART * shorter) else { return Ok(None) };
         let quality = ends.iter().map(|end| end.square(lattice)).fold(1.0, f64::min);
         for (a, b, step) in joined {

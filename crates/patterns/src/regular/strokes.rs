@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use arabesque_core::{
-    Border, Budget, Domain, Drawn, Exemplar, FillRule, Measured, Path, Region, Request, Result, Shape, Vector,
-    spans_inside,
+    Border, Budget, Domain, Drawn, Exemplar, Measured, Path, Region, Result, Shape, Vector, spans_inside,
 };
 
 use crate::{
     regular::{
-        grid::Grid,
+        grid::{Grid, Ground},
         joints::{Cell, Next},
     },
     repeat::lattice::Node,
@@ -53,28 +52,24 @@ impl Strokes<'_> {
     ///
     /// # Errors
     /// When there are too many.
-    pub(crate) fn nodes(&self, grid: &Grid, request: &Request<2>, margin: f64) -> Result<Vec<Node>> {
-        grid.nodes(self.cell.origin, &request.domain.bounds().grown(margin), &request.budget)
+    pub(crate) fn nodes(&self, ground: &Ground<'_>, margin: f64) -> Result<Vec<Node>> {
+        let request = ground.request;
+        ground.grid.nodes(self.cell.origin, &request.domain.bounds().grown(margin), &request.budget)
     }
 
     /// Adds the strokes in the cells `nodes` to `made`, cut at the border of the domain.
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop; what is made by then is whole.
-    pub(crate) fn draw(
-        &self,
-        grid: &Grid,
-        nodes: &[Node],
-        request: &Request<2>,
-        made: &mut Vec<Drawn<2>>,
-    ) -> Result<()> {
-        let budget = request.budget.stage("drawing strokes");
+    pub(crate) fn draw(&self, ground: &Ground<'_>, nodes: &[Node], made: &mut Vec<Drawn<2>>) -> Result<()> {
+        let grid = ground.grid;
+        let budget = ground.request.budget.stage("drawing strokes");
         let number: BTreeMap<Node, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
         let count = self.cell.parts.len();
         let (mut is_drawn, _held) = budget.list("pieces of strokes", nodes.len() * count)?;
         is_drawn.resize(nodes.len() * count, false);
         let slot = |node: Node, part: usize| number.get(&grid.wrap(node)).map(|k| k * count + part);
-        let mut lines = Vec::new();
+        let border = BorderCut::new(ground);
         for &node in nodes {
             for part in 0..count {
                 if slot(node, part).is_none_or(|s| is_drawn[s]) {
@@ -87,14 +82,10 @@ impl Strokes<'_> {
                 budget.spend(
                     WORK.0 * chain.0.iter().map(|p| self.cell.parts[p.part].path.cubics.len() as u64).sum::<u64>(),
                 )?;
-                lines.push(self.drawn(&chain.0, chain.1, grid));
+                let line = self.drawn(&chain.0, chain.1, grid);
+                let width = self.exemplar.curves[line.source].width * line.scale;
+                border.cut(line, width, &budget, made)?;
             }
-        }
-        let border = BorderCut::new(request, grid, &budget)?;
-        let width = |drawn: &Drawn<2>| self.exemplar.curves[drawn.source].width * drawn.scale;
-        for line in lines {
-            let width = width(&line);
-            border.cut(line, width, &budget, made)?;
         }
         Ok(())
     }
@@ -175,17 +166,15 @@ fn join(path: &mut Path<2>, before: usize, after: usize) {
 struct BorderCut<'a> {
     domain: &'a Domain<2>,
     border: Border,
-    obstacles: Option<Shape>,
+    obstacles: Option<&'a Shape>,
     /// The shorter vector in the output.
     unit: f64,
 }
 
 impl<'a> BorderCut<'a> {
-    fn new(request: &'a Request<2>, grid: &Grid, budget: &Budget) -> Result<Self> {
-        let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-        let obstacles = Shape::try_new(&rings, FillRule::NonZero, budget)?;
-        let unit = grid.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
-        Ok(Self { domain: &request.domain, border: request.border, obstacles, unit })
+    fn new(ground: &Ground<'a>) -> Self {
+        let Ground { grid, request, obstacles } = *ground;
+        Self { domain: &request.domain, border: request.border, obstacles, unit: grid.lattice.shorter() }
     }
 
     fn cut(&self, line: Drawn<2>, width: f64, budget: &Budget, into: &mut Vec<Drawn<2>>) -> Result<()> {
@@ -201,7 +190,7 @@ impl<'a> BorderCut<'a> {
             Border::Inside | Border::Turn => half,
             Border::Cross => f64::NEG_INFINITY,
         };
-        let is_blocked = |p: Vector<2>| self.obstacles.as_ref().is_some_and(|o| o.signed_distance(p) > -half);
+        let is_blocked = |p: Vector<2>| self.obstacles.is_some_and(|o| o.signed_distance(p) > -half);
         let holds = |p: Vector<2>| self.domain.signed_distance(p) >= margin && !is_blocked(p);
         let measured = Measured::new(line.path.clone(), FLAT.0 * self.unit);
         let step = FLAT.1 * self.unit;

@@ -91,7 +91,7 @@ pub(crate) fn find_for<T>(
 ) -> Result<Option<T>> {
     let budget = &budget.stage("finding the repeat");
     let lines = Lines::new(exemplar, budget)?;
-    let index = LineIndex::new(&lines, exemplar, budget)?;
+    let index = LineIndex::new(&lines, exemplar.window, budget)?;
     let mut doubtful: Option<Repeat> = None;
     for mode in MODES {
         // Lines either go over into themselves or they do not.
@@ -303,7 +303,7 @@ impl Search<'_> {
             fit = Some(next);
         }
         let Some(fit) = fit else { return Ok(None) };
-        let shorter = lattice.vectors[0].norm().min(lattice.vectors[1].norm());
+        let shorter = lattice.shorter();
         let explains = if self.mode.kinds == Kinds::Any { Explains::Places } else { Explains::Everything };
         // Where marks lie about where they should, a cell of many of them is a chance to find all at once.
         let in_cell = marks_in(self.marks, &lattice);
@@ -319,7 +319,8 @@ impl Search<'_> {
         let tolerance = self.tolerance();
         let mut node: Vec<Option<[i64; 2]>> = vec![None; marks.all.len()];
         let mut sums = Sums::default();
-        let (mut seen, mut found, mut work) = (0_usize, 0_usize, 0);
+        let (mut seen, mut found) = (0_usize, 0_usize);
+        let mut meter = self.budget.meter();
         for start in 0..marks.all.len() {
             if node[start].is_some() || marks.all[start].is_context {
                 continue;
@@ -336,7 +337,7 @@ impl Search<'_> {
                 for step in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
                     let by = lattice.at(step);
                     let (partner, looked) = marks.find(mark.place + by, mark.kind, tolerance);
-                    work += 8 * (4 + looked);
+                    meter.spend(8 * (4 + looked))?;
                     let is_unknown = || mark.element.is_none() && marks.unknown.contains(mark.place + by);
                     let is_in = window.contains(mark.extent.min + by) && window.contains(mark.extent.max + by);
                     if is_in && (partner.is_some() || !is_unknown()) {
@@ -353,7 +354,6 @@ impl Search<'_> {
             }
             sums.add(&walk.iter().map(|&(i, n)| (n, marks.all[i].place)).collect::<Vec<_>>());
         }
-        self.budget.spend(work)?;
         let vectors = sums.vectors().unwrap_or(lattice.vectors);
         let jitter = sums.jitter(&vectors);
         Ok(Fit { vectors, jitter, share: found as f64 / seen.max(1) as f64, pairs: found })

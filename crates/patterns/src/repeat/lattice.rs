@@ -27,6 +27,11 @@ impl Lattice {
         self.vectors[0].cross(self.vectors[1]).abs()
     }
 
+    /// Length of the shorter vector.
+    pub(crate) fn shorter(&self) -> f64 {
+        self.vectors[0].norm().min(self.vectors[1].norm())
+    }
+
     /// The coordinates of a vector in terms of the two.
     pub fn coordinates(&self, v: Vector<2>) -> Vector<2> {
         let [a, b] = self.vectors;

@@ -1,7 +1,11 @@
 //! What can be recognised on lines: ends, crossings of straight stretches, and the places where a line passes through
 //! one of a few directions, which on a smooth line are points and on a corner the corner.
 
+use std::sync::Arc;
+
 use arabesque_core::{Bounds, Budget, Exemplar, Result, Segment, Vector, segment};
+
+use crate::repeat::unknown::Unknown;
 
 /// Directions that lines are looked at for: half a turn is divided evenly, from a start that no drawing program prefers.
 const DIRECTIONS: usize = 8;
@@ -55,6 +59,8 @@ pub(crate) struct Lines {
     pub(crate) features: Vec<(Vector<2>, Feature)>,
     /// Straight stretches, with their styles.
     pub(crate) stretches: Vec<(Segment<2>, usize)>,
+    /// Where lines may be that are not seen.
+    pub(crate) unknown: Arc<Unknown>,
 }
 
 impl Lines {
@@ -77,7 +83,8 @@ impl Lines {
                 tracks.push(Track { points: ring.clone(), closed: true, style: area.style });
             }
         }
-        let mut lines = Self { tracks, features: Vec::new(), stretches: Vec::new() };
+        let mut lines =
+            Self { tracks, features: Vec::new(), stretches: Vec::new(), unknown: Arc::new(Unknown::of(exemplar)) };
         let seen = window.grown(-AT_FRAME * side);
         for k in 0..lines.tracks.len() {
             let track = &lines.tracks[k];

@@ -1,16 +1,14 @@
 //! Marks: what can be recognised again at another place of the exemplar.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Role, Vector};
 
 use crate::repeat::{
     lines::{AT_FRAME, Feature, Lines},
     looks,
+    unknown::{Unknown, touches},
 };
-
-/// What is this near to the frame touches it, as a share of its diagonal.
-const TOUCH: f64 = 1e-4;
 
 /// Which elements count as one kind of mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,24 +43,6 @@ pub(crate) struct Mark {
     pub(crate) is_context: bool,
 }
 
-/// Where an exemplar does not show what it would: the boxes around elements that its frame has cut, which may be lines
-/// elsewhere.
-#[derive(Clone, Debug)]
-pub(crate) struct Unknown(Vec<Bounds<2>>);
-
-impl Unknown {
-    pub(crate) fn of(exemplar: &Exemplar<2>) -> Self {
-        let near = TOUCH * exemplar.window.size().norm();
-        let boxes = exemplar.elements.iter().map(|e| (e.role, e.outline.bounds()));
-        let cut = |(role, b): &(Role, Bounds<2>)| *role == Role::Context || touches(b, &exemplar.window);
-        Self(boxes.filter(cut).map(|(_, b)| b.grown(near)).collect())
-    }
-
-    pub(crate) fn contains(&self, place: Vector<2>) -> bool {
-        self.0.iter().any(|b| b.contains(place))
-    }
-}
-
 /// The marks of an exemplar.
 #[derive(Clone, Debug)]
 pub(crate) struct Marks {
@@ -70,15 +50,8 @@ pub(crate) struct Marks {
     pub(crate) window: Bounds<2>,
     /// Mean distance of marks.
     pub(crate) unit: f64,
-    pub(crate) unknown: Unknown,
+    pub(crate) unknown: Arc<Unknown>,
     index: GridIndex<2>,
-}
-
-/// Whether a box touches a side of the frame from inside, or reaches just over it.
-pub(crate) fn touches(extent: &Bounds<2>, window: &Bounds<2>) -> bool {
-    let near = TOUCH * window.size().norm();
-    let is_at = |a: f64, b: f64| (a - b).abs() <= near;
-    (0..2).any(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
 }
 
 /// The place of an element.
@@ -133,7 +106,7 @@ impl Marks {
         let unit = (window.measure() / all.len().max(1) as f64).sqrt();
         let places: Vec<_> = all.iter().map(|mark| mark.place).collect();
         let index = GridIndex::new(&places, 0.25 * unit, &Domain::Box(window));
-        Ok(Some(Self { all, window, unit, unknown: Unknown::of(exemplar), index }))
+        Ok(Some(Self { all, window, unit, unknown: Arc::clone(&lines.unknown), index }))
     }
 
     /// The mark of this kind that is nearest to a place, within a distance.

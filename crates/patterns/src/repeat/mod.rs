@@ -19,6 +19,7 @@ pub(crate) mod straight;
 pub(crate) mod support;
 pub(crate) mod symmetry;
 pub(crate) mod tile;
+pub(crate) mod unknown;
 
 pub use description::{Explains, Extent, Repeat};
 pub use find::find;

@@ -9,7 +9,8 @@ use crate::{
     repeat::{
         description::Repeat,
         lattice::{Lattice, Node},
-        marks::{place_of, touches},
+        marks::place_of,
+        unknown::touches,
     },
 };
 
@@ -52,7 +53,7 @@ pub(crate) struct Orbit {
 /// When the budget is used up, or somebody asks to stop.
 pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -> Result<(Vec<Orbit>, Vec<u32>)> {
     let lattice = &repeat.lattice;
-    let shorter = lattice.vectors[0].norm().min(lattice.vectors[1].norm());
+    let shorter = lattice.shorter();
     let tolerance = (TOLERANCE.0 * shorter).max(TOLERANCE.1 * repeat.jitter).min(0.45 * shorter);
     let mut found = Found { lattice, tolerance, orbits: Vec::new(), cells: BTreeMap::new(), budget };
     let mut groups: BTreeMap<usize, Vec<u32>> = BTreeMap::new();

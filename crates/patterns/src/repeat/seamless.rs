@@ -29,7 +29,7 @@ impl Repeat {
     /// repeat lie along the axes.
     pub fn seamless_tile(&self, shown: Vector<2>, turn: &Matrix<2>, scale: f64) -> Option<[f64; 2]> {
         let least = self.turned(turn, scale).smallest_tile()?;
-        let shorter = self.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let shorter = self.lattice.shorter();
         if self.explains == Explains::Everything && self.jitter <= BY_HAND * shorter {
             return Some(least);
         }

@@ -1,11 +1,11 @@
 //! What a translation is supported by: the share of marks, and of the length of lines, that it takes to another of
 //! their kind.
 
-use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Segment, Vector, segment};
+use arabesque_core::{Bounds, Budget, Domain, GridIndex, Result, Segment, Vector, segment};
 
 use crate::repeat::{
     lines::{AT_FRAME, Lines},
-    marks::{Marks, Unknown},
+    marks::Marks,
 };
 
 /// A share of marks that must have a partner.
@@ -37,7 +37,8 @@ pub(crate) fn is_supported(
 ) -> Result<bool> {
     let count = marks.all.len();
     let window = marks.window.grown(1e-6 * marks.window.size().norm());
-    let (mut work, mut seen, mut found) = (0, [0_usize; 2], [0_usize; 2]);
+    let (mut seen, mut found) = ([0_usize; 2], [0_usize; 2]);
+    let mut meter = budget.meter();
     // A stride that shares no factor with the count meets all of them, far apart from one another.
     let stride = (1..).map(|k| (count * 21 / 34).max(1) + k).find(|s| coprime(*s, count)).unwrap_or(1);
     for k in 0..count {
@@ -52,7 +53,7 @@ pub(crate) fn is_supported(
             }
             let group = usize::from(mark.element.is_none());
             let (partner, looked) = marks.find(mark.place + way, mark.kind, tolerance);
-            work += LOOK * (4 + looked);
+            meter.spend(LOOK * (4 + looked))?;
             if partner.is_none() && mark.element.is_none() && marks.unknown.contains(mark.place + way) {
                 continue;
             }
@@ -64,7 +65,6 @@ pub(crate) fn is_supported(
             break;
         }
     }
-    budget.spend(work)?;
     let least = least.0.max((least.1 * count as f64) as usize);
     let holds = |g: usize| found[g] as f64 >= ENOUGH * seen[g] as f64;
     Ok(seen[0] + seen[1] >= 2 * least && holds(0) && holds(1))
@@ -87,7 +87,6 @@ pub(crate) struct LineIndex<'a> {
     index: GridIndex<2>,
     /// Longest piece.
     step: f64,
-    unknown: Unknown,
 }
 
 impl<'a> LineIndex<'a> {
@@ -95,8 +94,7 @@ impl<'a> LineIndex<'a> {
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
-    pub(crate) fn new(lines: &'a Lines, exemplar: &Exemplar<2>, budget: &Budget) -> Result<Self> {
-        let window = exemplar.window;
+    pub(crate) fn new(lines: &'a Lines, window: Bounds<2>, budget: &Budget) -> Result<Self> {
         let length: f64 = lines.tracks.iter().flat_map(|t| t.points.windows(2)).map(|w| (w[1] - w[0]).norm()).sum();
         let step = (length / PLACES).max(1e-4 * window.size().norm());
         let mut pieces = Vec::new();
@@ -112,7 +110,7 @@ impl<'a> LineIndex<'a> {
         }
         let middles: Vec<_> = pieces.iter().map(|((a, b), _)| (*a + *b) * 0.5).collect();
         let index = GridIndex::new(&middles, step, &Domain::Box(window));
-        Ok(Self { lines, window, pieces, index, step, unknown: Unknown::of(exemplar) })
+        Ok(Self { lines, window, pieces, index, step })
     }
 
     /// Whether no line reaches the sides of the frame that lie across an axis.
@@ -150,7 +148,8 @@ impl<'a> LineIndex<'a> {
         // What lies along the frame may have been made by it.
         let at_frame = AT_FRAME * self.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
         let (known, seen_in) = (self.window.grown(-at_frame), self.window.grown(-at_frame.max(2.0 * tolerance)));
-        let (mut seen, mut found, mut work) = (0_usize, 0_usize, 0);
+        let (mut seen, mut found) = (0_usize, 0_usize);
+        let mut meter = budget.meter();
         for ((a, b), style) in self.pieces.iter().step_by(stride) {
             let (place, way) = ((*a + *b) * 0.5, (*b - *a).unit_or_zero());
             for by in [by, -by] {
@@ -158,8 +157,8 @@ impl<'a> LineIndex<'a> {
                     continue;
                 }
                 let (near, looked) = self.distance(place + by, way, *style, tolerance);
-                work += LOOK * (8 + looked);
-                if near.is_none() && self.unknown.contains(place + by) {
+                meter.spend(LOOK * (8 + looked))?;
+                if near.is_none() && self.lines.unknown.contains(place + by) {
                     continue;
                 }
                 seen += 1;
@@ -169,7 +168,6 @@ impl<'a> LineIndex<'a> {
                 break;
             }
         }
-        budget.spend(work)?;
         Ok(seen > 0 && found as f64 >= ENOUGH_LINE * seen as f64)
     }
 }

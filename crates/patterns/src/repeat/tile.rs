@@ -49,7 +49,7 @@ impl Repeat {
 
     /// How far a vector may lie off an axis, as a share of its length.
     fn slack(&self) -> f64 {
-        let shorter = self.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let shorter = self.lattice.shorter();
         ALONG.0.max(ALONG.1 * self.jitter / shorter)
     }
 

@@ -74,7 +74,7 @@ impl Content {
         if repeat.explains == Explains::Places {
             shapes.clear();
         }
-        let shorter = repeat.lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let shorter = repeat.lattice.shorter();
         let unit = (repeat.lattice.cell() / places.len().max(1) as f64).sqrt();
         let tolerance = (TOLERANCE.0 * shorter).min(TOLERANCE.1 * unit).max(TOLERANCE.2 * repeat.jitter);
         let mut index = Torus::new(lattice, tolerance);

@@ -53,7 +53,7 @@ impl CellLines {
     /// When the budget is used up, or somebody asks to stop.
     pub(super) fn new(exemplar: &Exemplar<2>, lattice: Lattice, budget: &Budget) -> Result<Self> {
         let lines = Lines::new(exemplar, budget)?;
-        let shorter = lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+        let shorter = lattice.shorter();
         let tolerance = TOLERANCE * shorter;
         let step = tolerance;
         // Along the frame lie the edges that it has cut.

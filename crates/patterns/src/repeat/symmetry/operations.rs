@@ -52,7 +52,7 @@ fn plane(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -> Result<Pla
     if content.is_empty() {
         return Ok(PlaneGroup::P1);
     }
-    let shorter = lattice.vectors.map(|v| v.norm()).into_iter().fold(f64::INFINITY, f64::min);
+    let shorter = lattice.shorter();
     let slack = ON_NODE.0 * shorter + ON_NODE.1 * repeat.jitter;
     let keeps = |m: &Matrix<2>| lattice.vectors.iter().all(|v| lattice.nearest(m.apply(*v)).1.norm() <= slack);
     let mut order = 1;

@@ -1,0 +1,107 @@
+//! Where an exemplar does not show what it would.
+
+use arabesque_core::{Bounds, Exemplar, Role, Vector};
+
+/// What is this near to the frame touches it, as a share of its diagonal.
+const TOUCH: f64 = 1e-4;
+
+/// Cells of the raster along each side.
+const CELLS: usize = 512;
+
+/// Whether a box touches a side of the frame from inside, or reaches just over it.
+pub(crate) fn touches(extent: &Bounds<2>, window: &Bounds<2>) -> bool {
+    let near = TOUCH * window.size().norm();
+    let is_at = |a: f64, b: f64| (a - b).abs() <= near;
+    (0..2).any(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
+}
+
+/// The boxes around elements that the frame has cut, which may be lines elsewhere, as a raster over the frame: however
+/// many there are, a place is looked up at once.
+#[derive(Clone, Debug)]
+pub(crate) struct Unknown {
+    window: Bounds<2>,
+    is_cut: Vec<bool>,
+}
+
+impl Unknown {
+    pub(crate) fn of(exemplar: &Exemplar<2>) -> Self {
+        let window = exemplar.window;
+        let near = TOUCH * window.size().norm();
+        let boxes = exemplar.elements.iter().map(|e| (e.role, e.outline.bounds()));
+        let cut = |(role, b): &(Role, Bounds<2>)| *role == Role::Context || touches(b, &window);
+        // Where boxes begin and end along each axis; summed up, how many of them lie over a cell.
+        let wide = CELLS + 1;
+        let mut count = vec![0_i64; wide * wide];
+        let mut unknown = Self { window, is_cut: Vec::new() };
+        for (_, b) in boxes.filter(cut).filter(|(_, b)| !b.is_empty()) {
+            let (low, high) = (unknown.cell(b.min - Vector::splat(near)), unknown.cell(b.max + Vector::splat(near)));
+            count[low[1] * wide + low[0]] += 1;
+            count[low[1] * wide + high[0] + 1] -= 1;
+            count[(high[1] + 1) * wide + low[0]] -= 1;
+            count[(high[1] + 1) * wide + high[0] + 1] += 1;
+        }
+        for k in 0..wide * wide {
+            let (x, y) = (k % wide, k / wide);
+            let at = |x: usize, y: usize| count[y * wide + x];
+            let left = if x > 0 { at(x - 1, y) } else { 0 };
+            let above = if y > 0 { at(x, y - 1) } else { 0 };
+            let both = if x > 0 && y > 0 { at(x - 1, y - 1) } else { 0 };
+            count[k] += left + above - both;
+        }
+        unknown.is_cut = count.into_iter().map(|n| n > 0).collect();
+        unknown
+    }
+
+    /// Column and row of a place; of one beyond the frame, of the nearest cell.
+    fn cell(&self, place: Vector<2>) -> [usize; 2] {
+        let size = self.window.size();
+        [0, 1]
+            .map(|k| ((place[k] - self.window.min[k]) / size[k] * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize)
+    }
+
+    /// Whether a place in the frame lies in one of the boxes, or in the same cell of the raster as one.
+    pub(crate) fn contains(&self, place: Vector<2>) -> bool {
+        let [x, y] = self.cell(place);
+        self.is_cut[y * (CELLS + 1) + x]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use arabesque_core::{Class, Element, Outline, Similarity};
+
+    use super::*;
+
+    #[test]
+    fn only_what_lies_in_boxes_of_cut_elements_is_unknown() {
+        let of = |min: (f64, f64), max: (f64, f64), role| {
+            let ring = [(min.0, min.1), (max.0, min.1), (max.0, max.1), (min.0, max.1)].map(|(x, y)| Vector::xy(x, y));
+            let outline = Outline { rings: vec![ring.to_vec()] };
+            let centre = outline.centroid().unwrap();
+            let pose = Similarity::shift(centre);
+            Element { class: 0, centre, pose, outline, colour: [0.0; 3], lean: [Vector::ZERO; 3], role }
+        };
+        let elements = vec![
+            of((0.0, 10.0), (20.0, 30.0), Role::Context),
+            of((15.0, 15.0), (40.0, 35.0), Role::Context),
+            of((60.0, 60.0), (70.0, 70.0), Role::Source),
+            of((90.0, 50.0), (100.0, 55.0), Role::Source),
+        ];
+        let window = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
+        let exemplar = Exemplar::new("t", elements, vec![Class { name: "a".into() }], window).unwrap();
+        let unknown = Unknown::of(&exemplar);
+        for (x, y, expected) in [
+            (10.0, 20.0, true),
+            (18.0, 20.0, true),
+            (30.0, 30.0, true),
+            (10.0, 34.0, false),
+            (50.0, 20.0, false),
+            (65.0, 65.0, false),
+            (95.0, 52.0, true),
+        ] {
+            assert_eq!(unknown.contains(Vector::xy(x, y)), expected, "{x} {y}");
+        }
+    }
+}

@@ -32,18 +32,24 @@ pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
     }
 }
 
-/// Refuses a single short stroke: nothing tells what belongs beside it.
+/// Refuses a single stroke that is short or straight: nothing tells what belongs beside it.
 pub(crate) fn strokes<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
     let ([curve], true) = (exemplar.curves.as_slice(), exemplar.elements.is_empty() && exemplar.areas.is_empty())
     else {
         return Ok(());
     };
     let extent = curve.path.bounds().size().0.into_iter().fold(0.0, f64::max);
-    if extent >= LONE * exemplar.view().side() {
+    let side = exemplar.view().side();
+    let is_straight = !Spread::of(curve.path.flatten(1e-3 * side).into_iter()).fills::<D>();
+    if extent >= LONE * side && !is_straight {
         return Ok(());
     }
     let advice = "repeat it a few times in the exemplar, so that it shows distances and directions";
-    Err(Error::input("exemplar", "one short stroke only, expected several", advice))
+    Err(Error::input(
+        "exemplar",
+        format!("one {} stroke only, expected several", if is_straight { "straight" } else { "short" }),
+        advice,
+    ))
 }
 
 /// Refuses frozen elements that are copies of nothing.

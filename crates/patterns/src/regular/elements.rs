@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use arabesque_core::{Exemplar, Placement, Progress, Request, Result, Shape, Similarity, Snapshot, Vector, Watch};
+use arabesque_core::{
+    Exemplar, Outline, Placement, Progress, Request, Result, Shape, Similarity, Snapshot, Vector, Watch,
+};
 
 use crate::{
     ending::heard,
@@ -36,6 +38,9 @@ pub(crate) struct Elements<'a> {
     pub(crate) orbits: &'a [Orbit],
     pub(crate) cells: &'a Cells,
 }
+
+/// What stays at which places: orbit and node, and its number.
+type Taken = BTreeMap<(usize, Node), usize>;
 
 /// What is made so far when a run is cut short, or all of it.
 pub(crate) struct Placed {
@@ -111,11 +116,7 @@ impl Elements<'_> {
     }
 
     /// The places that what stays has in the lattice, and the outlines of what has none.
-    fn taken(
-        &self,
-        grid: &Grid,
-        request: &Request<2>,
-    ) -> Result<(BTreeMap<(usize, Node), usize>, Vec<arabesque_core::Outline<2>>)> {
+    fn taken(&self, grid: &Grid, request: &Request<2>) -> Result<(Taken, Vec<Outline<2>>)> {
         let shorter = grid.lattice.shorter();
         let (mut taken, mut others) = (BTreeMap::new(), Vec::new());
         let of_class = self.orbits_of_class();

@@ -38,8 +38,9 @@ const WORK: (u64, u64) = (60, 3);
 pub(crate) enum Feature {
     /// A line of this style ends.
     End(usize),
-    /// A line of this style passes through a direction, bending to one side of it.
-    Direction(usize, usize, bool),
+    /// A line of this style passes through a direction, bending to one side of it; the border of an area also tells whether
+    /// that is the side of its inside.
+    Direction(usize, usize, bool, Option<bool>),
     /// Straight stretches of these styles cross.
     Crossing(usize, usize),
 }
@@ -50,6 +51,8 @@ pub(crate) struct Track {
     pub(crate) points: Vec<Vector<2>>,
     pub(crate) closed: bool,
     pub(crate) style: usize,
+    /// Whether it is the border of an area, which lies on one side of it all along.
+    pub(crate) is_border: bool,
 }
 
 /// The lines of an exemplar: strokes, and the borders of areas.
@@ -75,12 +78,12 @@ impl Lines {
         for curve in &exemplar.curves {
             let points = curve.path.flatten(FLAT * side);
             budget.spend(WORK.0 * points.len() as u64)?;
-            tracks.push(Track { points, closed: curve.path.closed, style: curve.style });
+            tracks.push(Track { points, closed: curve.path.closed, style: curve.style, is_border: false });
         }
         for area in &exemplar.areas {
             for ring in &area.outline.rings {
                 budget.spend(WORK.0 * ring.len() as u64)?;
-                tracks.push(Track { points: ring.clone(), closed: true, style: area.style });
+                tracks.push(Track { points: ring.clone(), closed: true, style: area.style, is_border: true });
             }
         }
         let mut lines =
@@ -153,7 +156,8 @@ fn features(track: &Track, into: &mut Vec<(Vector<2>, Feature)>) {
                 bend + (before.1 - (from + to) * 0.5) * (2.0 * share.min(1.0 - share))
             };
             let normal = Vector::xy(-aim.sin(), aim.cos());
-            into.push((place, Feature::Direction(track.style, direction, (v - u).dot(normal) > 0.0)));
+            let inside = track.is_border.then_some(turn > 0.0);
+            into.push((place, Feature::Direction(track.style, direction, (v - u).dot(normal) > 0.0, inside)));
         }
     }
 }

@@ -82,8 +82,8 @@ fn coprime(a: usize, b: usize) -> bool {
 pub(crate) struct LineIndex<'a> {
     lines: &'a Lines,
     window: Bounds<2>,
-    /// Ends of the pieces, and the styles of their lines.
-    pieces: Vec<(Segment<2>, usize)>,
+    /// Ends of the pieces, the styles of their lines, and whether these are borders of areas.
+    pieces: Vec<(Segment<2>, usize, bool)>,
     index: GridIndex<2>,
     /// Longest piece.
     step: f64,
@@ -105,10 +105,12 @@ impl<'a> LineIndex<'a> {
                 let count = ((b - a).norm() / step).ceil().clamp(1.0, 1e5);
                 budget.spend(30 * count as u64)?;
                 let at = |k: f64| a + (b - a) * (k / count);
-                pieces.extend((0..count as usize).map(|k| ((at(k as f64), at(k as f64 + 1.0)), track.style)));
+                pieces.extend(
+                    (0..count as usize).map(|k| ((at(k as f64), at(k as f64 + 1.0)), track.style, track.is_border)),
+                );
             }
         }
-        let middles: Vec<_> = pieces.iter().map(|((a, b), _)| (*a + *b) * 0.5).collect();
+        let middles: Vec<_> = pieces.iter().map(|((a, b), ..)| (*a + *b) * 0.5).collect();
         let index = GridIndex::new(&middles, step, &Domain::Box(window));
         Ok(Self { lines, window, pieces, index, step })
     }
@@ -124,9 +126,11 @@ impl<'a> LineIndex<'a> {
     fn distance(&self, place: Vector<2>, way: Vector<2>, style: usize, reach: f64) -> (Option<f64>, u64) {
         let mut best: Option<f64> = None;
         let looked = self.index.within(place, reach + 0.5 * self.step, |i, _| {
-            let (piece, other) = self.pieces[i];
+            let (piece, other, is_border) = self.pieces[i];
             let along = (piece.1 - piece.0).unit_or_zero();
-            if other == style && along.dot(way).abs() > 0.9 {
+            // Along the border of an area, the inside lies on one side.
+            let turned = along.dot(way);
+            if other == style && (turned > 0.9 || (turned < -0.9 && !is_border)) {
                 let apart = segment::distance(piece, place);
                 if apart <= reach && best.is_none_or(|b| apart < b) {
                     best = Some(apart);
@@ -150,7 +154,7 @@ impl<'a> LineIndex<'a> {
         let (known, seen_in) = (self.window.grown(-at_frame), self.window.grown(-at_frame.max(2.0 * tolerance)));
         let (mut seen, mut found) = (0_usize, 0_usize);
         let mut meter = budget.meter();
-        for ((a, b), style) in self.pieces.iter().step_by(stride) {
+        for ((a, b), style, _) in self.pieces.iter().step_by(stride) {
             let (place, way) = ((*a + *b) * 0.5, (*b - *a).unit_or_zero());
             for by in [by, -by] {
                 if !(known.contains(place) && seen_in.contains(place + by)) {

@@ -3,12 +3,12 @@
 
 use std::{rc::Rc, sync::Arc};
 
-use arabesque_core::{Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role, Vector};
+use arabesque_core::{Area, Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role, Vector};
 use kurbo::Affine;
 
 use crate::{
     svg::{
-        drawing::{Drawing, Job, Layer, Page},
+        drawing::{Drawing, Job, Layer, Page, Stroke},
         layers::{
             covering::{Counts, Painted, counts},
             order::{Kinds, Layered, layered},
@@ -35,7 +35,7 @@ use crate::{
             fragment::{fragment, push_placed},
             frame::{self, frame_mark, is_frame_mark},
             item::{Item, Kind, Origin, Selection},
-            outlined_lines::{take_areas, trace},
+            outlined_lines::{take_areas, take_backgrounds, trace},
             parts::bands::follow_bands,
             select::select,
             surroundings::Surroundings,
@@ -82,7 +82,7 @@ impl Document<'_> {
             // Copies beside the window are nothing to speak of.
             found.items.retain(|item| item.outline.bounds().intersects(&window));
         }
-        settle(source, &mut found, window, self.options)?;
+        settle(&painter, &mut found, window, self.options)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
@@ -112,6 +112,7 @@ impl Document<'_> {
             !fills[k].paint.contains("opacity") && !fills[k].paint.contains("url(") && fills[k].effects.is_empty()
         };
         keep_visible(&mut areas, &is_opaque, source.budget)?;
+        let (areas, fills) = seen(areas, fills, &window);
         let contents = Contents { elements, classes: classes.classes, curves, areas, styles };
         let period = unrolled.as_ref().map(|unrolled| unrolled.period);
         let exemplar = Exemplar { period, ..Exemplar::with_curves(source.name, contents, window)? };
@@ -198,6 +199,12 @@ fn layers(
     Ok(layers)
 }
 
+/// The areas of which something is left in the frame, with their fills.
+fn seen(areas: Vec<Area<2>>, fills: Vec<Stroke>, window: &Bounds<2>) -> (Vec<Area<2>>, Vec<Stroke>) {
+    let shows = |area: &Area<2>| !area.outline.rings.is_empty() && area.outline.bounds().intersects(window);
+    areas.into_iter().zip(fills).filter(|(area, _)| shows(area)).unzip()
+}
+
 /// What everything was taken for, by reasons.
 fn understood(
     source: &Source<'_>,
@@ -273,8 +280,9 @@ fn content(node: &Node, parent: Affine) -> Bounds<2> {
 }
 
 /// Drops what lies outside, and refuses what cannot be handled.
-fn settle(source: &Source<'_>, found: &mut Selection, window: Bounds<2>, options: &ReadOptions) -> Result<()> {
-    let Selection { items, left_out, .. } = found;
+fn settle(painter: &Painter<'_, '_>, found: &mut Selection, window: Bounds<2>, options: &ReadOptions) -> Result<()> {
+    let source = painter.source;
+    let Selection { items, left_out, background } = found;
     items.retain(|item| {
         let inside = item.outline.bounds().intersects(&window);
         if !inside {
@@ -290,6 +298,7 @@ fn settle(source: &Source<'_>, found: &mut Selection, window: Bounds<2>, options
         follow_bands(source, items, &window)?;
         if options.large_fills == LargeFills::Areas {
             take_areas(items, &window);
+            take_backgrounds(items, background, painter)?;
         }
         trace(source, items, &window)?;
         refuse_networks(source, items, &window)?;

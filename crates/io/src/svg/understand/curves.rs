@@ -88,8 +88,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     /// [`arabesque_core::Error::Limit`] for too many.
     pub(crate) fn add(&mut self, item: &Item) -> Result<()> {
         if item.kind == Kind::Area {
-            self.add_area(item);
-            return Ok(());
+            return self.add_area(item);
         }
         if let Some(lines) = &item.lines {
             return self.add_lines(item, lines);
@@ -137,9 +136,9 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     }
 
     /// Adds a filled area.
-    fn add_area(&mut self, item: &Item) {
+    fn add_area(&mut self, item: &Item) -> Result<()> {
         let Some((leaf, opacity)) = item.parts.first().and_then(|(_, node)| first_shape(node, item.opacity)) else {
-            return;
+            return Ok(());
         };
         let mut paint = String::new();
         let fill = leaf.style.get(P::Fill);
@@ -160,9 +159,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
             label: item.meta.label.clone(),
         };
         let style = self.style(&fill, &item.meta);
-        let (outline, colour) = (item.outline.clone(), item.painted.colour());
+        let (outline, colour) = (item.fine_outline(self.painter)?, item.painted.colour());
         self.found.areas.push(Area { outline, style, colour });
         self.found.fills.push(fill);
+        Ok(())
     }
 
     /// Number of the curves and areas so far.

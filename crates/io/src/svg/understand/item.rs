@@ -8,10 +8,17 @@ use kurbo::Affine;
 
 use crate::svg::{
     centreline::Centrelines,
-    parse::{meta::Meta, notes::Note, scene::Node, source::Source},
+    parse::{
+        meta::Meta,
+        notes::Note,
+        scene::{Content, Node},
+        source::Source,
+        style::Property as P,
+    },
     reason::Reason,
     shape::{
         extent::{SoleShape, bounds, longer, sole_shape},
+        flatten,
         painted_area::{PaintedArea, Painter},
     },
     understand::{compound::Compound, surroundings::Surroundings},
@@ -154,6 +161,25 @@ impl Item {
         Ok(all)
     }
 
+    /// Its outline as finely as the border of a domain is drawn: areas are drawn again from it, elements as they are in the file.
+    ///
+    /// # Errors
+    /// As [`Outline::try_union`].
+    pub(crate) fn fine_outline(&self, painter: &Painter<'_, '_>) -> Result<Outline<2>> {
+        let budget = painter.source.budget;
+        let mut rings = Vec::new();
+        for (parent, node) in &self.parts {
+            if !push_fine(painter, node, *parent, &mut rings)? {
+                return Ok(self.outline.clone());
+            }
+        }
+        let whole = Outline::try_union(&rings, FillRule::NonZero, budget)?;
+        match &self.clip {
+            Some(clip) => whole.try_intersection(clip, budget),
+            None => Ok(whole),
+        }
+    }
+
     /// What messages call it: its label or id, else its place in the file.
     pub(crate) fn name(&self, source: &Source<'_>) -> String {
         let meta = &self.meta;
@@ -178,6 +204,34 @@ impl Item {
 /// What a fill is by its share of the frame.
 pub(crate) fn size_of_fill(share: f64, small: Reason) -> (Kind, Reason) {
     if share < HALF { (Kind::Element, small) } else { (Kind::Large, Reason::Large) }
+}
+
+/// Adds what a node fills, as rings that turn alike; false where something else takes part in how it looks.
+fn push_fine(
+    painter: &Painter<'_, '_>,
+    node: &Node,
+    parent: Affine,
+    rings: &mut Vec<arabesque_core::Ring<2>>,
+) -> Result<bool> {
+    let world = parent * node.transform;
+    if painter.clip(node, world)?.is_some() {
+        return Ok(false);
+    }
+    match &node.content {
+        Content::Shape(geometry) => {
+            let rule = flatten::fill_rule(node.style.get(P::FillRule));
+            let path = world * geometry.path.clone();
+            rings.extend(flatten::filled_finely(&path, rule, painter.source.budget)?.rings);
+        }
+        Content::Group(children) => {
+            for child in children {
+                if !push_fine(painter, child, world, rings)? {
+                    return Ok(false);
+                }
+            }
+        }
+    }
+    Ok(true)
 }
 
 /// The names of a node, completed by those of the only shape in it.

@@ -4,6 +4,7 @@
 use std::{collections::BTreeSet, rc::Rc};
 
 use arabesque_core::{Bounds, Error, Result};
+use kurbo::Affine;
 
 use crate::svg::{
     centreline::centrelines,
@@ -15,8 +16,11 @@ use crate::svg::{
         style::Property as P,
     },
     reason::Reason,
-    shape::extent::longer,
-    understand::item::{Item, Kind, Origin},
+    shape::{extent::longer, painted_area::Painter},
+    understand::{
+        item::{Item, Kind, Origin},
+        surroundings::Surroundings,
+    },
 };
 
 /// How near to a side of the frame something reaches it, as a share of the frame.
@@ -81,6 +85,35 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
         }
         (item.kind, item.reason) = (Kind::Area, Reason::Area);
     }
+}
+
+/// Takes fills that cover the frame for areas too where others are painted alike: of a stack of waves, the lowest ones
+/// show only between the border of the frame and the next.
+///
+/// # Errors
+/// As [`Painter::painted`].
+pub(crate) fn take_backgrounds(
+    items: &mut Vec<Item>,
+    background: &mut Vec<(Affine, Rc<Node>)>,
+    painter: &Painter<'_, '_>,
+) -> Result<()> {
+    let areas = items.iter().filter(|item| item.kind == Kind::Area);
+    let paints: BTreeSet<String> = areas.map(|item| item.painted.colours_key()).collect();
+    if paints.is_empty() {
+        return Ok(());
+    }
+    let (mut lowest, mut rest) = (Vec::new(), Vec::new());
+    for (parent, node) in background.drain(..) {
+        let taken = (Kind::Area, Origin::Fill, Reason::Area);
+        let item = Item::taken(painter, &node, &Surroundings::new(parent), taken)?;
+        match item.filter(|item| paints.contains(&item.painted.colours_key()) && is_plain_fill(item)) {
+            Some(item) => lowest.push(item),
+            None => rest.push((parent, node)),
+        }
+    }
+    *background = rest;
+    items.splice(0..0, lowest);
+    Ok(())
 }
 
 /// Whether an item reaches from one side of the frame to the opposite one: a wave of one width.

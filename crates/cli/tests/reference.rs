@@ -77,3 +77,40 @@ fn lace() {
 fn basket() {
     compare("basket", &format!("{} --tile 120x120 --dpi 64", example("basket.svg")));
 }
+
+/// Pictures of ordinary drawings, made as the gallery makes them, on small pages.
+fn ordinary(names: &[(&str, &str)]) {
+    for (name, options) in names {
+        compare(name, &format!("{} {options} --dpi 96", example(&format!("{name}.svg"))));
+    }
+}
+
+#[test]
+fn tiles_that_touch() {
+    ordinary(&[
+        ("quilt", "--size 130x100"),
+        ("bricks", "--size 130x100 --border inside"),
+        ("beehive", "--size 130x100"),
+        ("cubes", "--size 130x100 --orient 30"),
+    ]);
+}
+
+#[test]
+fn things_over_one_another() {
+    ordinary(&[("scales", "--size 130x100"), ("lattice", "--size 130x100 --border clip")]);
+}
+
+#[test]
+fn bands_through_the_frame() {
+    ordinary(&[("tartan", "--size 200x150"), ("waves", "--size 200x150"), ("zigzag", "--tile auto")]);
+}
+
+#[test]
+fn cells_and_swatches() {
+    ordinary(&[("truchet", "--tile 105x90"), ("azulejo", "--tile auto")]);
+}
+
+#[test]
+fn icons_of_loose_strokes() {
+    ordinary(&[("doodles", "--size 200x150")]);
+}

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use arabesque_core::{
     Border, Bounds, Budget, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Numbered, Outline, Placement,
-    Region, Request, Result, ScalarField, Shape, Similarity, Vector,
+    Region, Request, Result, ScalarField, Similarity, Vector,
 };
 
-use crate::{dimension::Dimension, exemplar::library::Library};
+use crate::{dimension::Dimension, exemplar::library::Library, obstacles::obstacles};
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
@@ -252,16 +252,7 @@ fn drawn<const D: usize>(request: &Request<D>, step: f64) -> Result<Option<GridI
     Ok(Some(GridIndex::new(&places, step, &around)))
 }
 
-/// The union of what is in the way.
-///
-/// # Errors
-/// When the budget is used up, or somebody asks to stop.
-pub(crate) fn obstacles(request: &Request<2>) -> Result<Option<Shape>> {
-    let rings: Vec<_> = request.obstacles.iter().flat_map(|o| o.rings.iter().cloned()).collect();
-    Shape::try_new(&rings, FillRule::NonZero, &request.budget.stage("looking at what is in the way"))
-}
-
-/// The same as a region; in the plane alone, outlines have no meaning in space.
+/// What is in the way as a region; in the plane alone, outlines have no meaning in space.
 fn blocked<const D: usize>(request: &Request<D>) -> Result<Option<Arc<dyn Region<D>>>>
 where
     Vector<D>: Dimension<D>,

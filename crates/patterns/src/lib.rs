@@ -50,6 +50,7 @@ mod finish;
 mod frozen;
 mod irregular;
 mod layout;
+mod obstacles;
 mod optimise;
 mod output;
 mod params;

@@ -6,9 +6,9 @@ use arabesque_core::{
 };
 
 use crate::{
-    border::obstacles,
     ending,
     exemplar::{checks, library::farthest},
+    obstacles::obstacles,
     regular::{
         areas,
         choice::Cells,

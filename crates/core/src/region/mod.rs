@@ -2,6 +2,7 @@
 
 mod crossings;
 mod domain;
+mod edge_tree;
 mod local;
 mod outline;
 mod overlay;

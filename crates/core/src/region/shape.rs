@@ -6,6 +6,7 @@ use crate::{
     region::{
         FillRule, Outline, Region, Ring,
         crossings::in_range,
+        edge_tree::EdgeTree,
         segment::{self, Segment},
     },
     space::{Bounds, Vector},
@@ -26,9 +27,13 @@ fn most_entries(edges: usize) -> usize {
 /// Work for each edge, and for each cell.
 const PER_ENTRY: u64 = 300;
 
+/// Rings of cells that are walked before the tree is asked.
+const RINGS: usize = 3;
+
 /// One or several shapes with holes, ready for distance queries.
 ///
-/// Edges lie in the cells of a uniform grid; a query walks the rings of cells around it until no nearer edge can come.
+/// Edges lie in the cells of a uniform grid; a query walks the first rings of cells around it, which nearly always tells the nearest
+/// edge, and asks a tree of boxes where the border is farther away.
 #[derive(Clone, Debug)]
 pub struct Shape {
     outline: Outline<2>,
@@ -43,6 +48,8 @@ pub struct Shape {
     members: Vec<u32>,
     /// Whether the centre of cell `c` is inside.
     centre_inside: Vec<bool>,
+    /// The same edges, for places far from all of them.
+    tree: EdgeTree,
 }
 
 impl Shape {
@@ -85,6 +92,7 @@ impl Shape {
         let edges: Vec<_> = outline.edges().collect();
         let cells = edges.len().clamp(64, MOST_CELLS) as f64;
         let mut shape = Self {
+            tree: EdgeTree::new(&edges),
             outline,
             bounds,
             area,
@@ -276,11 +284,11 @@ impl Region<2> for Shape {
         let clamped = self.bounds.clamp(p);
         let outside = (p - clamped).norm();
         let (mut best, mut best2) = (self.edges[0].0, f64::INFINITY);
-        for reach in 0..self.columns.max(self.rows) {
+        for reach in 0..RINGS.min(self.columns.max(self.rows)) {
             // Every edge not looked at yet lies beyond the cells that were looked at.
             let sure = (self.room(clamped, (c, r), reach) - outside).max(0.0);
             if best2 <= sure * sure {
-                break;
+                return best;
             }
             let low = (c.saturating_sub(reach), r.saturating_sub(reach));
             let high = ((c + reach).min(self.columns - 1), (r + reach).min(self.rows - 1));
@@ -292,7 +300,7 @@ impl Region<2> for Shape {
                 }
             }
         }
-        best
+        self.tree.nearest(p, best2).map_or(best, |(q, _)| q)
     }
 }
 

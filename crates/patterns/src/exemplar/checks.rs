@@ -32,7 +32,7 @@ pub(crate) fn places<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
     }
 }
 
-/// Refuses a single stroke that is short or straight: nothing tells what belongs beside it.
+/// Refuses a single stroke that is short, or straight in a frame that shows nothing beside it: nothing tells what belongs there.
 pub(crate) fn strokes<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
     let ([curve], true) = (exemplar.curves.as_slice(), exemplar.elements.is_empty() && exemplar.areas.is_empty())
     else {
@@ -40,16 +40,16 @@ pub(crate) fn strokes<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
     };
     let extent = curve.path.bounds().size().0.into_iter().fold(0.0, f64::max);
     let side = exemplar.view().side();
-    let is_straight = !Spread::of(curve.path.flatten(1e-3 * side).into_iter()).fills::<D>();
-    if extent >= LONE * side && !is_straight {
+    let is_straight = || !Spread::of(curve.path.flatten(1e-3 * side).into_iter()).fills::<D>();
+    let problem = if extent < LONE * side {
+        "one short stroke only, expected several"
+    } else if side < LONE * extent && is_straight() {
+        "one straight stroke only, expected several"
+    } else {
         return Ok(());
-    }
+    };
     let advice = "repeat it a few times in the exemplar, so that it shows distances and directions";
-    Err(Error::input(
-        "exemplar",
-        format!("one {} stroke only, expected several", if is_straight { "straight" } else { "short" }),
-        advice,
-    ))
+    Err(Error::input("exemplar", problem, advice))
 }
 
 /// Refuses frozen elements that are copies of nothing.

@@ -32,6 +32,10 @@ const DISTANCE: u64 = 6;
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
 const NOISE: f64 = 0.02;
 
+/// Candidates that are priced at a time, at first and then.
+const FIRST_GROUP: usize = 8;
+const GROUP: usize = 64;
+
 /// A patch that was chosen for a site.
 #[derive(Clone, Debug)]
 struct Patch<const D: usize> {
@@ -176,13 +180,31 @@ impl<'a, const D: usize> Grower<'a, D> {
             .into_iter()
             .map(|c| (c, NOISE * random.unit()))
             .collect();
-        // Also in parallel within a site: at seams and in holes there are few sites at a time.
-        let cost = |(c, noise): &(Vector<D>, f64)| Ok(here.cost(*c, &mut self.budget.meter())? + noise);
-        let costs: Vec<f64> = candidates.par_iter().with_min_len(16).map(cost).collect::<Result<_>>()?;
-        let Some(best) = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])) else { return Ok(None) };
-        let centre = candidates[best].0;
+        let Some(centre) = self.cheapest(&here, &candidates)? else { return Ok(None) };
         let centre = here.registered(centre, &mut meter)?;
         Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
+    }
+
+    /// The first of the candidates that cost least, noise included. Most of the others are dropped as soon as they are sure to cost
+    /// more than the best of the groups before theirs.
+    fn cheapest(&self, here: &PatchSite<'_, D>, candidates: &[(Vector<D>, f64)]) -> Result<Option<Vector<D>>> {
+        let mut best: Option<(Vector<D>, f64)> = None;
+        let (mut first, mut group) = (0, FIRST_GROUP);
+        while first < candidates.len() {
+            let tried = &candidates[first..candidates.len().min(first + group)];
+            let limit = best.map_or(f64::INFINITY, |b| b.1);
+            // Also in parallel within a site: at seams and in holes there are few sites at a time.
+            let cost =
+                |(c, noise): &(Vector<D>, f64)| Ok(here.cost(*c, limit - noise, &mut self.budget.meter())? + noise);
+            let costs: Vec<f64> = tried.par_iter().with_min_len(16).map(cost).collect::<Result<_>>()?;
+            for ((centre, _), cost) in tried.iter().zip(costs) {
+                if best.is_none_or(|b| cost < b.1) {
+                    best = Some((*centre, cost));
+                }
+            }
+            (first, group) = (first + tried.len(), GROUP);
+        }
+        Ok(best.map(|b| b.0))
     }
 
     fn paste(&mut self, patch: &Patch<D>, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) -> Result<()> {

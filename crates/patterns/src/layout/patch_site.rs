@@ -36,6 +36,9 @@ const ELEMENTS: usize = 192;
 /// Nanoseconds to compare with an element of a short list.
 const COMPARISON: u64 = 1;
 
+/// By how much rounding may make two ways of adding the same costs differ, at most.
+const SLACK: f64 = 1e-9;
+
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
 
@@ -75,6 +78,8 @@ pub(crate) struct PatchSite<'a, const D: usize> {
     coverage: &'a Coverage<D>,
     /// Elements around, nearest first.
     around: Vec<Around<D>>,
+    /// The sum of their weights.
+    weights: f64,
 }
 
 /// An element near a site.
@@ -104,7 +109,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
             around.push(Around { element: canvas.items[i].source, offset, weight: fall_off(offset, context) });
         });
         around.sort_by(|a, b| a.offset.norm2().total_cmp(&b.offset.norm2()));
-        (Self { source, site, frame, coverage, around }, looked)
+        let weights = around.iter().map(|a| a.weight).fold(1e-9, |sum, weight| sum + weight);
+        (Self { source, site, frame, coverage, around, weights }, looked)
     }
 
     /// Exemplar points that could land on the site.
@@ -155,13 +161,18 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         members
     }
 
-    /// Disagreement of the patch around exemplar point `centre` with what is there.
-    pub(crate) fn cost(&self, centre: Vector<D>, meter: &mut Meter<'_>) -> Result<f64> {
+    /// Disagreement of the patch around exemplar point `centre` with what is there, or infinity once it is sure to exceed `limit`.
+    pub(crate) fn cost(&self, centre: Vector<D>, limit: f64, meter: &mut Meter<'_>) -> Result<f64> {
         let (library, params) = (self.source.library, self.source.params);
+        let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
+        let rim = RIM * (1.0 - known);
         let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
-        let (mut cost, mut weights, mut repeated) = (0.0, 1e-9, 0.0);
+        let (mut cost, mut repeated) = (0.0, 0.0);
         for &Around { element, offset, weight } in &self.around {
-            weights += weight;
+            // What is missing adds as much to what is charged as to all that could be: the share does not fall below this, or below 1.
+            if (cost / self.weights).min(1.0) + rim > limit + SLACK {
+                return Ok(f64::INFINITY);
+            }
             let p = centre + offset;
             if !library.view.contains(p) {
                 cost += UNSEEN * weight;
@@ -180,10 +191,9 @@ impl<'a, const D: usize> PatchSite<'a, D> {
             }
         }
         let Missing { cost: missing, weights: missing_weights, usage } = self.missing(centre, &taken, meter)?;
-        let total = weights + missing_weights;
-        let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
-        let copied = params.repeat * repeated / weights;
-        Ok((cost + missing) / total + copied + params.balance * usage + RIM * (1.0 - known))
+        let total = self.weights + missing_weights;
+        let copied = params.repeat * repeated / self.weights;
+        Ok((cost + missing) / total + copied + params.balance * usage + rim)
     }
 
     /// What the patch has that is not there, except the elements `taken`.

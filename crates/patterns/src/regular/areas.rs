@@ -106,7 +106,8 @@ struct Cut<'a> {
 impl<'a> Cut<'a> {
     fn new(ground: &Ground<'a>) -> Self {
         let request = ground.request;
-        let endless = matches!(request.domain, Domain::Torus(_)) || request.border == Border::Cross;
+        let crosses = request.border == Border::Cross && request.known.is_none();
+        let endless = matches!(request.domain, Domain::Torus(_)) || crosses;
         let domain = if endless { None } else { request.domain.outline() };
         Self { domain, obstacles: ground.obstacles }
     }

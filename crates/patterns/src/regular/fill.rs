@@ -15,6 +15,7 @@ use crate::{
         elements::Elements,
         grid::{Grid, Ground, Unfit},
         joints::Cell,
+        kept::Kept,
         strokes::Strokes,
     },
     repeat::{
@@ -116,7 +117,7 @@ impl Regular {
     ) -> Result<Filled<2>> {
         // A tile has no border at which strokes could turn.
         let turns = request.border == Border::Turn && !matches!(request.domain, Domain::Torus(_));
-        if self.cell.is_some() && (turns || !request.frozen_curves.is_empty()) {
+        if self.cell.is_some() && turns {
             return Ok(Filled::Unfit(Vec::new()));
         }
         let mut grid = match Grid::new(&self.repeat, exemplar, request) {
@@ -127,7 +128,15 @@ impl Regular {
         self.foresee(&grid, request, watch)?;
         let obstacles = obstacles(request)?;
         let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
-        elements.join_kept(&mut grid, request)?;
+        // What surrounds a region that is filled again has told the lattice already.
+        if exemplar.hole.is_none() || request.known.is_none() {
+            elements.join_kept(&mut grid, request)?;
+        }
+        if let (Some(cell), false) = (&self.cell, request.frozen_curves.is_empty())
+            && !Kept::lies_on(request, exemplar, cell, &grid)?
+        {
+            return Ok(Filled::Unfit(Vec::new()));
+        }
         let placed = elements.place(&grid, request, obstacles.as_ref(), watch)?;
         let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), Vec::new(), Vec::new());
         if let (Some(cell), None) = (&self.cell, &cut_short) {
@@ -167,7 +176,8 @@ impl Regular {
         ground: &Ground<'_>,
         made: (&mut Vec<Drawn<2>>, &mut Vec<Covered<2>>),
     ) -> Result<()> {
-        let strokes = Strokes { exemplar, cell };
+        let kept = Kept::new(ground.request, exemplar, ground.grid.lattice.shorter())?;
+        let strokes = Strokes { exemplar, cell, kept: kept.as_ref() };
         let margin = strokes.widest() * ground.grid.scale();
         let nodes = strokes.nodes(ground, margin)?;
         strokes.draw(ground, &nodes, made.0)?;

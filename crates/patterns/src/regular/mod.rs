@@ -13,6 +13,7 @@ pub(crate) mod elements;
 pub(crate) mod fill;
 pub(crate) mod grid;
 pub(crate) mod joints;
+pub(crate) mod kept;
 pub(crate) mod strokes;
 
 pub(crate) use fill::{Filled, Regular};

@@ -11,6 +11,7 @@ use crate::{
     exemplar::{checks, library::farthest},
     regular::{
         areas,
+        bend::fill::Pattern,
         choice::Cells,
         elements::Elements,
         grid::{Grid, Ground, Unfit},
@@ -122,7 +123,7 @@ impl Regular {
         }
         let mut grid = match Grid::new(&self.repeat, exemplar, request) {
             Ok(grid) => grid,
-            Err(Unfit::Fields) => return Ok(Filled::Unfit(Vec::new())),
+            Err(Unfit::Fields) => return self.bend(exemplar, request, watch),
             Err(Unfit::Tile) => return Ok(Filled::Unfit(vec![self.unfit_tile(request)])),
         };
         self.foresee(&grid, request, watch)?;
@@ -163,6 +164,25 @@ impl Regular {
         Ok(Filled::Done(Outcome { placements, sequence, curves, areas, energy, warnings, stopped }))
     }
 
+    /// Fills a domain over which fields vary.
+    fn bend(
+        &self,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Filled<2>> {
+        let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
+        let pattern = Pattern { repeat: &self.repeat, elements, cell: self.cell.as_ref() };
+        let Some(mut outcome) = pattern.bent(request, watch)? else {
+            return Ok(Filled::Unfit(vec![Warning::new(
+                "no lattice can follow the fields here, so that the repeat is not kept",
+                "use fields that turn and grow more gently, or one direction and scale for the whole page",
+            )]));
+        };
+        outcome.warnings.splice(0..0, self.left_out());
+        Ok(Filled::Done(outcome))
+    }
+
     /// The repeat by which it is continued.
     pub(crate) fn into_repeat(self) -> Repeat {
         self.repeat
@@ -195,7 +215,8 @@ impl Regular {
         Ok(())
     }
 
-    fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
+    /// Warns of elements that are left out.
+    fn left_out(&self) -> Vec<Warning> {
         let mut warnings: Vec<_> = checks::giants_left_out(self.giants).into_iter().collect();
         if self.others > 0 {
             warnings.push(Warning::new(
@@ -203,6 +224,11 @@ impl Regular {
                 "set repeat=off to treat the pattern as irregular",
             ));
         }
+        warnings
+    }
+
+    fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
+        let mut warnings = self.left_out();
         if grid.stretch > UNSEEN {
             warnings.push(Warning::new(
                 format!(

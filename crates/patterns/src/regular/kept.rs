@@ -151,7 +151,7 @@ impl Kept {
 }
 
 /// Moves the start of a path; what comes after it gives way less and less over a length.
-fn lead(path: &mut Path<2>, by: Vector<2>, over: f64) {
+pub(crate) fn lead(path: &mut Path<2>, by: Vector<2>, over: f64) {
     let length: f64 = path.cubics.iter().flat_map(|c| c.windows(2)).map(|w| (w[1] - w[0]).norm()).sum();
     let over = over.min(0.5 * length).max(f64::MIN_POSITIVE);
     let mut from_start = 0.0;
@@ -185,7 +185,9 @@ pub(crate) fn is_covered(kept: &Kept, drawn: &Drawn<2>, style: usize) -> bool {
     let length = Measured::new(drawn.path.clone(), 0.1 * STEP * kept.unit);
     let at = |share: f64| length.point(share * length.length());
     let shares = [0.1, 0.3, 0.5, 0.7, 0.9];
-    shares.iter().all(|&s| kept.covers(at(s), (at(s + 0.01) - at(s - 0.01)).unit_or_zero(), style))
+    // A shorter one is near its own ends all along, where strokes that stay go on.
+    length.length() > 4.0 * ON * kept.unit
+        && shares.iter().all(|&s| kept.covers(at(s), (at(s + 0.01) - at(s - 0.01)).unit_or_zero(), style))
 }
 
 #[cfg(test)]

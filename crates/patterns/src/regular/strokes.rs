@@ -215,7 +215,7 @@ impl<'a> BorderCut<'a> {
         let is_there = |p: Vector<2>| stays.is_some_and(|kept| kept.has_any(p, style));
         let holds = |p: Vector<2>| self.domain.signed_distance(p) >= margin && !is_blocked(p) && !is_there(p);
         let measured = Measured::new(line.path.clone(), FLAT.0 * self.unit);
-        let step = FLAT.1 * self.unit;
+        let step = if self.slack.is_some() { 0.25 } else { 1.0 } * FLAT.1 * self.unit;
         budget.spend(WORK.1 * (measured.points().len() as u64 + (measured.length() / step) as u64))?;
         let spans = spans_inside(&measured, step, &holds);
         if matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length()) {

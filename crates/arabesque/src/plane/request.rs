@@ -43,7 +43,9 @@ impl PlaneExemplar {
             (None, Job::Fill(fill)) => Place::of(fill, &self.drawing, self.units(), files)?,
             (None, _) => return Err(Error::parameter("request", job.name(), "a request to fill")),
         };
-        check_room(self.exemplar(), &place.domain, files.budget()).map_err(|error| self.in_region(error, context))?;
+        let fits = repeats && self.region.is_some();
+        check_room(self.exemplar(), &place.domain, fits, files.budget())
+            .map_err(|error| self.in_region(error, context))?;
         check_picture(context.output(), &place.page, files.budget())?;
         let surroundings = Surroundings::of(job)?;
         if self.region.is_some() {

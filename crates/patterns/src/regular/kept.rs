@@ -1,6 +1,6 @@
 //! Strokes that stay: whether they lie where the lattice has strokes, and how the new ones join them.
 
-use arabesque_core::{Budget, Domain, Drawn, Exemplar, GridIndex, Measured, Path, Request, Result, Vector};
+use arabesque_core::{Budget, Domain, Drawn, Exemplar, GridIndex, Measured, Path, Request, Result, Vector, straight};
 
 use crate::regular::{grid::Grid, joints::Cell};
 
@@ -14,6 +14,9 @@ const MOST: f64 = 0.9;
 /// A new stroke is led to the end of one that stays when that is no farther than this share of the shorter vector, and
 /// gives way over such a length.
 const JOIN: (f64, f64) = (0.08, 0.5);
+
+/// Strokes meet in a corner where the cosine of the angle between their directions is less than this.
+const STRAIGHT: f64 = 0.99;
 
 /// Places are this share of the shorter vector apart.
 const STEP: f64 = 0.02;
@@ -55,8 +58,8 @@ impl Places {
 /// The strokes that stay.
 pub(crate) struct Kept {
     places: Places,
-    /// Their ends, and the styles of these.
-    ends: Vec<(Vector<2>, usize)>,
+    /// Their ends, the styles of these, and the directions into the strokes.
+    ends: Vec<(Vector<2>, usize, Vector<2>)>,
     unit: f64,
 }
 
@@ -79,8 +82,8 @@ impl Kept {
             places.extend(along.into_iter().filter(|(p, _)| near.contains(*p)).map(|(p, way)| (p, (style, way))));
             budget.within("places along kept strokes", places.len(), ("places", PLACES))?;
             if !drawn.path.closed {
-                let both = [drawn.path.start(), drawn.path.end()].into_iter().flatten();
-                ends.extend(both.filter(|p| near.contains(*p)).map(|p| (p, style)));
+                let both = [tip(&drawn.path), tip(&drawn.path.reversed())].into_iter().flatten();
+                ends.extend(both.filter(|(p, _)| near.contains(*p)).map(|(p, way)| (p, style, way)));
             }
         }
         Ok(Some(Self { places: Places::new(&places, ON * unit), ends, unit }))
@@ -131,23 +134,36 @@ impl Kept {
         met
     }
 
-    /// The path with its ends led to those of strokes that stay.
-    pub(crate) fn joined(&self, mut path: Path<2>, style: usize) -> Path<2> {
+    /// The path with its ends led to those of strokes that stay. Where it meets one in a corner, it goes on around that
+    /// for half of its width, so that the corner is whole.
+    pub(crate) fn joined(&self, path: Path<2>, (style, width): (usize, f64)) -> Path<2> {
         if path.closed {
             return path;
         }
-        for end in 0..2 {
-            let Some(tip) = (if end == 0 { path.start() } else { path.end() }) else { break };
-            let near = self.ends.iter().filter(|(_, other)| *other == style).map(|(p, _)| *p - tip);
-            let nearest = near.min_by(|a, b| a.norm2().total_cmp(&b.norm2()));
-            if let Some(by) = nearest.filter(|by| by.norm() <= JOIN.0 * self.unit && by.norm() > 0.0) {
-                path = if end == 0 { path } else { path.reversed() };
-                lead(&mut path, by, JOIN.1 * self.unit);
-                path = if end == 0 { path } else { path.reversed() };
-            }
+        let one = self.joined_at_start(path, (style, width)).reversed();
+        self.joined_at_start(one, (style, width)).reversed()
+    }
+
+    fn joined_at_start(&self, mut path: Path<2>, (style, width): (usize, f64)) -> Path<2> {
+        let Some((start, way)) = tip(&path) else { return path };
+        let near = self.ends.iter().filter(|(_, other, _)| *other == style).map(|(p, _, into)| (*p - start, *into));
+        let nearest = near.min_by(|a, b| a.0.norm2().total_cmp(&b.0.norm2()));
+        let Some((by, into)) = nearest.filter(|(by, _)| by.norm() <= JOIN.0 * self.unit) else { return path };
+        if by.norm() > 0.0 {
+            lead(&mut path, by, JOIN.1 * self.unit);
+        }
+        if into.dot(way) > -STRAIGHT {
+            path.cubics.insert(0, straight(start + by + into * (0.5 * width), start + by));
         }
         path
     }
+}
+
+/// The start of a path, and the direction into it.
+fn tip(path: &Path<2>) -> Option<(Vector<2>, Vector<2>)> {
+    let c = path.cubics.first()?;
+    let way = c[1..].iter().map(|p| *p - c[0]).find(|w| w.norm2() > 0.0)?;
+    Some((c[0], way.unit_or_zero()))
 }
 
 /// Moves the start of a path; what comes after it gives way less and less over a length.

@@ -230,7 +230,7 @@ impl<'a> BorderCut<'a> {
                 if is_covered(kept, &part, style) {
                     continue;
                 }
-                part.path = kept.joined(part.path, style);
+                part.path = kept.joined(part.path, (style, width));
             }
             if !part.path.is_empty() {
                 into.push(part);

@@ -13,7 +13,7 @@ use roxmltree::NodeId;
 
 use crate::{
     svg::{
-        drawing::{Drawing, HostDocument, Page, Placed},
+        drawing::{Anchor, Anchored, Drawing, HostDocument, Page, Placed},
         namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
         options::{LargeFills, Method, ReadOptions},
         parse::{definitions::Definitions, geometry::LARGEST, guard, source::Source},
@@ -92,10 +92,23 @@ impl Document<'_> {
         let (left, definitions) = rewritten(source, &sorter, &found.items, &affected)?;
         let replaced = kept.iter().filter(|k| is_changed(k)).count();
         let mut placed = Placed::on(page);
-        kept.into_iter().for_each(|kept| placed.freeze(kept));
+        let mut anchors = Vec::new();
+        for (item, kept) in found.items.iter().zip(kept) {
+            let what = match &kept {
+                Sorted::Element(_) => Some(Anchored::Element(placed.placements.len())),
+                Sorted::Strokes { paint, .. } => paint.map(|(style, paint)| Anchored::Strokes(style, paint)),
+                Sorted::Removed | Sorted::Obstacle { .. } => None,
+            };
+            let node = item.parts.last().map(|(_, node)| node.meta.xml.get()).filter(|id| is_in_the_open(source, *id));
+            anchors.extend(node.zip(what));
+            placed.freeze(kept);
+        }
         placed.warnings = source.notes.warnings(source.name);
-        let (head, tail) = around(source, &affected, &left.in_place);
-        Ok(HostDocument { placed, content, replaced, head, tail, moved: left.moved, definitions })
+        let Around { head, tail, copied } = around(source, &affected, &left.in_place);
+        let anchors =
+            anchors.into_iter().filter_map(|(id, what)| Some(Anchor { range: copied.find(source, id)?, what }));
+        let anchors = anchors.collect();
+        Ok(HostDocument { placed, content, replaced, head, anchors, tail, moved: left.moved, definitions })
     }
 
     /// Takes fills for the lines or areas that the example has of them.
@@ -209,7 +222,8 @@ fn is_in_the_open(source: &Source<'_>, id: u32) -> bool {
     let Some(node) = source.xml.get_node(NodeId::new(id)) else { return false };
     let is_plain = |a: roxmltree::Node<'_, '_>| {
         let changes = |name: &str| {
-            matches!(name, "transform" | "style" | "class" | "opacity" | "clip-path" | "mask" | "filter" | "x" | "y")
+            matches!(name, "transform" | "style" | "class" | "opacity" | "clip-path" | "mask" | "filter")
+                || name.starts_with("marker")
         };
         matches!(a.tag_name().name(), "g" | "a") && !a.attributes().any(|attribute| changes(attribute.name()))
     };
@@ -217,18 +231,44 @@ fn is_in_the_open(source: &Source<'_>, id: u32) -> bool {
     node.ancestors().skip(1).take_while(|a| *a != root).all(|a| is_plain(a))
 }
 
-/// The file without its recipe, what is left of the affected nodes in their places, as it is before and after the end
-/// of the root.
-fn around(source: &Source<'_>, affected: &BTreeSet<u32>, left: &BTreeMap<u32, String>) -> (String, String) {
+/// A file as it is before and after the end of its root.
+struct Around {
+    head: String,
+    tail: String,
+    copied: Copied,
+}
+
+/// What of a text was copied or replaced where.
+#[derive(Default)]
+struct Copied {
+    /// Where stretches of the text begin in it, and in the copy.
+    stretches: Vec<(usize, usize)>,
+    /// What stands in the place of a node.
+    replaced: BTreeMap<u32, Range<usize>>,
+}
+
+impl Copied {
+    /// The part of the copy that draws a node.
+    fn find(&self, source: &Source<'_>, id: u32) -> Option<Range<usize>> {
+        if let Some(range) = self.replaced.get(&id) {
+            return Some(range.clone());
+        }
+        let range = source.xml.get_node(NodeId::new(id))?.range();
+        let after = self.stretches.partition_point(|(from, _)| *from <= range.start);
+        let (from, to) = self.stretches.get(after.checked_sub(1)?)?;
+        Some(range.start - from + to..range.end - from + to)
+    }
+}
+
+/// The file without its recipe, what is left of the affected nodes in their places.
+fn around(source: &Source<'_>, affected: &BTreeSet<u32>, left: &BTreeMap<u32, String>) -> Around {
     let text = source.text;
-    let node = |id: &u32| Some((*id, source.xml.get_node(NodeId::new(*id))?.range()));
-    let nodes = affected.iter().filter_map(node);
-    let mut gaps: Vec<(Range<usize>, &str)> =
-        nodes.map(|(id, range)| (range, left.get(&id).map_or("", String::as_str))).collect();
+    let node = |id: &u32| Some((source.xml.get_node(NodeId::new(*id))?.range(), Some(*id)));
+    let mut gaps: Vec<(Range<usize>, Option<u32>)> = affected.iter().filter_map(node).collect();
     for recipe in source.xml.descendants().filter(|n| n.has_tag_name((NAMESPACE, "recipe"))) {
         let alone = recipe.parent().filter(|p| p.tag_name().name() == "metadata");
         let alone = alone.filter(|p| p.children().filter(roxmltree::Node::is_element).count() == 1);
-        gaps.push((alone.unwrap_or(recipe).range(), ""));
+        gaps.push((alone.unwrap_or(recipe).range(), None));
     }
     gaps.sort_by_key(|(r, _)| (r.start, std::cmp::Reverse(r.end)));
     let root = source.xml.root_element().range();
@@ -238,13 +278,19 @@ fn around(source: &Source<'_>, affected: &BTreeSet<u32>, left: &BTreeMap<u32, St
     head.push_str(text.get(from..root.start + tag).unwrap_or_default());
     head.push_str(&namespaces(source));
     from = from.max(root.start + tag);
-    for (gap, left) in gaps {
+    let mut copied = Copied::default();
+    for (gap, id) in gaps {
+        copied.stretches.push((from, head.len()));
         head.push_str(text.get(from..gap.start).unwrap_or_default());
-        head.push_str(left);
+        if let Some((id, left)) = id.and_then(|id| Some((id, left.get(&id)?))) {
+            copied.replaced.insert(id, head.len()..head.len() + left.len());
+            head.push_str(left);
+        }
         from = from.max(gap.end);
     }
+    copied.stretches.push((from, head.len()));
     head.push_str(text.get(from..end).unwrap_or_default());
-    (head, text.get(end..).unwrap_or_default().to_owned())
+    Around { head, tail: text.get(end..).unwrap_or_default().to_owned(), copied }
 }
 
 /// Where the file begins after an XML declaration that names another encoding than the one it will be written in.

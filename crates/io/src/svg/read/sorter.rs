@@ -138,7 +138,10 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         if markup.is_empty() {
             return Ok(Sorted::Removed);
         }
-        Ok(Sorted::Strokes { drawn: Vec::new(), paint: None, cut: is_touched.then_some(markup), is_touched })
+        let own = self.matcher.drawing.fills.iter().zip(&self.matcher.drawing.exemplar.areas);
+        let key = fills.first().map(Stroke::key);
+        let paint = own.into_iter().find(|(fill, _)| Some(fill.key()) == key).map(|(_, area)| (area.style, 0));
+        Ok(Sorted::Strokes { drawn: Vec::new(), paint, cut: is_touched.then_some(markup), is_touched })
     }
 
     fn is_strokes(&self, item: &Item) -> Result<bool> {

@@ -22,14 +22,17 @@ const ALONG: f64 = 8.0;
 pub(crate) struct Chart {
     raster: Raster,
     pub(crate) cells: Vec<usize>,
-    /// Whether each cell of the raster belongs to it.
-    is_own: Vec<bool>,
+    /// The number of each cell of the raster among its own; none for those of others.
+    number: Vec<Option<u32>>,
+    /// The images of the corners of its cells.
+    quads: Vec<[Vector<2>; 4]>,
     /// Its nodes in rising order, and where each lies in the exemplar.
     nodes: Vec<usize>,
     images: Vec<Vector<2>>,
     /// The middles of its cells, in the exemplar.
     index: GridIndex<2>,
-    reach: f64,
+    /// How far a place can be from the middle of its cell, where cells are smallest and where they are largest.
+    reach: (f64, f64),
 }
 
 /// A place on the page where something of the exemplar comes to lie.
@@ -88,10 +91,11 @@ impl Chart {
         let pulls = vec![Pull { target: Vector::ZERO, weight: HELD }; nodes.len()];
         let equations = NormalEquations::<2>::new(&predictions, &pulls, vec![false; nodes.len()]);
         let images = equations.solve(SOLVE.0, SOLVE.1, budget)?;
-        let mut is_own = vec![false; raster.count()];
-        cells.iter().for_each(|&cell| is_own[cell] = true);
+        let mut number = vec![None; raster.count()];
+        cells.iter().zip(0..).for_each(|(&cell, k)| number[cell] = Some(k));
         let empty = GridIndex::new(&[], 1.0, &Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(1.0))));
-        let mut chart = Self { raster: raster.clone(), cells, is_own, nodes, images, index: empty, reach: 0.0 };
+        let (raster, quads) = (raster.clone(), Vec::new());
+        let mut chart = Self { raster, cells, number, quads, nodes, images, index: empty, reach: (1.0, 1.0) };
         chart.settle();
         Ok(chart)
     }
@@ -103,14 +107,16 @@ impl Chart {
     }
 
     fn settle(&mut self) {
-        let middles: Vec<Vector<2>> = self.cells.iter().map(|&cell| self.middle(cell)).collect();
-        let half = |&cell: &usize| {
-            let [a, b, c, d] = self.around(cell);
-            0.5 * (c - a).norm().max((d - b).norm())
-        };
-        self.reach = 1.5 * self.cells.iter().map(half).fold(f64::MIN_POSITIVE, f64::max);
-        let extent = Bounds::around(middles.iter().copied()).grown(self.reach);
-        self.index = GridIndex::new(&middles, self.reach, &Domain::Box(extent));
+        let corner = |node| self.image(node).unwrap_or(Vector::ZERO);
+        self.quads = self.cells.iter().map(|&cell| self.raster.corners(cell).map(corner)).collect();
+        let middle = |[a, b, c, d]: &[Vector<2>; 4]| (*a + *b + *c + *d) * 0.25;
+        let middles: Vec<Vector<2>> = self.quads.iter().map(middle).collect();
+        let half = |[a, b, c, d]: &[Vector<2>; 4]| 0.75 * (*c - *a).norm().max((*d - *b).norm());
+        let halves = self.quads.iter().map(half);
+        let (low, high) = halves.fold((f64::INFINITY, f64::MIN_POSITIVE), |(l, h), v| (l.min(v), h.max(v)));
+        self.reach = (low.max(0.02 * high), high);
+        let extent = Bounds::around(middles.iter().copied()).grown(high);
+        self.index = GridIndex::new(&middles, self.reach.0, &Domain::Box(extent));
     }
 
     /// The image of a node, where it is one of the chart.
@@ -134,14 +140,6 @@ impl Chart {
         Bounds::around(self.images.iter().copied())
     }
 
-    fn around(&self, cell: usize) -> [Vector<2>; 4] {
-        self.raster.corners(cell).map(|node| self.image(node).unwrap_or(Vector::ZERO))
-    }
-
-    fn middle(&self, cell: usize) -> Vector<2> {
-        self.around(cell).into_iter().fold(Vector::ZERO, |sum, v| sum + v) * 0.25
-    }
-
     /// The map's change at a place in a cell, by its coordinates there.
     fn inward(&self, [a, b, c, d]: &[Vector<2>; 4], at: Vector<2>) -> Matrix<2> {
         let along = (*b - *a) * (1.0 - at[1]) + (*c - *d) * at[1];
@@ -153,7 +151,8 @@ impl Chart {
     /// The change in the middle of a cell, as a share of what is wanted there: how much it is stretched or turned away.
     /// Of stripes, `across` is the direction in the exemplar in which they repeat.
     pub(crate) fn stretch(&self, wanted: &Wanted, cell: usize, across: Option<Vector<2>>) -> f64 {
-        let is = self.inward(&self.around(cell), Vector::splat(0.5));
+        let Some(number) = self.number[cell] else { return f64::INFINITY };
+        let is = self.inward(&self.quads[number as usize], Vector::splat(0.5));
         let m = is.compose(&wanted.outward(cell));
         let measure = determinant(&m);
         if !(measure > 0.0 && measure.is_finite()) {
@@ -184,19 +183,28 @@ impl Chart {
     }
 
     fn look(&self, image: Vector<2>, beyond: bool) -> Option<Spot> {
-        let (nearest, _) = self.index.nearest(image, self.reach, None)?;
-        let mut cell = self.cells[nearest];
+        let (small, large) = self.reach;
+        let mut reach = small;
+        let mut number = loop {
+            if let Some((nearest, _)) = self.index.nearest(image, reach, None) {
+                break nearest;
+            }
+            if reach >= large {
+                return None;
+            }
+            reach = (2.0 * reach).min(large);
+        };
         for _ in 0..WALK {
-            let corners = self.around(cell);
-            let at = self.coordinates(&corners, image)?;
+            let (cell, corners) = (self.cells[number], &self.quads[number]);
+            let at = self.coordinates(corners, image)?;
             let over = [at[0] - 1.0, at[1] - 1.0, -at[0], -at[1]];
             let way = (0..4).max_by(|&i, &j| over[i].total_cmp(&over[j]))?;
-            let next = if over[way] > SLACK { self.raster.beside(cell, way).filter(|&c| self.is_own[c]) } else { None };
-            match next {
-                Some(next) => cell = next,
+            let beside = self.raster.beside(cell, way).and_then(|next| self.number[next]);
+            match beside.filter(|_| over[way] > SLACK) {
+                Some(next) => number = next as usize,
                 None if over[way] > if beyond { 1.0 } else { SLACK } => return None,
                 None => {
-                    let inward = self.inward(&corners, at);
+                    let inward = self.inward(corners, at);
                     let place = self.raster.node(self.raster.corners(cell)[0]) + at * self.raster.step;
                     return Some(Spot { at: place, outward: inverse(&inward), inward });
                 }
@@ -231,7 +239,7 @@ impl Chart {
             let corners = self.raster.corners(cell);
             // The side to the right of a cell lies between its second and third corner, and so on.
             for (way, side) in [(3, 0), (0, 1), (1, 2), (2, 3)] {
-                if self.raster.beside(cell, way).is_none_or(|c| !self.is_own[c]) {
+                if self.raster.beside(cell, way).is_none_or(|c| self.number[c].is_none()) {
                     next.entry(corners[side]).or_default().push(corners[(side + 1) % 4]);
                 }
             }

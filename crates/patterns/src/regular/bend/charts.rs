@@ -18,6 +18,9 @@ const STRETCH: f64 = 0.25;
 /// Growth over a chart, as a logarithm, that takes so much stretching.
 const GROWTH: f64 = 0.42;
 
+/// Charts whose growth differs by more than this many times that are not one.
+const HOPELESS: f64 = 1.5;
+
 /// Most charts.
 const MOST: usize = 200;
 
@@ -25,7 +28,7 @@ const MOST: usize = 200;
 const FEWEST: f64 = 3.0;
 
 /// Share of the page on which the fields may be followed less closely.
-const LOST: f64 = 0.06;
+const LOST: f64 = 0.15;
 
 /// Lattices that meet within this share of the shorter vector do not break.
 const BREAK: f64 = 0.06;
@@ -80,9 +83,50 @@ impl Bent<'_> {
         if all.is_empty() || lost as f64 > LOST * count as f64 {
             return Ok(None);
         }
+        self.unite(&mut all, &mut stretch, budget)?;
         all.sort_by_key(|chart| (std::cmp::Reverse(chart.cells.len()), chart.cells.first().copied()));
         let breaks = self.align(&mut all, budget)?;
         Ok(Some(Charts { all, stretch, breaks }))
+    }
+
+    /// Makes one chart of two neighbours where that stays within bounds.
+    fn unite(&self, charts: &mut Vec<Chart>, stretch: &mut f64, budget: &Budget) -> Result<()> {
+        let mut refused: BTreeSet<(usize, usize)> = BTreeSet::new();
+        for _ in 0..MOST {
+            let shared = shared(charts, budget)?;
+            let by_length = |((a, b), nodes): (&(usize, usize), &Vec<usize>)| (nodes.len(), *a, *b);
+            // Charts are known by their first cells, which no other has.
+            let key = |a: usize, b: usize| (charts[a].cells[0], charts[b].cells[0]);
+            let mut pairs: Vec<_> = shared.iter().map(by_length).filter(|(n, ..)| *n > 1).collect();
+            pairs.sort_by_key(|(n, a, b)| (std::cmp::Reverse(*n), *a, *b));
+            let mut united = None;
+            for (_, a, b) in pairs {
+                if !refused.insert(key(a, b)) {
+                    continue;
+                }
+                let mut cells: Vec<usize> = charts[a].cells.iter().chain(&charts[b].cells).copied().collect();
+                cells.sort_unstable();
+                let (low, high) = self.range(&cells);
+                if self.across.is_none() && high - low > HOPELESS * GROWTH {
+                    continue;
+                }
+                let chart = Chart::new(self.raster, self.wanted, cells, budget)?;
+                let off = chart.cells.iter().map(|&c| chart.stretch(self.wanted, c, self.across)).fold(0.0, f64::max);
+                if off <= STRETCH {
+                    *stretch = stretch.max(off);
+                    united = Some((a, b, chart));
+                    break;
+                }
+            }
+            let Some((a, b, chart)) = united else { break };
+            let (low, high) = (a.min(b), a.max(b));
+            // A chart that has grown is another.
+            let (p, q) = (charts[low].cells[0], charts[high].cells[0]);
+            refused.retain(|(x, y)| ![*x, *y].contains(&p) && ![*x, *y].contains(&q));
+            charts.remove(high);
+            charts[low] = chart;
+        }
+        Ok(())
     }
 
     /// How many cells of the lattice lie in some of the raster.
@@ -93,10 +137,9 @@ impl Bent<'_> {
 
     /// Cells in two parts or more, each in one piece: by growth where that differs too much, else across their length.
     fn divided(&self, cells: &[usize], budget: &Budget) -> Result<Vec<Vec<usize>>> {
-        let misfit = |c: &usize| self.wanted.misfit[*c];
-        let low = cells.iter().map(misfit).fold(f64::INFINITY, f64::min);
-        let high = cells.iter().map(misfit).fold(f64::NEG_INFINITY, f64::max);
-        let bands = ((high - low) / GROWTH).ceil();
+        let (low, high) = self.range(cells);
+        // Not many at once: what growth differs by in one direction is stretched less than along all of a circle.
+        let bands = if high - low > 3.0 * GROWTH { 2.0 } else { ((high - low) / GROWTH).ceil() };
         let part: Box<dyn Fn(usize) -> usize> = if self.across.is_none() && bands > 1.0 && bands.is_finite() {
             Box::new(move |c| (((self.wanted.misfit[c] - low) / (high - low) * bands) as usize).min(bands as usize - 1))
         } else {
@@ -118,6 +161,12 @@ impl Bent<'_> {
             pieces.extend(self.pieces(part, budget)?);
         }
         Ok(pieces)
+    }
+
+    /// Least and most growth that some cells would have to have.
+    fn range(&self, cells: &[usize]) -> (f64, f64) {
+        let misfit = cells.iter().map(|c| self.wanted.misfit[*c]);
+        misfit.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
     }
 
     /// The middle of some cells, and the direction in which they reach farthest.
@@ -154,17 +203,7 @@ impl Bent<'_> {
     /// Moves charts, one after the other, to where their lattice meets that of their neighbours best. Returns along how
     /// many borders it breaks.
     fn align(&self, charts: &mut [Chart], budget: &Budget) -> Result<usize> {
-        let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (k, chart) in charts.iter().enumerate() {
-            budget.spend(SORT * chart.nodes().len() as u64)?;
-            chart.nodes().iter().for_each(|&node| of_node.entry(node).or_default().push(k));
-        }
-        let mut shared: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-        for (node, of) in &of_node {
-            for (i, &a) in of.iter().enumerate() {
-                of[i + 1..].iter().for_each(|&b| shared.entry((a, b)).or_default().push(*node));
-            }
-        }
+        let shared = shared(charts, budget)?;
         let mut is_laid = vec![false; charts.len()];
         is_laid[0] = true;
         for _ in 1..charts.len() {
@@ -214,6 +253,22 @@ impl Bent<'_> {
         let off: Vec<f64> = offsets.map(rest).collect();
         nodes.len() > 1 && off.iter().sum::<f64>() > BREAK * self.lattice.shorter() * off.len() as f64
     }
+}
+
+/// The nodes that charts have in common, for each pair of them that has some.
+fn shared(charts: &[Chart], budget: &Budget) -> Result<BTreeMap<(usize, usize), Vec<usize>>> {
+    let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (k, chart) in charts.iter().enumerate() {
+        budget.spend(SORT * chart.nodes().len() as u64)?;
+        chart.nodes().iter().for_each(|&node| of_node.entry(node).or_default().push(k));
+    }
+    let mut shared: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    for (node, of) in &of_node {
+        for (i, &a) in of.iter().enumerate() {
+            of[i + 1..].iter().for_each(|&b| shared.entry((a, b)).or_default().push(*node));
+        }
+    }
+    Ok(shared)
 }
 
 #[cfg(test)]

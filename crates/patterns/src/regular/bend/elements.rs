@@ -24,11 +24,17 @@ use crate::{
     },
 };
 
+/// Strokes wider than this share of the shorter vector are bands, whose ink shows beyond the border that cuts their middle.
+pub(crate) const BAND: f64 = 0.05;
+
 /// Elements of two charts are not nearer to each other than this share of what such elements are in the exemplar.
 const APART: f64 = 0.6;
 
 /// Places of one cell of which every two are compared, at most.
 const COMPARED: usize = 64;
+
+/// Cells for which memory is asked for at once.
+const HOLD: usize = 256;
 
 /// Work for a place that is looked for.
 const FIND: u64 = 1500;
@@ -109,12 +115,16 @@ impl Bending<'_> {
     ) -> Result<(Vec<Placement<2>>, Vec<(Vector<2>, usize)>)> {
         let budget = self.request.budget.stage("laying out");
         let orbits = elements.orbits;
-        let (mut nodes, mut spots) = (Vec::new(), Vec::new());
+        let (mut nodes, mut spots, mut held) = (Vec::new(), Vec::new(), Vec::new());
+        let each = size_of::<Vec<u32>>() + orbits.len() * (size_of::<u32>() + size_of::<Option<Spot>>());
         for node in self.nodes(chart, Vector::ZERO)? {
             budget.spend(FIND * orbits.len() as u64)?;
             let at = self.lattice.at(node);
             let of: Vec<Option<Spot>> = orbits.iter().map(|orbit| chart.find(orbit.base + at)).collect();
             if of.iter().any(Option::is_some) {
+                if nodes.len().is_multiple_of(HOLD) {
+                    held.push(budget.hold("cells of the repeat", HOLD * each)?);
+                }
                 nodes.push(node);
                 spots.push(of);
             }

@@ -1,8 +1,6 @@
 //! Filling a domain with a pattern that repeats, bent by fields.
 
-use arabesque_core::{
-    Border, Domain, Exemplar, Forecast, Outcome, Request, Result, Snapshot, Vector, Warning, Watch,
-};
+use arabesque_core::{Border, Domain, Exemplar, Forecast, Outcome, Request, Result, Snapshot, Vector, Warning, Watch};
 
 use crate::{
     border::obstacles,

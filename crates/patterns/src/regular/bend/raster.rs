@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Budget, Fields, Matrix, NormalEquations, Prediction, Pull, Result, Vector};
 
 /// Cells along the longer side.
-const CELLS: (f64, f64) = (48.0, 160.0);
+const CELLS: (f64, f64) = (40.0, 96.0);
 
 /// Cells of the lattice are divided into so many of the raster, where that is not too many.
 const FINER: f64 = 3.0;
@@ -12,7 +12,7 @@ const FINER: f64 = 3.0;
 const CELL: u64 = 400;
 
 /// Steps and accuracy in which a field is solved for.
-pub(crate) const SOLVE: (f64, usize) = (1e-7, 3000);
+pub(crate) const SOLVE: (f64, usize) = (1e-6, 1500);
 
 /// How firmly an unknown that nothing else holds is held.
 pub(crate) const HELD: f64 = 1e-9;

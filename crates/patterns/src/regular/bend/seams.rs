@@ -2,13 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Budget, Domain, Drawn, Exemplar, GridIndex, Path, Result, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Drawn, Exemplar, GridIndex, Path, Result, Vector, straight};
 
-use crate::regular::{bend::elements::Bending, kept::lead};
+use crate::regular::{
+    bend::elements::{BAND, Bending},
+    kept::lead,
+};
 
 /// Ends that are farther apart than this share of the shorter vector on the page are not joined; joined ones give way over
 /// such a length.
 const JOIN: (f64, f64) = (0.45, 0.8);
+
+/// Bands reach over the seam at which they end by this share of their width.
+const REACH: f64 = 0.5;
 
 /// Strands whose widths differ by more than this share stay apart, end to end.
 const WIDTH: f64 = 0.12;
@@ -33,6 +39,16 @@ impl Strand {
     fn tip(&self, end: usize) -> Vector<2> {
         let tip = if end == 0 { self.path.start() } else { self.path.end() };
         tip.unwrap_or(Vector::ZERO)
+    }
+
+    /// Goes straight on at an end.
+    fn lengthen(&mut self, end: usize, by: f64) {
+        let (tip, way) = (self.tip(end), self.way(end));
+        if end == 0 {
+            self.path.cubics.insert(0, straight(tip + way * by, tip));
+        } else {
+            self.path.cubics.push(straight(tip, tip + way * by));
+        }
     }
 
     /// The direction out of an end.
@@ -63,6 +79,16 @@ pub(crate) fn joined(
             let mut path = if end == 0 { path } else { path.reversed() };
             lead(&mut path, by, over);
             strands[k].path = if end == 0 { path } else { path.reversed() };
+        }
+    }
+    for (k, strand) in strands.iter_mut().enumerate() {
+        let width = exemplar.curves[strand.source].width;
+        for end in 0..2 {
+            let is_free = strand.ends[end] && !partners.contains_key(&(k, end));
+            // Bands that end at a seam reach over it, so that no gap is left between them and what begins there.
+            if is_free && width > BAND * bending.lattice.shorter() {
+                strand.lengthen(end, REACH * width * strand.scale);
+            }
         }
     }
     let alike = |a: usize, b: usize| (strands[a].scale / strands[b].scale - 1.0).abs() <= WIDTH;

@@ -9,7 +9,7 @@ use crate::{
     regular::{
         bend::{
             chart::{Chart, Spot},
-            elements::Bending,
+            elements::{BAND, Bending},
             seams::{Strand, joined},
         },
         grid::{Grid, Ground},
@@ -27,11 +27,14 @@ const PIECE: f64 = 0.12;
 const STEP: f64 = 0.02;
 const FLAT: f64 = 0.002;
 
-/// Strokes wider than this share of the shorter vector are bands, whose ink shows beyond the border that cuts their middle.
-const BAND: f64 = 0.05;
-
 /// A stroke whose width changes by more than this share is drawn in pieces.
 const WIDTH: f64 = 0.05;
+
+/// Widths differ by no more than this from what growth in the mean makes of them.
+const WIDEST: (f64, f64) = (0.6, 1.6);
+
+/// Pieces of one stroke overlap by what of a piece comes after this share of it.
+const OVERLAP: f64 = 0.85;
 
 /// Scraps shorter than this share of the shorter vector are dropped.
 const SCRAP: f64 = 0.02;
@@ -166,8 +169,10 @@ impl BentStrokes<'_> {
         for (cubic, scale) in pieces {
             match groups.last_mut() {
                 Some(group) if (scale / group.scale - 1.0).abs() <= WIDTH => group.path.cubics.push(cubic),
-                _ => {
-                    let path = Path { cubics: vec![cubic], closed: false };
+                last => {
+                    // A little of the piece before, so that no hair line is left between them.
+                    let before = last.and_then(|group| group.path.cubics.last()).map(|c| cubic_part(c, OVERLAP, 1.0));
+                    let path = Path { cubics: before.into_iter().chain([cubic]).collect(), closed: false };
                     groups.push(Strand { path, source, scale, ends: [false; 2] });
                 }
             }
@@ -187,7 +192,10 @@ fn carried(chart: &Chart, piece: &Cubic<2>) -> Option<(Cubic<2>, f64)> {
     let (start, end) = (spot(piece[0])?, spot(piece[3])?);
     let way = (piece[3] - piece[0]).unit_or_zero();
     let across = Vector::xy(-way[1], way[0]);
-    let scale = |spot: &Spot| 1.0 / spot.inward.transpose().apply(across).norm().max(f64::MIN_POSITIVE);
+    let scale = |spot: &Spot| {
+        let (is, mean) = (spot.inward.transpose().apply(across).norm(), spot.frame().1);
+        (1.0 / is.max(f64::MIN_POSITIVE)).clamp(WIDEST.0 * mean, WIDEST.1 * mean)
+    };
     let bent = [
         start.at,
         start.at + start.outward.apply(piece[1] - piece[0]),

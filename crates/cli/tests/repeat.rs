@@ -107,3 +107,58 @@ fn bare_results_carry_nothing() {
     folder.ok("fill leaves.svg --size 80x80 --no-recipe -o a.svg");
     assert!(!folder.text("a.svg").contains("arabesque:recipe>"));
 }
+
+/// A page of 120 x 90 of something at each place of a grid of 20 x 10, every other row moved by half.
+fn rows(of: impl Fn(i32, i32) -> String) -> String {
+    let places = (-1..10).flat_map(|row| (-1..7).map(move |k| (20 * k + 10 * (row & 1), 10 * row)));
+    let body: String = places.map(|(x, y)| of(x, y)).collect();
+    format!("<svg xmlns='http://www.w3.org/2000/svg' width='120' height='90' viewBox='0 0 120 90'>\n{body}</svg>\n")
+}
+
+#[test]
+fn a_region_of_scales_comes_back_under_the_rows_below_it() {
+    let folder = Folder::new();
+    let circle = |x: i32, y: i32| format!("<circle cx='{x}' cy='{y}' r='10' fill='#045' stroke='#fff'/>\n");
+    folder.write("scales.svg", rows(circle));
+    folder.ok("fill scales.svg --redo 35,25,40,22 --seed 3 -o out.svg");
+    let text = folder.text("out.svg");
+    let centre = |x: i32, y: i32| text.find(&format!("cx='{x}' cy='{y}'"));
+    assert!(centre(40, 40).is_none() && centre(40, 20).is_some());
+    // Four rows have their centres in the region: 30 and 40; what lies below them comes later in the file.
+    let new: Vec<usize> = text.match_indices("<use ").map(|(k, _)| k).collect();
+    assert_eq!(new.len(), 4, "{text}");
+    assert!(new.iter().all(|k| *k > centre(40, 20).unwrap() && *k < centre(50, 50).unwrap()));
+}
+
+#[test]
+fn bands_and_areas_in_a_region_come_back_where_they_were() {
+    let folder = Folder::new();
+    let page = |body: String| {
+        format!("<svg xmlns='http://www.w3.org/2000/svg' width='120' height='90' viewBox='0 0 120 90'>\n{body}</svg>\n")
+    };
+    let band =
+        |k: i32| format!("<rect x='{}' y='-5' width='6' height='100' fill='#c33' fill-opacity='0.5'/>\n", 12 * k);
+    folder.write("bands.svg", page((0..10).map(band).collect()));
+    folder.ok("fill bands.svg --redo 30,25,40,30 -o out.svg");
+    let text = folder.text("out.svg");
+    for x in [39, 51, 63] {
+        assert!(
+            text.contains(&format!("d=\"M{x} 25L{x} 55\"")) || text.contains(&format!("d=\"M{x} 55L{x} 25\"")),
+            "{text}"
+        );
+    }
+    assert!(!text.contains("stroke-linecap=\"round\""));
+    // Waves of varying width, as areas.
+    let wave = |k: i32| {
+        let at = |x: i32, y: i32| format!("{},{}", 10 * x, 20 * k + y);
+        let top: String = (-1..14).map(|x| format!("L{}", at(x, if x & 1 == 0 { 3 } else { 7 }))).collect();
+        let back: String = (-1..14).rev().map(|x| format!("L{}", at(x, if x & 1 == 0 { 12 } else { 14 }))).collect();
+        format!("<path d='M-15,{}{top}{back}Z' fill='#27a'/>\n", 20 * k + 10)
+    };
+    folder.write("waves.svg", page((-1..5).map(wave).collect()));
+    folder.ok("fill waves.svg --redo 35,25,30,40 -o out.svg");
+    let text = folder.text("out.svg");
+    assert!(text.contains("data-arabesque-area=") && text.contains("fill-rule=\"evenodd\""), "{text}");
+    folder.ok("run out.svg -o again.svg");
+    assert_eq!(text, folder.text("again.svg"));
+}

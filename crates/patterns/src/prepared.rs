@@ -131,7 +131,12 @@ where
             return Err(Error::parameter("repeat", "exact", expected));
         }
         if regular.is_none() {
-            no_areas(exemplar, "do not repeat")?;
+            no_areas(
+                exemplar,
+                "that run through the frame and do not repeat",
+                "show two periods of the pattern or more, draw the lines as strokes or with one width, use --method elements to \
+                 treat every connected piece as one element, or mark items with data-arabesque=\"element\" or \"ignore\"",
+            )?;
         }
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
@@ -225,7 +230,12 @@ where
                 return Err(Error::parameter("repeat", "exact", format!("auto: {why}")));
             }
         }
-        no_areas(&self.exemplar, "cannot be bent by fields, turn at a border, or fit this tile")?;
+        no_areas(
+            &self.exemplar,
+            "where the repeat cannot follow the fields, turn at the border, join what is kept, or fit the tile",
+            "use fields that turn and grow more gently, another border, or a tile that suits (--tile auto), or draw the areas \
+             as strokes",
+        )?;
         let mut outcome = self.irregular(&request.budget)?.filled(request, watch)?;
         outcome.warnings.splice(0..0, told);
         Ok(outcome)
@@ -241,17 +251,16 @@ pub fn repeats(exemplar: &Exemplar<2>, budget: &Budget) -> Result<bool> {
 }
 
 /// Refuses areas that only a repeat could continue.
-fn no_areas<const D: usize>(exemplar: &Exemplar<D>, why: &str) -> Result<()> {
+fn no_areas<const D: usize>(exemplar: &Exemplar<D>, why: &str, advice: &str) -> Result<()> {
     let count = exemplar.areas.len();
     if count == 0 {
         return Ok(());
     }
-    let names: Vec<_> = exemplar.areas.iter().map(|a| exemplar.styles[a.style].name.as_str()).take(3).collect();
-    Err(Error::Unsupported {
-        what: format!("filled areas that run through the frame and {why}: {count} ({}{})", names.join(", "), if count > 3 { ", .." } else { "" }),
-        advice: "show two periods of the pattern or more, draw the lines as strokes or with one width, use --method \
-                 elements to treat every connected piece as one element, or mark items with data-arabesque=\"element\" or \
-                 \"ignore\""
-            .into(),
-    })
+    let mut names: Vec<&str> = exemplar.areas.iter().map(|a| exemplar.styles[a.style].name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let more = if names.len() > 3 { ", .." } else { "" };
+    names.truncate(3);
+    let what = format!("{count} filled areas ({}{more}) {why}", names.join(", "));
+    Err(Error::Unsupported { what, advice: advice.into() })
 }

@@ -43,8 +43,7 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     // What is wrong with the parameters is told before what is wrong in a file.
     let params = fill.params.engine_params()?;
     let bytes = preparation.files.read(input)?;
-    let large_fills = if params.repeat == Repeats::Off { LargeFills::Lines } else { LargeFills::Areas };
-    let reading = Reading { method: fill.method, exemplar_tile: fill.exemplar_tile, large_fills };
+    let reading = Reading { method: fill.method, exemplar_tile: fill.exemplar_tile, large_fills: large_fills(&params) };
     let loaded = LoadedExemplar::read(input, &bytes, reading, preparation.files.budget())?;
     let (drawing, points) = match loaded {
         LoadedExemplar::Drawing(drawing) => (*drawing, None),
@@ -61,12 +60,16 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     Plane::new(PlaneExemplar { drawing, points, region: None }, &params, preparation)
 }
 
+/// What large fills are taken for.
+fn large_fills(params: &Params) -> LargeFills {
+    if params.repeat == Repeats::Off { LargeFills::Lines } else { LargeFills::Areas }
+}
+
 /// Reads a drawing to fill a region of it again.
 pub(crate) fn prepare_region(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Plane> {
     let params = redo.params.engine_params()?;
-    let exemplar = redo::read(redo, preparation)?;
-    // What is around a region need not lie where the repeat of another part has it: the new is fitted to what stays.
-    Plane::new(exemplar, &Params { repeat: Repeats::Off, ..params }, preparation)
+    let exemplar = redo::read(redo, large_fills(&params), preparation)?;
+    Plane::new(exemplar, &params, preparation)
 }
 
 impl Plane {
@@ -88,7 +91,7 @@ impl Ready for Plane {
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         self.settle_tile(&mut context)?;
-        let request = Arc::new(self.exemplar.resolve(&mut context)?);
+        let request = Arc::new(self.exemplar.resolve(&mut context, self.engine.repeat().is_some())?);
         let origin = context.origin();
         let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);
         let mut show = Show { watch, origin: &origin, make };

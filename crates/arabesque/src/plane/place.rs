@@ -106,7 +106,8 @@ pub(crate) fn options(input: &Input, files: &Files) -> ReadOptions {
 }
 
 /// Refuses a domain that is too large or too small for the pattern.
-pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, budget: &Budget) -> Result<()> {
+/// Areas alone, and what repeats in a region that is filled again, fit into any.
+pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, fits: bool, budget: &Budget) -> Result<()> {
     let spacing = spacing(exemplar);
     let expected = domain.measure() / spacing.powi(2);
     if expected.is_nan() || expected > budget.limits().output_elements as f64 {
@@ -116,6 +117,9 @@ pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, budget: &Bu
             limit: format!("{} elements", budget.limits().output_elements),
             advice: "make it smaller; sizes without a unit are in the units of the exemplar".into(),
         });
+    }
+    if fits || (exemplar.elements.is_empty() && exemplar.curves.is_empty()) {
+        return Ok(());
     }
     let smallest = exemplar.elements.iter().map(|e| e.outline.area()).fold(f64::INFINITY, f64::min);
     if (smallest.is_finite() && domain.measure() < smallest) || expected < 0.5 {

@@ -3,8 +3,9 @@
 use arabesque_core::{Border, Bounds, Budget, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
-    svg::{Document, Drawing, HostDocument, ReadOptions, Tiling},
+    svg::{Document, Drawing, HostDocument, LargeFills, ReadOptions, Tiling},
 };
+use arabesque_patterns::repeats;
 
 use crate::{
     method::Preparation,
@@ -24,7 +25,7 @@ const MIN_SIDE: f64 = 1.5;
 const OVERHANG: f64 = 0.01;
 
 /// Reads the drawing, and takes it apart into the example, the region and what stays.
-pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<PlaneExemplar> {
+pub(crate) fn read(redo: &Redo, large_fills: LargeFills, preparation: &mut Preparation<'_>) -> Result<PlaneExemplar> {
     check_border(redo.border)?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
     let name = preparation.exemplar.name().to_owned();
@@ -34,14 +35,22 @@ pub(crate) fn read(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Pla
         budget: preparation.files.budget().clone(),
         method: redo.method.of_drawings()?,
         tiling: Tiling::Page,
+        large_fills,
         without: std::iter::once(&redo.region).chain(&redo.from).filter_map(own).collect(),
         ..ReadOptions::new(&*name)
     };
     // One parse serves the example, the regions and what stays.
-    let (drawing, region) = Document::with(&text, &options, |document| {
-        let file = HostFile { document, name: &name, files: preparation.files };
-        file.split(redo, &mut preparation.warnings)
-    })?;
+    let (files, mut warnings) = (preparation.files, Vec::new());
+    let mut split = |options: &ReadOptions| {
+        warnings.clear();
+        Document::with(&text, options, |document| HostFile { document, name: &name, files }.split(redo, &mut warnings))
+    };
+    let (mut drawing, mut region) = split(&options)?;
+    if !drawing.exemplar.areas.is_empty() && !repeats(&drawing.exemplar, files.budget())? {
+        // Without a repeat, lines are all that can be made of areas.
+        (drawing, region) = split(&ReadOptions { large_fills: LargeFills::Lines, ..options })?;
+    }
+    preparation.warnings.append(&mut warnings);
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
     let mut job = redo.clone();
     for region in std::iter::once(&mut job.region).chain(job.from.as_mut()) {
@@ -170,6 +179,10 @@ fn check_rim(drawing: &Drawing, hole: &Bounds<2>, rest: &HostDocument, place: &s
         Bounds::new(a, b)
     };
     let strips = (0..2).flat_map(|k| [strip(k, f64::NEG_INFINITY, hole.min[k]), strip(k, hole.max[k], f64::INFINITY)]);
+    if !drawing.exemplar.areas.is_empty() {
+        // Whether enough of them is left for a repeat shows when that is looked for.
+        return Ok(());
+    }
     let least = MIN_SIDE * spacing(&drawing.exemplar);
     if strips.filter(|s| !s.is_empty()).any(|s| s.size()[0].min(s.size()[1]) >= least) {
         return Ok(());

@@ -27,22 +27,25 @@ pub(crate) struct PlaneRequest {
 }
 
 impl PlaneExemplar {
-    /// Reads the files of the request, which are embedded in the job of `context`.
-    pub(crate) fn resolve(&self, context: &mut RunContext<'_>) -> Result<PlaneRequest> {
+    /// Reads the files of the request, which are embedded in the job of `context`. `repeats`: whether the exemplar is
+    /// continued by a repeat.
+    pub(crate) fn resolve(&self, context: &mut RunContext<'_>, repeats: bool) -> Result<PlaneRequest> {
         let mut job = std::mem::replace(&mut context.job, Job::Fill(Fill::default()));
-        let resolved = self.resolve_job(&mut job, context);
+        let resolved = self.resolve_job(&mut job, context, repeats);
         context.job = job;
         resolved
     }
 
-    fn resolve_job(&self, job: &mut Job, context: &mut RunContext<'_>) -> Result<PlaneRequest> {
+    fn resolve_job(&self, job: &mut Job, context: &mut RunContext<'_>, repeats: bool) -> Result<PlaneRequest> {
         let files = context.files;
         let place = match (&self.region, &mut *job) {
             (Some(region), _) => region.place.clone(),
             (None, Job::Fill(fill)) => Place::of(fill, &self.drawing, self.units(), files)?,
             (None, _) => return Err(Error::parameter("request", job.name(), "a request to fill")),
         };
-        check_room(self.exemplar(), &place.domain, files.budget()).map_err(|error| self.in_region(error, context))?;
+        let fits = repeats && self.region.is_some();
+        check_room(self.exemplar(), &place.domain, fits, files.budget())
+            .map_err(|error| self.in_region(error, context))?;
         check_picture(context.output(), &place.page, files.budget())?;
         let surroundings = Surroundings::of(job)?;
         if self.region.is_some() {
@@ -52,7 +55,7 @@ impl PlaneExemplar {
         request.seed = context.seed;
         request.budget = files.budget().clone();
         request.known = self.region.is_some().then_some(self.drawing.page.view);
-        request.border = surroundings.border.unwrap_or_else(|| self.usual_border());
+        request.border = surroundings.border.unwrap_or_else(|| self.usual_border(repeats));
         request.fields = surroundings.fields.read(&self.drawing, &request.domain.bounds(), files)?;
         let avoid = surroundings.avoid;
         request.obstacles = surroundings::avoided(avoid, &self.drawing, self.units(), &request.domain, files)?;
@@ -67,14 +70,18 @@ impl PlaneExemplar {
         if let Some(placed) = kept.as_ref().or(self.region.as_ref().map(|region| &region.rest.placed)) {
             request.frozen.clone_from(&placed.placements);
             request.frozen_curves.clone_from(&placed.curves);
-            request.obstacles.extend(placed.obstacles.iter().cloned());
+            // What the edges of the page cut is no element, and in nobody's way: the repeat has it there.
+            if kept.is_some() || !repeats {
+                request.obstacles.extend(placed.obstacles.iter().cloned());
+            }
         }
         Ok(PlaneRequest { engine: request, page: place.page, shape: place.shape, kept })
     }
 
     /// In a region that is filled again elements count by their centres, as those do that it replaces.
-    fn usual_border(&self) -> Border {
-        let counts_centres = self.region.is_some() && self.exemplar().curves.is_empty();
+    /// What repeats is continued up to the border, where that counts for strokes alone.
+    fn usual_border(&self, repeats: bool) -> Border {
+        let counts_centres = self.region.is_some() && (repeats || self.exemplar().curves.is_empty());
         if counts_centres { Border::Cross } else { Border::Clip }
     }
 

@@ -39,7 +39,7 @@ impl Plane {
         let mut sides = least.map(rounded);
         for _ in 0..DOUBLED {
             let domain = Domain::Torus(Bounds::new(Vector::ZERO, Vector(sides)));
-            match check_room(exemplar, &domain, &budget) {
+            match check_room(exemplar, &domain, false, &budget) {
                 Err(Error::NoResult { .. }) => sides[usize::from(sides[1] < sides[0])] *= 2.0,
                 Ok(()) | Err(_) => break,
             }

@@ -1,7 +1,7 @@
 //! What reading an SVG gives and writing one takes: pages, looks of elements and strokes, exemplars, what is placed
 //! already.
 
-use std::{collections::BTreeSet, fmt::Write as _};
+use std::{collections::BTreeSet, fmt::Write as _, ops::Range};
 
 use std::sync::Arc;
 
@@ -205,6 +205,23 @@ pub struct KeptStrokes {
     pub paint: Option<(usize, usize)>,
 }
 
+/// What stays in a file of which a part is refilled, and between what of its text it stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Anchor {
+    /// The bytes of the head that draw it.
+    pub(crate) range: Range<usize>,
+    pub(crate) what: Anchored,
+}
+
+/// What stands at an anchor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchored {
+    /// A kept element, by its number.
+    Element(usize),
+    /// A paint of a style: strokes, or an area.
+    Strokes(usize, usize),
+}
+
 /// A drawing of which a part is refilled: what stays, and the text of the file around that part.
 #[derive(Clone, Debug)]
 pub struct HostDocument {
@@ -216,6 +233,8 @@ pub struct HostDocument {
     pub replaced: usize,
     /// The file up to where new things are drawn.
     pub(crate) head: String,
+    /// Where in it something new can be drawn before or after what stays, in drawing order.
+    pub(crate) anchors: Vec<Anchor>,
     /// The file from there on.
     pub(crate) tail: String,
     /// What had to be rewritten: the outside parts of strokes that are cut, and pieces of paths of which another piece

@@ -17,7 +17,7 @@ const AT_ONCE: usize = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct CellArea {
     /// The first area of the style, as which it is painted.
-    source: usize,
+    pub(crate) source: usize,
     /// The part in the cell, which is a little larger than the cell.
     rings: Vec<Ring<2>>,
 }
@@ -79,7 +79,10 @@ pub(crate) fn draw(areas: &[CellArea], ground: &Ground<'_>, nodes: &[Node], made
 }
 
 /// The copies of a part in all cells, as one.
-fn united(area: &CellArea, grid: &Grid, nodes: &[Node], budget: &Budget) -> Result<Outline<2>> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn united(area: &CellArea, grid: &Grid, nodes: &[Node], budget: &Budget) -> Result<Outline<2>> {
     let copy = |node: Node| area.rings.iter().map(move |ring| ring.iter().map(|&p| grid.place(p, node)).collect());
     let mut parts: Vec<Outline<2>> = Vec::new();
     for cells in nodes.chunks(AT_ONCE) {
@@ -98,20 +101,26 @@ fn united(area: &CellArea, grid: &Grid, nodes: &[Node], budget: &Budget) -> Resu
 }
 
 /// Cutting areas at the border and at what is in the way.
-struct Cut<'a> {
+pub(crate) struct Cut<'a> {
     domain: Option<Outline<2>>,
     obstacles: Option<&'a Shape>,
 }
 
 impl<'a> Cut<'a> {
-    fn new(ground: &Ground<'a>) -> Self {
+    /// For a domain and its surroundings.
+    pub(crate) fn new(ground: &Ground<'a>) -> Self {
         let request = ground.request;
-        let endless = matches!(request.domain, Domain::Torus(_)) || request.border == Border::Cross;
+        let crosses = request.border == Border::Cross && request.known.is_none();
+        let endless = matches!(request.domain, Domain::Torus(_)) || crosses;
         let domain = if endless { None } else { request.domain.outline() };
         Self { domain, obstacles: ground.obstacles }
     }
 
-    fn apply(&self, outline: Outline<2>, budget: &Budget) -> Result<Outline<2>> {
+    /// What is left of an area.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn apply(&self, outline: Outline<2>, budget: &Budget) -> Result<Outline<2>> {
         let inside = match &self.domain {
             Some(domain) => outline.try_intersection(domain, budget)?,
             None => outline,

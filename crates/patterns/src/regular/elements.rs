@@ -174,8 +174,16 @@ impl Elements<'_> {
             let rest = |b: &Vector<2>| grid.lattice.nearest(*b - a).1;
             offsets.iter().step_by(stride).map(rest).filter(|r| r.norm() <= 0.1 * shorter).collect()
         };
-        let best = offsets.iter().step_by(stride).max_by_key(|&&a| agreeing(a).len());
-        if let Some(&a) = best {
+        // Of several that fit as well, the one that moves least: things that look alike fit one another's places.
+        let mut best: Option<(usize, Vector<2>)> = None;
+        for &a in offsets.iter().step_by(stride) {
+            let count = agreeing(a).len();
+            let is_better = |&(most, b): &(usize, Vector<2>)| count > most || (count == most && a.norm() < b.norm());
+            if best.as_ref().is_none_or(is_better) {
+                best = Some((count, a));
+            }
+        }
+        if let Some((_, a)) = best {
             let rests = agreeing(a);
             let mean = rests.iter().fold(Vector::ZERO, |sum, r| sum + *r) * (1.0 / rests.len() as f64);
             grid.move_by(a + mean);

@@ -11,10 +11,12 @@ use crate::{
     obstacles::obstacles,
     regular::{
         areas,
+        bend::fill::Pattern,
         choice::Cells,
         elements::Elements,
         grid::{Grid, Ground, Unfit},
         joints::Cell,
+        kept::Kept,
         strokes::Strokes,
     },
     repeat::{
@@ -116,18 +118,26 @@ impl Regular {
     ) -> Result<Filled<2>> {
         // A tile has no border at which strokes could turn.
         let turns = request.border == Border::Turn && !matches!(request.domain, Domain::Torus(_));
-        if self.cell.is_some() && (turns || !request.frozen_curves.is_empty()) {
+        if self.cell.is_some() && turns {
             return Ok(Filled::Unfit(Vec::new()));
         }
         let mut grid = match Grid::new(&self.repeat, exemplar, request) {
             Ok(grid) => grid,
-            Err(Unfit::Fields) => return Ok(Filled::Unfit(Vec::new())),
+            Err(Unfit::Fields) => return self.bend(exemplar, request, watch),
             Err(Unfit::Tile) => return Ok(Filled::Unfit(vec![self.unfit_tile(request)])),
         };
         self.foresee(&grid, request, watch)?;
         let obstacles = obstacles(request)?;
         let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
-        elements.join_kept(&mut grid, request)?;
+        // What surrounds a region that is filled again has told the lattice already.
+        if exemplar.hole.is_none() || request.known.is_none() {
+            elements.join_kept(&mut grid, request)?;
+        }
+        if let (Some(cell), false) = (&self.cell, request.frozen_curves.is_empty())
+            && !Kept::lies_on(request, exemplar, cell, &grid)?
+        {
+            return Ok(Filled::Unfit(Vec::new()));
+        }
         let placed = elements.place(&grid, request, obstacles.as_ref(), watch)?;
         let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), Vec::new(), Vec::new());
         if let (Some(cell), None) = (&self.cell, &cut_short) {
@@ -154,6 +164,25 @@ impl Regular {
         Ok(Filled::Done(Outcome { placements, sequence, curves, areas, energy, warnings, stopped }))
     }
 
+    /// Fills a domain over which fields vary.
+    fn bend(
+        &self,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Filled<2>> {
+        let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };
+        let pattern = Pattern { repeat: &self.repeat, elements, cell: self.cell.as_ref() };
+        let Some(mut outcome) = pattern.bent(request, watch)? else {
+            return Ok(Filled::Unfit(vec![Warning::new(
+                "no lattice can follow the fields here, so that the repeat is not kept",
+                "use fields that turn and grow more gently, or one direction and scale for the whole page",
+            )]));
+        };
+        outcome.warnings.splice(0..0, self.left_out());
+        Ok(Filled::Done(outcome))
+    }
+
     /// The repeat by which it is continued.
     pub(crate) fn into_repeat(self) -> Repeat {
         self.repeat
@@ -167,7 +196,8 @@ impl Regular {
         ground: &Ground<'_>,
         made: (&mut Vec<Drawn<2>>, &mut Vec<Covered<2>>),
     ) -> Result<()> {
-        let strokes = Strokes { exemplar, cell };
+        let kept = Kept::new(ground.request, exemplar, ground.grid.lattice.shorter())?;
+        let strokes = Strokes { exemplar, cell, kept: kept.as_ref() };
         let margin = strokes.widest() * ground.grid.scale();
         let nodes = strokes.nodes(ground, margin)?;
         strokes.draw(ground, &nodes, made.0)?;
@@ -185,7 +215,8 @@ impl Regular {
         Ok(())
     }
 
-    fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
+    /// Warns of elements that are left out.
+    fn left_out(&self) -> Vec<Warning> {
         let mut warnings: Vec<_> = checks::giants_left_out(self.giants).into_iter().collect();
         if self.others > 0 {
             warnings.push(Warning::new(
@@ -193,6 +224,11 @@ impl Regular {
                 "set repeat=off to treat the pattern as irregular",
             ));
         }
+        warnings
+    }
+
+    fn warnings(&self, grid: &Grid, request: &Request<2>) -> Vec<Warning> {
+        let mut warnings = self.left_out();
         if grid.stretch > UNSEEN {
             warnings.push(Warning::new(
                 format!(

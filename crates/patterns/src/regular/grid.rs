@@ -107,6 +107,20 @@ impl Grid {
         Ok(grid)
     }
 
+    /// The lattice as it lies in the exemplar.
+    pub(crate) fn flat(repeat: &Repeat) -> Self {
+        Self {
+            source: repeat.lattice,
+            lattice: repeat.lattice,
+            linear: Matrix::identity(),
+            shift: Vector::ZERO,
+            rotation: Matrix::identity(),
+            element_scale: 1.0,
+            tiling: None,
+            stretch: 0.0,
+        }
+    }
+
     /// The vectors in the exemplar that become those of `lattice`.
     fn pulled_back(&self, lattice: &Lattice) -> Lattice {
         let [[a, b], [c, d]] = self.linear.0;

@@ -13,6 +13,9 @@ use crate::{
 /// Positions of the cell that are tried, in each direction.
 const TRIES: usize = 12;
 
+/// The cell is looked for so many steps from the middle of the frame, where there is a hole in it.
+const FAR: i64 = 60;
+
 /// Pieces whose ends are farther apart than this share of the shorter vector do not go on in one another.
 const APART: f64 = 0.02;
 
@@ -60,7 +63,7 @@ impl Cell {
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, lattice: &Lattice, budget: &Budget) -> Result<Option<Self>> {
         let mut found = Vec::new();
-        for origin in origins(&exemplar.window, lattice) {
+        for origin in origins(&exemplar.window, exemplar.hole.as_ref(), lattice) {
             found.extend(
                 Self::at(exemplar, lattice, origin, budget)?.map(|(quality, cell)| (quality, cell.length(), cell)),
             );
@@ -117,8 +120,8 @@ impl Cell {
     }
 }
 
-/// Places for the cell at which it lies in the frame.
-fn origins(window: &Bounds<2>, lattice: &Lattice) -> Vec<Vector<2>> {
+/// Places for the cell at which it lies in the frame, and not in the hole.
+fn origins(window: &Bounds<2>, hole: Option<&Bounds<2>>, lattice: &Lattice) -> Vec<Vector<2>> {
     let box_of = Bounds::around(corners(Vector::ZERO, lattice));
     let room = Bounds::new(window.min - box_of.min, window.max - box_of.max);
     let slack = 1e-9 * window.size().norm();
@@ -131,7 +134,22 @@ fn origins(window: &Bounds<2>, lattice: &Lattice) -> Vec<Vector<2>> {
     let start = room.centre() - span * 0.5;
     let share = |n: usize, shift: f64| (n as f64 + shift) / TRIES as f64;
     let all = (0..TRIES * TRIES).map(|n| (n / TRIES, n % TRIES));
-    all.map(|(i, j)| start + Vector::xy(span[0] * share(i, 0.463), span[1] * share(j, 0.537))).collect()
+    let all = all.map(|(i, j)| start + Vector::xy(span[0] * share(i, 0.463), span[1] * share(j, 0.537)));
+    match hole {
+        None => all.collect(),
+        Some(hole) => all.filter_map(|origin| beside(hole, origin, &room.grown(slack), lattice)).collect(),
+    }
+}
+
+/// The place nearest to `origin`, whole steps of the lattice from it, at which the cell lies in the frame and beside the hole.
+fn beside(hole: &Bounds<2>, origin: Vector<2>, room: &Bounds<2>, lattice: &Lattice) -> Option<Vector<2>> {
+    let lies_beside = |p: Vector<2>| room.contains(p) && !Bounds::around(corners(p, lattice)).intersects(hole);
+    let [rows, columns] = lattice.nodes_in(origin, room);
+    let far = |r: &std::ops::RangeInclusive<i64>| (*r.start()).max(-FAR)..=(*r.end()).min(FAR);
+    let (rows, columns) = (far(&rows), far(&columns));
+    let steps = rows.flat_map(|i| columns.clone().map(move |j| lattice.at([i, j])));
+    let free = steps.filter(|&step| lies_beside(origin + step));
+    free.min_by(|a, b| a.norm2().total_cmp(&b.norm2())).map(|step| origin + step)
 }
 
 fn corners(origin: Vector<2>, lattice: &Lattice) -> [Vector<2>; 4] {

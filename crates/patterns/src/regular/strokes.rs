@@ -10,6 +10,7 @@ use crate::{
     regular::{
         grid::{Grid, Ground},
         joints::{Cell, Next},
+        kept::{Kept, is_covered},
     },
     repeat::lattice::Node,
 };
@@ -31,6 +32,8 @@ const WORK: (u64, u64) = (100, 200);
 pub(crate) struct Strokes<'a> {
     pub(crate) exemplar: &'a Exemplar<2>,
     pub(crate) cell: &'a Cell,
+    /// Strokes that stay.
+    pub(crate) kept: Option<&'a Kept>,
 }
 
 /// A piece in a cell of the output, as its stroke runs through it.
@@ -69,7 +72,7 @@ impl Strokes<'_> {
         let (mut is_drawn, _held) = budget.list("pieces of strokes", nodes.len() * count)?;
         is_drawn.resize(nodes.len() * count, false);
         let slot = |node: Node, part: usize| number.get(&grid.wrap(node)).map(|k| k * count + part);
-        let border = BorderCut::new(ground);
+        let border = BorderCut::new(ground, self.kept);
         for &node in nodes {
             for part in 0..count {
                 if slot(node, part).is_none_or(|s| is_drawn[s]) {
@@ -83,8 +86,8 @@ impl Strokes<'_> {
                     WORK.0 * chain.0.iter().map(|p| self.cell.parts[p.part].path.cubics.len() as u64).sum::<u64>(),
                 )?;
                 let line = self.drawn(&chain.0, chain.1, grid);
-                let width = self.exemplar.curves[line.source].width * line.scale;
-                border.cut(line, width, &budget, made)?;
+                let curve = &self.exemplar.curves[line.source];
+                border.cut(line, (curve.style, curve.width), &budget, made)?;
             }
         }
         Ok(())
@@ -167,44 +170,70 @@ struct BorderCut<'a> {
     domain: &'a Domain<2>,
     border: Border,
     obstacles: Option<&'a Shape>,
+    kept: Option<&'a Kept>,
+    /// How far over the border of a region that is filled again strokes that run along it may lie; `None` where there is no
+    /// such region.
+    slack: Option<f64>,
     /// The shorter vector in the output.
     unit: f64,
 }
 
 impl<'a> BorderCut<'a> {
-    fn new(ground: &Ground<'a>) -> Self {
+    fn new(ground: &Ground<'a>, kept: Option<&'a Kept>) -> Self {
         let Ground { grid, request, obstacles } = *ground;
-        Self { domain: &request.domain, border: request.border, obstacles, unit: grid.lattice.shorter() }
+        let slack = request.known.map(|known| 1e-9 * known.size().norm());
+        let unit = grid.lattice.shorter();
+        Self { domain: &request.domain, border: request.border, obstacles, kept, slack, unit }
     }
 
-    fn cut(&self, line: Drawn<2>, width: f64, budget: &Budget, into: &mut Vec<Drawn<2>>) -> Result<()> {
+    /// Adds what is left of a line of this style and width.
+    fn cut(
+        &self,
+        line: Drawn<2>,
+        (style, width): (usize, f64),
+        budget: &Budget,
+        into: &mut Vec<Drawn<2>>,
+    ) -> Result<()> {
+        let width = width * line.scale;
         let is_endless = self.domain.period().is_some();
-        if is_endless && self.obstacles.is_none() {
+        if is_endless && self.obstacles.is_none() && self.kept.is_none() {
             into.push(line);
             return Ok(());
         }
         let half = 0.5 * width;
         let margin = match self.border {
+            // What stays goes on at the border.
+            Border::Clip | Border::Cross if self.slack.is_some() => -self.slack.unwrap_or_default(),
             Border::Clip if width > BAND * self.unit => -1.5 * half,
             Border::Clip => 0.0,
             Border::Inside | Border::Turn => half,
             Border::Cross => f64::NEG_INFINITY,
         };
         let is_blocked = |p: Vector<2>| self.obstacles.is_some_and(|o| o.signed_distance(p) > -half);
-        let holds = |p: Vector<2>| self.domain.signed_distance(p) >= margin && !is_blocked(p);
+        // Around a region everything that stays lies beyond the border; elsewhere new strokes end where one that stays goes on.
+        let stays = self.kept.filter(|_| self.slack.is_none());
+        let is_there = |p: Vector<2>| stays.is_some_and(|kept| kept.has_any(p, style));
+        let holds = |p: Vector<2>| self.domain.signed_distance(p) >= margin && !is_blocked(p) && !is_there(p);
         let measured = Measured::new(line.path.clone(), FLAT.0 * self.unit);
-        let step = FLAT.1 * self.unit;
+        let step = if self.slack.is_some() { 0.25 } else { 1.0 } * FLAT.1 * self.unit;
         budget.spend(WORK.1 * (measured.points().len() as u64 + (measured.length() / step) as u64))?;
         let spans = spans_inside(&measured, step, &holds);
         if matches!(spans.as_slice(), [(a, b)] if *a <= 0.0 && *b >= measured.length()) {
             into.push(line);
             return Ok(());
         }
-        let least = (SCRAP * width).max(1e-3 * self.unit);
+        // A stroke is as long as it was where another goes on with it.
+        let least = if self.slack.is_some() { 0.0 } else { SCRAP * width }.max(1e-3 * self.unit);
         for (a, b) in spans.into_iter().filter(|(a, b)| b - a > least) {
-            let path = measured.part(a, b);
-            if !path.is_empty() {
-                into.push(Drawn { path, ..line.clone() });
+            let mut part = Drawn { path: measured.part(a, b), ..line.clone() };
+            if let Some(kept) = self.kept {
+                if is_covered(kept, &part, style) {
+                    continue;
+                }
+                part.path = kept.joined(part.path, (style, width));
+            }
+            if !part.path.is_empty() {
+                into.push(part);
             }
         }
         Ok(())

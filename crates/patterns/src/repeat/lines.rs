@@ -102,7 +102,7 @@ impl Lines {
             budget.spend(WORK.1 * (lines.stretches.len() as u64).pow(2))?;
             crossings(&lines.stretches, &mut lines.features);
         }
-        lines.features.retain(|(place, _)| seen.contains(*place));
+        lines.features.retain(|(place, _)| seen.contains(*place) && !exemplar.hole.is_some_and(|h| h.contains(*place)));
         lines.features.truncate(MOST);
         Ok(lines)
     }

@@ -182,5 +182,10 @@ fn expected_nodes(exemplar: &Exemplar<2>, lattice: &Lattice, orbit: &Orbit, wind
         return None;
     }
     let nodes = rows.flat_map(|i| columns.clone().map(move |j| [i, j]));
-    Some(nodes.filter(|node| room.contains(orbit.base + lattice.at(*node))).collect())
+    let is_hidden = |p: Vector<2>| {
+        let there = Bounds::new(p - low, p + high);
+        exemplar.hole.is_some_and(|hole| hole.intersects(&there))
+    };
+    let places = nodes.map(|node| (node, orbit.base + lattice.at(node)));
+    Some(places.filter(|&(_, p)| room.contains(p) && !is_hidden(p)).map(|(node, _)| node).collect())
 }

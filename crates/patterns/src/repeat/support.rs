@@ -54,7 +54,11 @@ pub(crate) fn is_supported(
             let group = usize::from(mark.element.is_none());
             let (partner, looked) = marks.find(mark.place + way, mark.kind, tolerance);
             meter.spend(LOOK * (4 + looked))?;
-            if partner.is_none() && mark.element.is_none() && marks.unknown.contains(mark.place + way) {
+            let is_unknown = || match mark.element {
+                Some(_) => marks.unknown.hides(&there),
+                None => marks.unknown.contains(mark.place + way),
+            };
+            if partner.is_none() && is_unknown() {
                 continue;
             }
             seen[group] += 1;
@@ -157,7 +161,8 @@ impl<'a> LineIndex<'a> {
         for ((a, b), style, _) in self.pieces.iter().step_by(stride) {
             let (place, way) = ((*a + *b) * 0.5, (*b - *a).unit_or_zero());
             for by in [by, -by] {
-                if !(known.contains(place) && seen_in.contains(place + by)) {
+                let is_known = known.contains(place) && !self.lines.unknown.is_in_hole(place);
+                if !(is_known && seen_in.contains(place + by)) {
                     continue;
                 }
                 let (near, looked) = self.distance(place + by, way, *style, tolerance);

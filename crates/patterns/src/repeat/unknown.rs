@@ -15,11 +15,12 @@ pub(crate) fn touches(extent: &Bounds<2>, window: &Bounds<2>) -> bool {
     (0..2).any(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
 }
 
-/// The boxes around elements that the frame has cut, which may be lines elsewhere, as a raster over the frame: however
-/// many there are, a place is looked up at once.
+/// The boxes around elements that the frame has cut, which may be lines elsewhere, and the hole, as a raster over the
+/// frame: however many there are, a place is looked up at once.
 #[derive(Clone, Debug)]
 pub(crate) struct Unknown {
     window: Bounds<2>,
+    hole: Option<Bounds<2>>,
     is_cut: Vec<bool>,
 }
 
@@ -32,8 +33,9 @@ impl Unknown {
         // Where boxes begin and end along each axis; summed up, how many of them lie over a cell.
         let wide = CELLS + 1;
         let mut count = vec![0_i64; wide * wide];
-        let mut unknown = Self { window, is_cut: Vec::new() };
-        for (_, b) in boxes.filter(cut).filter(|(_, b)| !b.is_empty()) {
+        let mut unknown = Self { window, hole: exemplar.hole, is_cut: Vec::new() };
+        let hidden = boxes.filter(cut).map(|(_, b)| b).chain(exemplar.hole);
+        for b in hidden.filter(|b| !b.is_empty() && b.intersects(&window)) {
             let (low, high) = (unknown.cell(b.min - Vector::splat(near)), unknown.cell(b.max + Vector::splat(near)));
             count[low[1] * wide + low[0]] += 1;
             count[low[1] * wide + high[0] + 1] -= 1;
@@ -57,6 +59,16 @@ impl Unknown {
         let size = self.window.size();
         [0, 1]
             .map(|k| ((place[k] - self.window.min[k]) / size[k] * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize)
+    }
+
+    /// Whether a place lies in the hole, where what there is is no example.
+    pub(crate) fn is_in_hole(&self, place: Vector<2>) -> bool {
+        self.hole.is_some_and(|hole| hole.contains(place))
+    }
+
+    /// Whether something with this box around it may be missing because of the hole.
+    pub(crate) fn hides(&self, extent: &Bounds<2>) -> bool {
+        self.hole.is_some_and(|hole| hole.intersects(extent))
     }
 
     /// Whether a place in the frame lies in one of the boxes, or in the same cell of the raster as one.

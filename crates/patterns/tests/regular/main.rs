@@ -8,6 +8,7 @@ mod friezes;
 mod groups;
 mod measure;
 mod random;
+mod regions;
 mod strokes;
 mod surroundings;
 mod symmetry;

@@ -41,7 +41,7 @@ fn waves() -> Pattern {
 }
 
 /// The net of a honeycomb.
-fn honeycomb() -> Pattern {
+pub(crate) fn honeycomb() -> Pattern {
     let half = 0.75_f64.sqrt();
     let c = (0.5, 0.5 / 3.0_f64.sqrt());
     let pieces =
@@ -50,7 +50,7 @@ fn honeycomb() -> Pattern {
 }
 
 /// Chevrons with sharp corners.
-fn chevrons() -> Pattern {
+pub(crate) fn chevrons() -> Pattern {
     Pattern::of_pieces([xy(1.0, 0.0), xy(0.0, 0.5)], vec![piece(&[(0.0, 0.0), (0.5, 0.35), (1.0, 0.0)], 0)])
 }
 

@@ -7,15 +7,15 @@ use std::{
     ops::Range,
 };
 
-use arabesque_core::{Error, Outline, Result};
+use arabesque_core::{Bounds, Error, Outline, Result};
 use kurbo::Affine;
 use roxmltree::NodeId;
 
 use crate::{
     svg::{
-        drawing::{Drawing, HostDocument, Page, Placed},
+        drawing::{Anchor, Anchored, Drawing, HostDocument, Page, Placed},
         namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
-        options::{Method, ReadOptions},
+        options::{LargeFills, Method, ReadOptions},
         parse::{definitions::Definitions, geometry::LARGEST, guard, source::Source},
         read::{
             document::{Document, Opened},
@@ -24,7 +24,12 @@ use crate::{
         },
         shape::{extent::bounds, idle::without_idle_clips, painted_area::Painter},
         understand::{
-            fragment::fragment, frame::is_frame_mark, item::Item, outlined_lines::trace, select::select,
+            fragment::fragment,
+            frame::is_frame_mark,
+            item::{Item, Selection},
+            outlined_lines::{take_areas, take_backgrounds, trace},
+            parts::bands::follow_bands,
+            select::select,
             surroundings::Surroundings,
         },
     },
@@ -73,7 +78,7 @@ impl Document<'_> {
         let mut found = select(&painter, page.view, self.options.method, &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         if self.options.method != Method::Elements {
-            trace(source, &mut found.items, &page.view)?;
+            self.take_lines(source, &painter, &mut found, &page.view)?;
         }
         let sorter = Sorter {
             painter: &painter,
@@ -84,13 +89,42 @@ impl Document<'_> {
         let mut definitions = Definitions::new(source, "kept");
         let kept = sorter.sort(&found.items, &mut definitions)?;
         let affected = affected(source, &found.items, &kept)?;
-        let (moved, definitions) = rewritten(source, &sorter, &found.items, &affected)?;
+        let (left, definitions) = rewritten(source, &sorter, &found.items, &affected)?;
         let replaced = kept.iter().filter(|k| is_changed(k)).count();
         let mut placed = Placed::on(page);
-        kept.into_iter().for_each(|kept| placed.freeze(kept));
+        let mut anchors = Vec::new();
+        for (item, kept) in found.items.iter().zip(kept) {
+            let what = match &kept {
+                Sorted::Element(_) => Some(Anchored::Element(placed.placements.len())),
+                Sorted::Strokes { paint, .. } => paint.map(|(style, paint)| Anchored::Strokes(style, paint)),
+                Sorted::Removed | Sorted::Obstacle { .. } => None,
+            };
+            let node = item.parts.last().map(|(_, node)| node.meta.xml.get()).filter(|id| is_in_the_open(source, *id));
+            anchors.extend(node.zip(what));
+            placed.freeze(kept);
+        }
         placed.warnings = source.notes.warnings(source.name);
-        let (head, tail) = around(source, &affected);
-        Ok(HostDocument { placed, content, replaced, head, tail, moved, definitions })
+        let Around { head, tail, copied } = around(source, &affected, &left.in_place);
+        let anchors =
+            anchors.into_iter().filter_map(|(id, what)| Some(Anchor { range: copied.find(source, id)?, what }));
+        let anchors = anchors.collect();
+        Ok(HostDocument { placed, content, replaced, head, anchors, tail, moved: left.moved, definitions })
+    }
+
+    /// Takes fills for the lines or areas that the example has of them.
+    fn take_lines(
+        &self,
+        source: &Source<'_>,
+        painter: &Painter<'_, '_>,
+        found: &mut Selection,
+        page: &Bounds<2>,
+    ) -> Result<()> {
+        follow_bands(source, &mut found.items, page)?;
+        if self.options.large_fills == LargeFills::Areas {
+            take_areas(&mut found.items, page);
+            take_backgrounds(&mut found.items, &mut found.background, painter)?;
+        }
+        trace(source, &mut found.items, page)
     }
 }
 
@@ -153,34 +187,90 @@ fn affected(source: &Source<'_>, items: &[Item], kept: &[Sorted]) -> Result<BTre
     Ok(affected)
 }
 
-/// Markup of what is left of affected items, with the definitions that it refers to.
+/// Markup of what is left of items of which something goes.
+#[derive(Default)]
+struct Left {
+    /// By the node whose place in the file it takes.
+    in_place: BTreeMap<u32, String>,
+    /// What cannot stay where it was, in root coordinates.
+    moved: String,
+}
+
+/// What is left of affected items, with the definitions that it refers to.
 fn rewritten<'a, 's>(
     source: &'s Source<'a>,
     sorter: &Sorter<'a, 's, '_, '_>,
     items: &[Item],
     affected: &BTreeSet<u32>,
-) -> Result<(String, String)> {
+) -> Result<(Left, String)> {
     let mut definitions = Definitions::new(source, "kept");
-    let mut moved = String::new();
+    let mut left = Left::default();
     for item in items.iter().filter(|item| item.parts.iter().any(|(_, node)| affected.contains(&node.meta.xml.get()))) {
         let Some(cut) = sorter.rest(item, &mut definitions)? else { continue };
-        moved.push_str(&cut.unwrap_or_else(|| fragment(item, &mut definitions).markup));
-        moved.push('\n');
+        let markup = cut.unwrap_or_else(|| fragment(item, &mut definitions).markup);
+        let place = item.parts.last().map(|(_, node)| node.meta.xml.get()).filter(|id| is_in_the_open(source, *id));
+        let into = place.map_or(&mut left.moved, |id| left.in_place.entry(id).or_default());
+        into.push_str(&markup);
+        into.push('\n');
     }
-    Ok((moved, definitions.finish()?))
+    Ok((left, definitions.finish()?))
 }
 
-/// The file without the affected nodes and without its recipe, as it is before and after the end of the root.
-fn around(source: &Source<'_>, affected: &BTreeSet<u32>) -> (String, String) {
+/// Whether what is drawn in the place of a node looks the same as at the end of the file: no container around it moves
+/// it, cuts it or changes its looks.
+fn is_in_the_open(source: &Source<'_>, id: u32) -> bool {
+    let Some(node) = source.xml.get_node(NodeId::new(id)) else { return false };
+    let is_plain = |a: roxmltree::Node<'_, '_>| {
+        let changes = |name: &str| {
+            matches!(name, "transform" | "style" | "class" | "opacity" | "clip-path" | "mask" | "filter")
+                || name.starts_with("marker")
+        };
+        matches!(a.tag_name().name(), "g" | "a") && !a.attributes().any(|attribute| changes(attribute.name()))
+    };
+    let root = source.xml.root_element();
+    node.ancestors().skip(1).take_while(|a| *a != root).all(|a| is_plain(a))
+}
+
+/// A file as it is before and after the end of its root.
+struct Around {
+    head: String,
+    tail: String,
+    copied: Copied,
+}
+
+/// What of a text was copied or replaced where.
+#[derive(Default)]
+struct Copied {
+    /// Where stretches of the text begin in it, and in the copy.
+    stretches: Vec<(usize, usize)>,
+    /// What stands in the place of a node.
+    replaced: BTreeMap<u32, Range<usize>>,
+}
+
+impl Copied {
+    /// The part of the copy that draws a node.
+    fn find(&self, source: &Source<'_>, id: u32) -> Option<Range<usize>> {
+        if let Some(range) = self.replaced.get(&id) {
+            return Some(range.clone());
+        }
+        let range = source.xml.get_node(NodeId::new(id))?.range();
+        let after = self.stretches.partition_point(|(from, _)| *from <= range.start);
+        let (from, to) = self.stretches.get(after.checked_sub(1)?)?;
+        Some(range.start - from + to..range.end - from + to)
+    }
+}
+
+/// The file without its recipe, what is left of the affected nodes in their places.
+fn around(source: &Source<'_>, affected: &BTreeSet<u32>, left: &BTreeMap<u32, String>) -> Around {
     let text = source.text;
-    let mut gaps: Vec<Range<usize>> =
-        affected.iter().filter_map(|id| source.xml.get_node(NodeId::new(*id))).map(|n| n.range()).collect();
+    let node = |id: &u32| Some((source.xml.get_node(NodeId::new(*id))?.range(), Some(*id)));
+    let mut gaps: Vec<(Range<usize>, Option<u32>)> = affected.iter().filter_map(node).collect();
     for recipe in source.xml.descendants().filter(|n| n.has_tag_name((NAMESPACE, "recipe"))) {
         let alone = recipe.parent().filter(|p| p.tag_name().name() == "metadata");
         let alone = alone.filter(|p| p.children().filter(roxmltree::Node::is_element).count() == 1);
-        gaps.push(alone.unwrap_or(recipe).range());
+        gaps.push((alone.unwrap_or(recipe).range(), None));
     }
-    gaps.sort_by_key(|r| (r.start, std::cmp::Reverse(r.end)));
+    gaps.sort_by_key(|(r, _)| (r.start, std::cmp::Reverse(r.end)));
     let root = source.xml.root_element().range();
     let end = text.get(..root.end).and_then(|t| t.rfind("</")).unwrap_or(root.end);
     let tag = text.get(root.start..).and_then(|t| t.find(|c: char| c.is_whitespace() || c == '>')).unwrap_or(0);
@@ -188,12 +278,19 @@ fn around(source: &Source<'_>, affected: &BTreeSet<u32>) -> (String, String) {
     head.push_str(text.get(from..root.start + tag).unwrap_or_default());
     head.push_str(&namespaces(source));
     from = from.max(root.start + tag);
-    for gap in gaps {
+    let mut copied = Copied::default();
+    for (gap, id) in gaps {
+        copied.stretches.push((from, head.len()));
         head.push_str(text.get(from..gap.start).unwrap_or_default());
+        if let Some((id, left)) = id.and_then(|id| Some((id, left.get(&id)?))) {
+            copied.replaced.insert(id, head.len()..head.len() + left.len());
+            head.push_str(left);
+        }
         from = from.max(gap.end);
     }
+    copied.stretches.push((from, head.len()));
     head.push_str(text.get(from..end).unwrap_or_default());
-    (head, text.get(end..).unwrap_or_default().to_owned())
+    Around { head, tail: text.get(end..).unwrap_or_default().to_owned(), copied }
 }
 
 /// Where the file begins after an XML declaration that names another encoding than the one it will be written in.

@@ -16,6 +16,7 @@ use crate::svg::{
         curves::{Curves, Gatherer},
         item::{Item, Kind},
     },
+    write::text::outline_data,
 };
 
 /// Work for each corner of an area that a stroke may cross.
@@ -79,6 +80,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         let mut sorted = Vec::with_capacity(items.len());
         for (item, remains) in items.iter().zip(remains) {
             sorted.push(match remains {
+                None if item.kind == Kind::Area => self.area(item, definitions)?,
                 None => self.element(item)?,
                 Some(Remains { parts, .. }) if parts.is_empty() => Sorted::Removed,
                 Some(Remains { parts, cut, is_touched }) => {
@@ -99,6 +101,12 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
 
     /// Markup of what is left of an item; `None` where nothing is, and inside of it where it is whole.
     pub(crate) fn rest(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Option<Option<String>>> {
+        if item.kind == Kind::Area {
+            return Ok(match self.area(item, definitions)? {
+                Sorted::Strokes { cut, .. } => Some(cut),
+                _ => None,
+            });
+        }
         if self.is_strokes(item)? {
             let remains = self.remains(item, definitions)?;
             return Ok((!remains.parts.is_empty()).then_some(remains.cut));
@@ -106,7 +114,40 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
         Ok((!self.is_refilled(item)).then_some(None))
     }
 
+    /// What becomes of an area: its part outside of what is refilled stays.
+    fn area(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
+        let budget = self.painter.source.budget;
+        let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
+        gatherer.add(item)?;
+        let Curves { areas, fills, .. } = gatherer.finish()?;
+        let (mut markup, mut is_touched) = (String::new(), false);
+        let decimals = Decimals::for_extent(self.window.size()[0].max(self.window.size()[1])).plus(1);
+        for (area, fill) in areas.iter().zip(&fills) {
+            let rest = match self.area {
+                Some(refilled) if area.outline.bounds().intersects(&refilled.bounds()) => {
+                    is_touched |= area.outline.try_intersection(refilled, budget)?.area() > 0.0;
+                    area.outline.try_difference(refilled, budget)?
+                }
+                _ => area.outline.clone(),
+            };
+            if !rest.rings.is_empty() {
+                let data = outline_data(&rest, decimals);
+                markup.push_str(&format!("<path d=\"{data}\" fill-rule=\"evenodd\"{}{}/>", fill.paint, fill.effects));
+            }
+        }
+        if markup.is_empty() {
+            return Ok(Sorted::Removed);
+        }
+        let own = self.matcher.drawing.fills.iter().zip(&self.matcher.drawing.exemplar.areas);
+        let key = fills.first().map(Stroke::key);
+        let paint = own.into_iter().find(|(fill, _)| Some(fill.key()) == key).map(|(_, area)| (area.style, 0));
+        Ok(Sorted::Strokes { drawn: Vec::new(), paint, cut: is_touched.then_some(markup), is_touched })
+    }
+
     fn is_strokes(&self, item: &Item) -> Result<bool> {
+        if item.kind == Kind::Area {
+            return Ok(false);
+        }
         if self.matcher.drawing.exemplar.curves.is_empty() {
             return Ok(false);
         }

@@ -11,6 +11,7 @@ use crate::{
             areas::areas,
             curves::{StrokeLayer, by_style, curves},
             flat::{Flattener, Warp},
+            hosted::between::Between,
             sheet::Style,
             text::{matrix, rectangle},
             writer::Writer,
@@ -62,7 +63,8 @@ struct Copy {
 }
 
 impl<'a> Writer<'a> {
-    /// What was made, layer by layer, and what is kept of strokes in the layers where it belongs.
+    /// What was made, layer by layer, and what is kept of strokes in the layers where it belongs. In a file of which a
+    /// part was refilled, what belongs under something that stays goes there.
     pub(crate) fn output(&mut self) -> Result<()> {
         let sheet = self.sheet;
         let layers = &sheet.drawing.layers;
@@ -72,6 +74,7 @@ impl<'a> Writer<'a> {
         let by_style = by_style(sheet);
         let elements = self.by_layer()?;
         let mut kept = self.kept_by_layer();
+        let between = Between::new(sheet)?;
         let (mut clipped, mut group) = (0, Group::default());
         if kept.is_none() && !elements_first(layers) {
             self.kept_strokes();
@@ -83,6 +86,8 @@ impl<'a> Writer<'a> {
                         self.close(&mut group);
                         self.kept_group(&strokes, &group.next_kept());
                     }
+                    let place = between.of_strokes(style, paint);
+                    self.go_to(place, &mut group);
                     if paint == 0 && sheet.areas.iter().any(|a| sheet.drawing.exemplar.areas[a.source].style == style) {
                         self.open(&mut group);
                         let shifts = |bounds: &Bounds<2>| self.shifts(bounds);
@@ -96,12 +101,14 @@ impl<'a> Writer<'a> {
                 }
                 Layer::Elements(_) => {
                     for element in &elements[k] {
+                        self.go_to(between.of_element(element.index), &mut group);
                         self.open(&mut group);
                         clipped += self.element(&flattener, element)?;
                     }
                 }
             }
         }
+        self.go_to(None, &mut group);
         if group.opened == 0 {
             self.open(&mut group);
         }
@@ -119,6 +126,20 @@ impl<'a> Writer<'a> {
             ));
         }
         Ok(())
+    }
+
+    /// Goes on writing at a place in the head of the file in which a part was refilled, or at its end.
+    fn go_to(&mut self, place: Option<usize>, group: &mut Group) {
+        if place == self.place {
+            return;
+        }
+        self.close(group);
+        let written = self.out.split_off(self.written_from);
+        match self.place {
+            Some(place) => self.inserted.push((place, written)),
+            None => self.at_end.push_str(&written),
+        }
+        self.place = place;
     }
 
     /// Begins the layer of what was made, unless it is open.

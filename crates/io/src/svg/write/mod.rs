@@ -7,6 +7,7 @@ pub(crate) mod cut;
 pub(crate) mod document;
 pub(crate) mod elements;
 pub(crate) mod flat;
+pub(crate) mod hosted;
 pub(crate) mod kept;
 pub(crate) mod pieces;
 pub(crate) mod result;

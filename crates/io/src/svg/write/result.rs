@@ -61,7 +61,6 @@ impl Writer<'_> {
 
     /// The new at the end of the file that it belongs to.
     fn hosted(&mut self, host: &HostDocument) -> Result<()> {
-        self.out.push_str(&host.head);
         self.metadata();
         self.definitions();
         if !host.moved.is_empty() {
@@ -71,8 +70,23 @@ impl Writer<'_> {
                 self.prefix, host.moved
             );
         }
+        self.written_from = self.out.len();
         self.output()?;
-        self.out.push_str(&host.tail);
+        self.at_end.push_str(&self.out.split_off(self.written_from));
+        // What comes before, in the order of the places; for one place in the order in which it was written.
+        let mut inserted = std::mem::take(&mut self.inserted);
+        inserted.sort_by_key(|(place, _)| *place);
+        let (mut text, mut from) = (String::new(), 0);
+        for (place, new) in inserted {
+            text.push_str(host.head.get(from..place).unwrap_or_default());
+            text.push_str(&new);
+            from = place;
+        }
+        text.push_str(host.head.get(from..).unwrap_or_default());
+        text.push_str(&self.out);
+        text.push_str(&self.at_end);
+        text.push_str(&host.tail);
+        self.out = text;
         Ok(())
     }
 

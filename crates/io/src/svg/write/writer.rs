@@ -16,6 +16,13 @@ pub(crate) struct Writer<'a> {
     pub(crate) decimals: Decimals,
     pub(crate) prefix: String,
     pub(crate) out: String,
+    /// The place in the head of a refilled file for which is written now; none for its end.
+    pub(crate) place: Option<usize>,
+    /// Where in the text what is written for that begins.
+    pub(crate) written_from: usize,
+    /// What was written for places in the head, and for its end.
+    pub(crate) inserted: Vec<(usize, String)>,
+    pub(crate) at_end: String,
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -24,7 +31,17 @@ impl<'a> Writer<'a> {
     pub(crate) fn new(sheet: &'a Sheet<'a>) -> Self {
         let extent = sheet.page.view.size();
         let decimals = Decimals::for_extent(extent[0].max(extent[1]));
-        Self { sheet, decimals, prefix: free_prefix(sheet), out: String::new(), warnings: Vec::new() }
+        Self {
+            sheet,
+            decimals,
+            prefix: free_prefix(sheet),
+            out: String::new(),
+            place: None,
+            written_from: 0,
+            inserted: Vec::new(),
+            at_end: String::new(),
+            warnings: Vec::new(),
+        }
     }
 
     /// The recipe, where there is one.

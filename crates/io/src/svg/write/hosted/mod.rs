@@ -1,0 +1,3 @@
+//! The file of which a part was refilled, with the new in it.
+
+pub(crate) mod between;

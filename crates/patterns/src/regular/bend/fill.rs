@@ -3,9 +3,9 @@
 use arabesque_core::{Border, Domain, Exemplar, Forecast, Outcome, Request, Result, Snapshot, Vector, Warning, Watch};
 
 use crate::{
-    border::obstacles,
     ending,
     exemplar::checks,
+    obstacles::obstacles,
     regular::{
         bend::{
             areas,

@@ -139,7 +139,7 @@ impl Regular {
             return Ok(Filled::Unfit(Vec::new()));
         }
         let placed = elements.place(&grid, request, obstacles.as_ref(), watch)?;
-        let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), Vec::new(), Vec::new());
+        let (mut cut_short, mut curves, mut areas) = (placed.ended.err(), kept_strokes(request), Vec::new());
         if let (Some(cell), None) = (&self.cell, &cut_short) {
             cut_short = self
                 .strokes(
@@ -262,6 +262,12 @@ impl Regular {
             None => "no tile along the axes suits it: make the tile larger, so that less stretching does".into(),
         }
     }
+}
+
+/// The strokes that the user drew, as they are.
+fn kept_strokes(request: &Request<2>) -> Vec<Drawn<2>> {
+    let one = |(n, drawn): (usize, &Drawn<2>)| Drawn { frozen: Some(n), ..drawn.clone() };
+    request.frozen_curves.iter().enumerate().map(one).collect()
 }
 
 /// A length with as many digits as tell it from a wrong one.

@@ -61,6 +61,8 @@ pub(crate) struct Kept {
     /// Their ends, the styles of these, and the directions into the strokes.
     ends: Vec<(Vector<2>, usize, Vector<2>)>,
     unit: f64,
+    /// Whether they lie around a region alone.
+    are_around: bool,
 }
 
 impl Kept {
@@ -86,7 +88,8 @@ impl Kept {
                 ends.extend(both.filter(|(p, _)| near.contains(*p)).map(|(p, way)| (p, style, way)));
             }
         }
-        Ok(Some(Self { places: Places::new(&places, ON * unit), ends, unit }))
+        let are_around = request.known.is_some();
+        Ok(Some(Self { places: Places::new(&places, ON * unit), ends, unit, are_around }))
     }
 
     /// Whether the strokes that stay in the domain lie where the lattice has some of their style.
@@ -144,11 +147,27 @@ impl Kept {
         self.joined_at_start(one, (style, width)).reversed()
     }
 
+    /// The way to the nearest place on strokes of a style that stay, where one is as near as those that new ones end at.
+    fn nearest(&self, p: Vector<2>, style: usize) -> Option<Vector<2>> {
+        let mut best: Option<Vector<2>> = None;
+        self.places.index.within(p, 1.5 * ON * self.unit, |k, offset| {
+            if self.places.marks[k].0 == style && best.is_none_or(|b| offset.norm2() < b.norm2()) {
+                best = Some(offset);
+            }
+        });
+        best
+    }
+
     fn joined_at_start(&self, mut path: Path<2>, (style, width): (usize, f64)) -> Path<2> {
         let Some((start, way)) = tip(&path) else { return path };
         let near = self.ends.iter().filter(|(_, other, _)| *other == style).map(|(p, _, into)| (*p - start, *into));
         let nearest = near.min_by(|a, b| a.0.norm2().total_cmp(&b.0.norm2()));
-        let Some((by, into)) = nearest.filter(|(by, _)| by.norm() <= JOIN.0 * self.unit) else { return path };
+        let Some((by, into)) = nearest.filter(|(by, _)| by.norm() <= JOIN.0 * self.unit) else {
+            if let Some(by) = self.nearest(start, style).filter(|_| !self.are_around) {
+                lead(&mut path, by, JOIN.1 * self.unit);
+            }
+            return path;
+        };
         if by.norm() > 0.0 {
             lead(&mut path, by, JOIN.1 * self.unit);
         }

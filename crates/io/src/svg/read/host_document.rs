@@ -3,8 +3,6 @@
 use std::{
     borrow::Cow,
     collections::{BTreeMap, BTreeSet},
-    fmt::Write as _,
-    ops::Range,
 };
 
 use arabesque_core::{Bounds, Error, Outline, Result};
@@ -14,11 +12,11 @@ use roxmltree::NodeId;
 use crate::{
     svg::{
         drawing::{Anchor, Anchored, Drawing, HostDocument, Page, Placed},
-        namespace::{INKSCAPE, NAMESPACE, SVG, XLINK},
         options::{LargeFills, Method, ReadOptions},
         parse::{definitions::Definitions, geometry::LARGEST, guard, source::Source},
         read::{
             document::{Document, Opened},
+            host_text::{Around, around},
             matcher::Matcher,
             sorter::{Sorted, Sorter},
         },
@@ -231,94 +229,6 @@ fn is_in_the_open(source: &Source<'_>, id: u32) -> bool {
     node.ancestors().skip(1).take_while(|a| *a != root).all(|a| is_plain(a))
 }
 
-/// A file as it is before and after the end of its root.
-struct Around {
-    head: String,
-    tail: String,
-    copied: Copied,
-}
-
-/// What of a text was copied or replaced where.
-#[derive(Default)]
-struct Copied {
-    /// Where stretches of the text begin in it, and in the copy.
-    stretches: Vec<(usize, usize)>,
-    /// What stands in the place of a node.
-    replaced: BTreeMap<u32, Range<usize>>,
-}
-
-impl Copied {
-    /// The part of the copy that draws a node.
-    fn find(&self, source: &Source<'_>, id: u32) -> Option<Range<usize>> {
-        if let Some(range) = self.replaced.get(&id) {
-            return Some(range.clone());
-        }
-        let range = source.xml.get_node(NodeId::new(id))?.range();
-        let after = self.stretches.partition_point(|(from, _)| *from <= range.start);
-        let (from, to) = self.stretches.get(after.checked_sub(1)?)?;
-        Some(range.start - from + to..range.end - from + to)
-    }
-}
-
-/// The file without its recipe, what is left of the affected nodes in their places.
-fn around(source: &Source<'_>, affected: &BTreeSet<u32>, left: &BTreeMap<u32, String>) -> Around {
-    let text = source.text;
-    let node = |id: &u32| Some((source.xml.get_node(NodeId::new(*id))?.range(), Some(*id)));
-    let mut gaps: Vec<(Range<usize>, Option<u32>)> = affected.iter().filter_map(node).collect();
-    for recipe in source.xml.descendants().filter(|n| n.has_tag_name((NAMESPACE, "recipe"))) {
-        let alone = recipe.parent().filter(|p| p.tag_name().name() == "metadata");
-        let alone = alone.filter(|p| p.children().filter(roxmltree::Node::is_element).count() == 1);
-        gaps.push((alone.unwrap_or(recipe).range(), None));
-    }
-    gaps.sort_by_key(|(r, _)| (r.start, std::cmp::Reverse(r.end)));
-    let root = source.xml.root_element().range();
-    let end = text.get(..root.end).and_then(|t| t.rfind("</")).unwrap_or(root.end);
-    let tag = text.get(root.start..).and_then(|t| t.find(|c: char| c.is_whitespace() || c == '>')).unwrap_or(0);
-    let (mut head, mut from) = (declaration(text), prolog(text));
-    head.push_str(text.get(from..root.start + tag).unwrap_or_default());
-    head.push_str(&namespaces(source));
-    from = from.max(root.start + tag);
-    let mut copied = Copied::default();
-    for (gap, id) in gaps {
-        copied.stretches.push((from, head.len()));
-        head.push_str(text.get(from..gap.start).unwrap_or_default());
-        if let Some((id, left)) = id.and_then(|id| Some((id, left.get(&id)?))) {
-            copied.replaced.insert(id, head.len()..head.len() + left.len());
-            head.push_str(left);
-        }
-        from = from.max(gap.end);
-    }
-    copied.stretches.push((from, head.len()));
-    head.push_str(text.get(from..end).unwrap_or_default());
-    Around { head, tail: text.get(end..).unwrap_or_default().to_owned(), copied }
-}
-
-/// Where the file begins after an XML declaration that names another encoding than the one it will be written in.
-fn prolog(text: &str) -> usize {
-    let end = text.strip_prefix("<?xml").and_then(|t| t.find("?>")).map_or(0, |k| k + "<?xml?>".len());
-    let names_other =
-        text.get(..end).is_some_and(|d| d.contains("encoding") && !d.to_ascii_lowercase().contains("utf-8"));
-    if names_other { end } else { 0 }
-}
-
-fn declaration(text: &str) -> String {
-    if prolog(text) > 0 { "<?xml version=\"1.0\" encoding=\"UTF-8\"?>".to_owned() } else { String::new() }
-}
-
-/// Declarations of the namespaces that new things need and the root lacks.
-fn namespaces(source: &Source<'_>) -> String {
-    let needed = [(None, SVG), (Some("xlink"), XLINK), (Some("inkscape"), INKSCAPE), (Some("arabesque"), NAMESPACE)];
-    let root = source.xml.root_element();
-    let mut out = String::new();
-    for (prefix, uri) in needed {
-        if root.namespaces().all(|n| n.name() != prefix) {
-            let name = prefix.map_or_else(|| "xmlns".to_owned(), |p| format!("xmlns:{p}"));
-            let _ = write!(out, " {name}=\"{uri}\"");
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -348,12 +258,40 @@ mod tests {
     #[test]
     fn strokes_are_cut_at_the_border_and_their_outside_stays() {
         let rest = rest("<path d='M0 50H100M0 5H100' stroke='red' stroke-width='3' fill='none'/>").unwrap();
-        assert!(!rest.head.contains("<path"));
         let x = |p: Option<Vector<2>>| p.unwrap()[0].round();
         let ends: Vec<_> = rest.placed.curves.iter().map(|c| (x(c.path.start()), x(c.path.end()))).collect();
         assert_eq!(ends, [(0.0, 40.0), (60.0, 100.0), (0.0, 100.0)]);
-        assert_eq!(rest.moved.matches("<path").count(), 3);
-        assert!(rest.moved.contains("M60 50L100 50") && rest.moved.contains("stroke-width=\"3\""), "{}", rest.moved);
+        // Where they were, at the place of the path that they are left of.
+        assert!(rest.moved.is_empty() && !rest.head.contains("M0 50H100"));
+        assert_eq!(rest.head.matches("<path").count(), 3);
+        assert!(rest.head.contains("M60 50L100 50") && rest.head.contains("stroke-width=\"3\""), "{}", rest.head);
+    }
+
+    #[test]
+    fn what_a_group_would_move_goes_to_the_end() {
+        let line = "<path d='M0 40H100' stroke='red' stroke-width='3' fill='none'/>";
+        let rest = rest(&format!("<g transform='translate(0 10)'>{line}</g>{}", line.replace("40", "5"))).unwrap();
+        assert_eq!((rest.head.matches("<path").count(), rest.moved.matches("<path").count()), (1, 2));
+        // What stays can have something drawn before or after it, unless a group moves it.
+        let texts: Vec<&str> = rest.anchors.iter().map(|a| &rest.head[a.range.clone()]).collect();
+        assert!(texts.len() == 1 && texts[0].starts_with("<path d='M0 5H100'"), "{texts:?}");
+    }
+
+    #[test]
+    fn areas_are_cut_at_the_border_and_stay_in_their_place() {
+        let wave = |y: i32| {
+            format!("<path d='M-5 {y}L50 {}L105 {y}V{}L50 {}L-5 {}Z' fill='#27a'/>", y + 4, y + 6, y + 13, y + 6)
+        };
+        let body: String = (0..8).map(|k| wave(12 * k)).collect();
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>");
+        let options = ReadOptions { large_fills: LargeFills::Areas, ..ReadOptions::new("r.svg") };
+        let drawing = read_exemplar(&text, &options).unwrap();
+        let corners = [(40.0, 40.0), (60.0, 40.0), (60.0, 60.0), (40.0, 60.0)].map(|(x, y)| Vector::xy(x, y));
+        let area = Outline { rings: vec![corners.to_vec()] };
+        let rest = read_host_document(&text, &drawing, &area, &options).unwrap();
+        assert_eq!(drawing.exemplar.areas.len(), 8);
+        assert!(rest.placed.obstacles.is_empty() && rest.moved.is_empty());
+        assert!(rest.replaced >= 2 && rest.head.matches("fill-rule=\"evenodd\"").count() == rest.replaced);
     }
 
     #[test]
@@ -370,7 +308,7 @@ mod tests {
     fn pieces_of_one_path_are_parted() {
         let squares = "M45 45h9v9h-9zM5 5h9v9h-9zM75 5h9v9h-9z";
         let rest = rest(&format!("<path d='{squares}'/>")).unwrap();
-        assert_eq!(rest.moved.matches("<path").count(), 2);
+        assert_eq!(rest.head.matches("<path").count(), 2);
         assert_eq!(rest.placed.placements.len(), 2);
     }
 
@@ -381,7 +319,7 @@ mod tests {
             .unwrap();
         // The piece beside the page is all that is not a line.
         assert!(rest.placed.obstacles.len() == 1 && rest.placed.curves.len() > 6);
-        assert!(rest.moved.contains("stroke=\"#ff0000\""), "{}", rest.moved);
+        assert!(rest.head.contains("stroke=\"#ff0000\""), "{}", rest.head);
         let area = Bounds::new(Vector::xy(40.0, 40.0), Vector::xy(60.0, 60.0)).grown(-1e-6);
         let points = rest.placed.curves.iter().flat_map(|c| c.path.flatten(0.1));
         assert!(points.into_iter().all(|p| !area.contains(p)));

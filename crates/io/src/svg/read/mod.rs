@@ -8,6 +8,7 @@ pub(crate) mod exemplar;
 pub(crate) mod flow;
 pub(crate) mod guides;
 pub(crate) mod host_document;
+pub(crate) mod host_text;
 pub(crate) mod matcher;
 pub(crate) mod painted_areas;
 pub(crate) mod placed;

@@ -174,16 +174,22 @@ impl Chart {
 
     /// Where something at a place of the exemplar comes to lie; `None` outside of the chart.
     pub(crate) fn find(&self, image: Vector<2>) -> Option<Spot> {
-        self.look(image, false)
+        self.look(image, SLACK)
     }
 
     /// The same on the border of the chart, and a little beyond it.
     pub(crate) fn find_near(&self, image: Vector<2>) -> Option<Spot> {
-        self.look(image, true)
+        self.look(image, 1.0)
     }
 
-    fn look(&self, image: Vector<2>, beyond: bool) -> Option<Spot> {
-        let (small, large) = self.reach;
+    /// The same up to a distance beyond the border, in the exemplar.
+    pub(crate) fn find_beyond(&self, image: Vector<2>, distance: f64) -> Option<Spot> {
+        self.look(image, (distance / self.reach.0).min(WALK as f64))
+    }
+
+    /// `beyond`: how far beyond the border it may be, in cells of the raster.
+    fn look(&self, image: Vector<2>, beyond: f64) -> Option<Spot> {
+        let (small, large) = (self.reach.0, self.reach.1 * (1.0 + beyond));
         let mut reach = small;
         let mut number = loop {
             if let Some((nearest, _)) = self.index.nearest(image, reach, None) {
@@ -202,7 +208,7 @@ impl Chart {
             let beside = self.raster.beside(cell, way).and_then(|next| self.number[next]);
             match beside.filter(|_| over[way] > SLACK) {
                 Some(next) => number = next as usize,
-                None if over[way] > if beyond { 1.0 } else { SLACK } => return None,
+                None if over[way] > beyond => return None,
                 None => {
                     let inward = self.inward(corners, at);
                     let place = self.raster.node(self.raster.corners(cell)[0]) + at * self.raster.step;

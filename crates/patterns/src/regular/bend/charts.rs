@@ -19,7 +19,7 @@ const STRETCH: f64 = 0.25;
 const GROWTH: f64 = 0.42;
 
 /// Charts whose growth differs by more than this many times that are not one.
-const HOPELESS: f64 = 1.5;
+const HOPELESS: f64 = 2.6;
 
 /// Most charts.
 const MOST: usize = 200;

@@ -30,6 +30,10 @@ pub(crate) const BAND: f64 = 0.05;
 /// Elements of two charts are not nearer to each other than this share of what such elements are in the exemplar.
 const APART: f64 = 0.6;
 
+/// The same of elements beside the chart that they belong to, which fill the gaps between charts; these lie no farther
+/// beyond its border than that share of the shorter vector.
+const BESIDE: (f64, f64) = (0.85, 0.6);
+
 /// Places of one cell of which every two are compared, at most.
 const COMPARED: usize = 64;
 
@@ -49,6 +53,8 @@ pub(crate) struct Bending<'a> {
 
 /// Elements that lie already, with the orbits that they are of.
 struct Laid {
+    /// How near to them others may lie, as a share of how near they lie in the exemplar.
+    share: f64,
     orbits: Vec<usize>,
     index: GridIndex<2>,
 }
@@ -60,7 +66,7 @@ impl Bending<'_> {
     /// When there are more than may be asked about.
     pub(crate) fn nodes(&self, chart: &Chart, origin: Vector<2>) -> Result<Vec<Node>> {
         let budget = &self.request.budget;
-        let extent = chart.extent().grown(0.1 * self.lattice.shorter());
+        let extent = chart.extent().grown(BESIDE.1 * self.lattice.shorter());
         let [rows, columns] = self.lattice.nodes_in(origin, &extent);
         let count = (rows.end() - rows.start() + 3) as f64 * (columns.end() - columns.start() + 3) as f64;
         budget.within("cells of the repeat", count as usize, ("output-elements", budget.limits().output_elements))?;
@@ -80,10 +86,15 @@ impl Bending<'_> {
         let admission = Admission::new(self.request, self.obstacles, Vec::<Outline<2>>::new());
         let apart = self.apart(elements);
         let (mut placements, mut laid) = (Vec::new(), Vec::new());
-        let count = self.charts.all.len();
-        for (k, chart) in self.charts.all.iter().enumerate() {
-            let before = Laid::new(&laid, &self.request.domain.bounds());
-            let done = self.chart(elements, (k, chart), &admission, &|spot, o, p| before.admits(&apart, spot, o, p));
+        let charts = &self.charts.all;
+        // Once for what lies in the charts, and once for the gaps that are left between several.
+        let count = if charts.len() > 1 && !apart.is_empty() { 2 * charts.len() } else { charts.len() };
+        for k in 0..count {
+            let fills_gaps = k >= charts.len();
+            let share = if fills_gaps { BESIDE.0 } else { APART };
+            let before = Laid::new(&laid, &self.request.domain.bounds(), share);
+            let has_room = |spot: &Spot, o: usize, p: Vector<2>| before.admits(&apart, spot, o, p);
+            let done = self.chart(elements, (k % charts.len(), fills_gaps), &admission, &has_room);
             let ended = done.map(|(placed, of)| {
                 placements.extend(placed);
                 laid.extend(of);
@@ -109,18 +120,23 @@ impl Bending<'_> {
     fn chart(
         &self,
         elements: &Elements<'_>,
-        (number, chart): (usize, &Chart),
+        (number, fills_gaps): (usize, bool),
         admission: &Admission<'_>,
         has_room: &dyn Fn(&Spot, usize, Vector<2>) -> bool,
     ) -> Result<(Vec<Placement<2>>, Vec<(Vector<2>, usize)>)> {
         let budget = self.request.budget.stage("laying out");
-        let orbits = elements.orbits;
+        let (orbits, chart) = (elements.orbits, &self.charts.all[number]);
+        let find = |image: Vector<2>| match chart.find(image) {
+            Some(_) if fills_gaps => None,
+            None if fills_gaps => chart.find_beyond(image, BESIDE.1 * self.lattice.shorter()),
+            found => found,
+        };
         let (mut nodes, mut spots, mut held) = (Vec::new(), Vec::new(), Vec::new());
         let each = size_of::<Vec<u32>>() + orbits.len() * (size_of::<u32>() + size_of::<Option<Spot>>());
         for node in self.nodes(chart, Vector::ZERO)? {
             budget.spend(FIND * orbits.len() as u64)?;
             let at = self.lattice.at(node);
-            let of: Vec<Option<Spot>> = orbits.iter().map(|orbit| chart.find(orbit.base + at)).collect();
+            let of: Vec<Option<Spot>> = orbits.iter().map(|orbit| find(orbit.base + at)).collect();
             if of.iter().any(Option::is_some) {
                 if nodes.len().is_multiple_of(HOLD) {
                     held.push(budget.hold("cells of the repeat", HOLD * each)?);
@@ -178,11 +194,12 @@ impl Bending<'_> {
 }
 
 impl Laid {
-    fn new(laid: &[(Vector<2>, usize)], bounds: &Bounds<2>) -> Self {
+    fn new(laid: &[(Vector<2>, usize)], bounds: &Bounds<2>, share: f64) -> Self {
         let places: Vec<_> = laid.iter().map(|(p, _)| *p).collect();
         let cell = 2.0 * (bounds.measure() / (places.len() as f64 + 1.0)).sqrt();
         let around = Bounds::around(places.iter().copied().chain([bounds.min, bounds.max])).grown(cell);
         Self {
+            share,
             orbits: laid.iter().map(|(_, o)| *o).collect(),
             index: GridIndex::new(&places, cell, &Domain::Box(around)),
         }
@@ -192,10 +209,10 @@ impl Laid {
     fn admits(&self, apart: &[Vec<f64>], spot: &Spot, orbit: usize, p: Vector<2>) -> bool {
         let Some(apart) = apart.get(orbit) else { return true };
         let (_, growth) = spot.frame();
-        let reach = APART * growth * apart.iter().copied().fold(0.0, f64::max);
+        let reach = self.share * growth * apart.iter().copied().fold(0.0, f64::max);
         let mut is_free = true;
         self.index.within(p, reach, |k, offset| {
-            is_free = is_free && offset.norm() >= APART * growth * apart[self.orbits[k]];
+            is_free = is_free && offset.norm() >= self.share * growth * apart[self.orbits[k]];
         });
         is_free
     }

@@ -5,7 +5,7 @@ use arabesque_core::{Budget, Result, Vector};
 use crate::repeat::{
     description::{Explains, Extent, Repeat},
     lattice::Lattice,
-    lines::Lines,
+    lines::{Feature, Lines},
     marks::Anchor,
     support::LineIndex,
 };
@@ -31,7 +31,9 @@ pub(super) fn stripes(lines: &Lines, index: &LineIndex<'_>, budget: &Budget) -> 
     let is_parallel = |way: Vector<2>| way.unit_or_zero().cross(along).abs() < PARALLEL;
     let all_parallel =
         lines.tracks.iter().all(|t| t.points.windows(2).all(|w| w[0] == w[1] || is_parallel(w[1] - w[0])));
-    if !all_parallel || stretches.len() < 3 || stretches.len() > MOST {
+    // What ends inside the frame is not the same all along.
+    let has_ends = lines.features.iter().any(|(_, feature)| matches!(feature, Feature::End(_)));
+    if has_ends || !all_parallel || stretches.len() < 3 || stretches.len() > MOST {
         return Ok(None);
     }
     let mut places: Vec<(f64, usize)> = stretches.iter().map(|((a, _), style)| (a.dot(normal), *style)).collect();

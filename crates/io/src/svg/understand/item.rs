@@ -74,6 +74,8 @@ pub(crate) struct Item {
     pub(crate) clip: Option<Rc<Outline<2>>>,
     /// Whether that takes something away from it.
     pub(crate) is_cut: bool,
+    /// What is painted over it and hides what lies below, where it is one of a stack.
+    pub(crate) hidden: Option<Rc<Outline<2>>>,
     /// The compound path that it is made of, and which pieces of it, where these are several.
     pub(crate) compound: Option<(Rc<Compound>, Vec<usize>)>,
 }
@@ -102,6 +104,7 @@ impl Item {
             lines: None,
             clip: at.clip.clone(),
             is_cut: false,
+            hidden: None,
             compound: None,
         };
         if let Some(clip) = &at.clip {

@@ -6,4 +6,7 @@ pub(crate) mod components;
 pub(crate) mod crowds;
 pub(crate) mod gaps;
 pub(crate) mod groups;
+pub(crate) mod hand;
 pub(crate) mod hidden;
+pub(crate) mod outlined;
+pub(crate) mod uncovered;

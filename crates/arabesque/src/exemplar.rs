@@ -80,6 +80,16 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
     {
         known = regular(&drawing.exemplar, budget)?;
     }
+    let is_shifted = drawing.strokes.iter().flatten().any(|stroke| stroke.dash_offset != 0.0);
+    if known.is_none() && is_shifted && options.large_fills == LargeFills::Areas {
+        // Lines that repeat but for where their dashes begin are taken for lines alike.
+        let shifted = ReadOptions { dashes: Dashes::Shifted, ..options.clone() };
+        let other = svg::read_exemplar(text, &shifted)?;
+        known = regular(&other.exemplar, budget)?;
+        if known.is_some() {
+            return Ok((other, known));
+        }
+    }
     if is_dashed && known.is_some() {
         // Where the dashes repeat too, each has its place.
         let apart = ReadOptions { dashes: Dashes::Apart, ..options.clone() };

@@ -43,6 +43,8 @@ pub enum Dashes {
     /// A property of the stroke, which begins with a whole one wherever it begins.
     #[default]
     OfStroke,
+    /// The same, and strokes are alike whose dashes begin differently.
+    Shifted,
     /// Strokes of their own: where each of them lies is part of the pattern.
     Apart,
 }

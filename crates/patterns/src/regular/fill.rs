@@ -209,7 +209,7 @@ impl Regular {
         let margin = strokes.widest() * ground.grid.scale();
         let nodes = strokes.nodes(ground, margin)?;
         strokes.draw(ground, &nodes, made.0)?;
-        areas::draw(&cell.areas, ground, &nodes, made.1)
+        areas::draw(&cell.areas, cell.origin, ground, made.1)
     }
 
     /// Tells what the run will take, and refuses what is too much.

@@ -119,6 +119,11 @@ impl<'a> LineIndex<'a> {
         Ok(Self { lines, window, pieces, index, step })
     }
 
+    /// The frame without what lies along its sides.
+    pub(crate) fn seen(&self) -> Bounds<2> {
+        self.window.grown(-AT_FRAME * self.window.size().0.into_iter().fold(f64::INFINITY, f64::min))
+    }
+
     /// Whether no line reaches the sides of the frame that lie across an axis, or each that reaches one goes on where another
     /// reaches the other.
     pub(crate) fn are_within_or_go_on(&self, axis: usize) -> bool {

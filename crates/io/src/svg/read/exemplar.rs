@@ -37,7 +37,10 @@ use crate::{
             frame::{self, frame_mark, is_frame_mark},
             item::{Item, Kind, Origin, Selection},
             outlined_lines::{refuse_through, take_areas, take_backgrounds, trace},
-            parts::{bands::follow_bands, hand::follow_by_hand, outlined::part_outlined, uncovered::uncover},
+            parts::{
+                bands::follow_bands, gradients::take_gradients, hand::follow_by_hand, outlined::part_outlined,
+                uncovered::uncover,
+            },
             select::select,
             surroundings::Surroundings,
         },
@@ -311,6 +314,7 @@ fn settle(
         follow_bands(source, items, &window)?;
         if as_areas {
             take_areas(items, &window);
+            take_gradients(source, items, &window)?;
             take_backgrounds(items, background, painter, &window)?;
             window = uncover(items, painter, &window)?;
         }

@@ -147,9 +147,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         };
         let mut paint = String::new();
         let fill = leaf.style.get(P::Fill);
-        match reference(fill) {
-            Some(_) => push_attribute(&mut paint, "fill", &self.definitions.paint(fill, leaf.viewport)),
-            None => push_attribute(&mut paint, "fill", fill),
+        match (&item.gradient, reference(fill)) {
+            (Some(gradient), _) => push_attribute(&mut paint, "fill", &self.definitions.repeated(gradient)),
+            (None, Some(_)) => push_attribute(&mut paint, "fill", &self.definitions.paint(fill, leaf.viewport)),
+            (None, None) => push_attribute(&mut paint, "fill", fill),
         }
         if fraction(leaf.style.get(P::FillOpacity)) < 1.0 {
             push_attribute(&mut paint, "fill-opacity", leaf.style.get(P::FillOpacity));
@@ -312,7 +313,8 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         let style = &node.style;
         let dashes = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse::<f64>().ok());
         let dashes: Vec<f64> = dashes.map(|d| d * scale).collect();
-        let dash_offset = if dashes.is_empty() { 0.0 } else { style.number(P::StrokeDashoffset) * scale };
+        let is_free = dashes.is_empty() || self.dashes == Dashes::Shifted;
+        let dash_offset = if is_free { 0.0 } else { style.number(P::StrokeDashoffset) * scale };
         Stroke {
             paint: self.paint(node),
             effects: self.effects(node, at.opacity),

@@ -47,6 +47,8 @@ struct Band {
     points: Vec<Vector<2>>,
     width: f64,
     is_smooth: bool,
+    /// Whether it is long enough to found a family; shorter ones only cut off a corner of the frame.
+    is_long: bool,
 }
 
 /// Makes strokes of the families of hand-drawn bands among `items`.
@@ -63,7 +65,7 @@ pub(crate) fn follow_by_hand(source: &Source<'_>, items: &mut [Item], frame: &Bo
     }
     for family in families.into_values() {
         let is_done = family.iter().all(|(i, _)| items[*i].kind == Kind::Curve);
-        if family.len() < FEWEST || is_done {
+        if family.iter().filter(|(_, band)| band.is_long).count() < FEWEST || is_done {
             continue;
         }
         let width = middle(family.iter().map(|(_, band)| band.width).collect());
@@ -117,11 +119,12 @@ fn band(outline: &Outline<2>, frame: &Bounds<2>) -> Option<Band> {
     let shorter = frame.size()[0].min(frame.size()[1]);
     let near = NEAR * longer(frame) + if ends == [0, 0] { 0.0 } else { width };
     let is_through = [points[0], points[points.len() - 1]].iter().all(|&end| frame.signed_distance(end) <= near);
-    let is_band = is_through && inside >= (LENGTH * width).max(THROUGH * shorter) && width <= WIDEST * shorter;
+    let is_band = is_through && width <= WIDEST * shorter;
+    let is_long = inside >= (LENGTH * width).max(THROUGH * shorter);
     let length: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let is_smooth = length / (points.len() as f64) < FINE * width;
     let points = if is_smooth { thinned(&points, FINE * width) } else { points };
-    is_band.then(|| Band { points: lengthened(points, width), width, is_smooth })
+    is_band.then(|| Band { points: lengthened(points, width), width, is_smooth, is_long })
 }
 
 /// The width of a band where it is about the same all along.

@@ -5,6 +5,7 @@ pub(crate) mod cells;
 pub(crate) mod components;
 pub(crate) mod crowds;
 pub(crate) mod gaps;
+pub(crate) mod gradients;
 pub(crate) mod groups;
 pub(crate) mod hand;
 pub(crate) mod hidden;

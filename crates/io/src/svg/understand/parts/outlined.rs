@@ -95,13 +95,13 @@ fn push_both(all: &mut Vec<Item>, item: &Item, fill: Item, painter: &Painter<'_,
     Ok(())
 }
 
-/// The part of the frame, and of what is around it, in which the outline of something is seen: where the thing ends on a
-/// side of the frame, the outline along that side is not part of the pattern.
+/// The part of the plane in which the outline of something is seen: little more than the frame, for how it closes beyond that
+/// says nothing; and less of it where the thing ends on a side of the frame, for the outline along that side is not part of
+/// the pattern either.
 fn inside(extent: &Bounds<2>, frame: &Bounds<2>) -> Outline<2> {
     let near = NEAR * longer(frame);
-    let far = longer(extent).max(longer(frame));
     let side = |at: f64, side: f64, outwards: f64| {
-        if (at - side).abs() <= near { side - 0.5 * near * outwards } else { at + far * outwards }
+        if (at - side).abs() <= near { side - 0.5 * near * outwards } else { side + near * outwards }
     };
     let low: [f64; 2] = std::array::from_fn(|k| side(extent.min[k], frame.min[k], -1.0));
     let high: [f64; 2] = std::array::from_fn(|k| side(extent.max[k], frame.max[k], 1.0));
@@ -155,4 +155,18 @@ fn with_style(node: &Node, style: &dyn Fn(&ComputedStyle) -> ComputedStyle) -> N
         Content::Shape(geometry) => Content::Shape(Rc::clone(geometry)),
     };
     Node { style: Rc::new(style(&node.style)), content, ..node.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_is_seen_in_the_frame_and_not_along_the_sides_where_the_fill_ends() {
+        let at = |a: (f64, f64), b: (f64, f64)| Bounds::new(Vector::xy(a.0, a.1), Vector::xy(b.0, b.1));
+        let frame = at((0.0, 0.0), (100.0, 80.0));
+        let seen = inside(&at((0.0, 20.0), (120.0, 30.0)), &frame).bounds();
+        assert!(seen.min[0] > 0.0 && seen.max[0] > 100.0 && seen.max[0] < 101.0, "{seen:?}");
+        assert!(seen.min[1] < 0.0 && seen.max[1] > 80.0, "{seen:?}");
+    }
 }

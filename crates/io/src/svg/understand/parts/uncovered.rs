@@ -59,7 +59,8 @@ pub(crate) fn uncover(items: &mut [Item], painter: &Painter<'_, '_>, frame: &Bou
         if matches!(item.kind, Kind::Area | Kind::Curve)
             && let Some(hidden) = &hidden
         {
-            item.outline = item.outline.try_difference(hidden, budget)?;
+            let whole = if item.kind == Kind::Area { item.fine_outline(painter)? } else { item.outline.clone() };
+            item.outline = whole.try_difference(hidden, budget)?;
             item.hidden = Some(Rc::clone(hidden));
         }
         if let Some((_, outline)) = areas.pop_if(|(which, _)| *which == i) {

@@ -161,7 +161,7 @@ where
             let advice = "show two whole periods or more, or leave repeat=exact out";
             return Err(Error::input(
                 "exemplar",
-                "no repeat that explains it, where repeat=exact asks for one",
+                "no repeat that explains the drawing, where repeat=exact asks for one",
                 advice,
             ));
         }
@@ -263,7 +263,9 @@ where
         }
         let areas = areas_of(&self.exemplar);
         let (what, advice) = match told {
-            Some(told) => (format!("going on with {areas} where {}", told.message), told.advice.as_str()),
+            Some(told) => {
+                (format!("fitting {areas} into this tile, which their repeat does not suit,"), told.advice.as_str())
+            }
             None if request.border == Border::Turn => (
                 format!("turning {areas} at the border"),
                 "use --border clip, inside or cross, or draw bands as strokes",

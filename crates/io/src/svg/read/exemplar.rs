@@ -34,7 +34,7 @@ use crate::{
             classes::{self, Classes},
             curves::Gatherer,
             fragment::{fragment, push_placed},
-            frame::{self, frame_mark, is_frame_mark},
+            frame::{self, frame_mark, is_frame_mark, shows},
             item::{Item, Kind, Origin, Selection},
             outlined_lines::{refuse_through, take_areas, take_backgrounds, trace},
             parts::{
@@ -293,9 +293,9 @@ fn settle(
     options: &ReadOptions,
 ) -> Result<Bounds<2>> {
     let source = painter.source;
-    let Selection { items, left_out, background } = found;
+    let Selection { items, left_out, .. } = found;
     items.retain(|item| {
-        let inside = item.outline.bounds().intersects(&window);
+        let inside = shows(item, &window);
         if !inside {
             left_out.push((Reason::Outside, item.name(source), Outline::default()));
         }
@@ -310,22 +310,22 @@ fn settle(
     }
     if options.method != Method::Elements {
         let as_areas = options.large_fills == LargeFills::Areas;
-        part_outlined(items, painter, &window, as_areas)?;
-        follow_bands(source, items, &window)?;
+        part_outlined(&mut found.items, painter, &window, as_areas)?;
+        follow_bands(source, &mut found.items, &window)?;
         if as_areas {
-            take_areas(items, &window);
-            take_gradients(source, items, &window)?;
-            take_backgrounds(items, background, painter, &window)?;
-            window = uncover(items, painter, &window)?;
+            take_areas(&mut found.items, &window);
+            take_gradients(source, &mut found.items, &window)?;
+            take_backgrounds(found, painter, &window)?;
+            window = uncover(&mut found.items, painter, &window)?;
         }
-        trace(source, items, &window)?;
-        follow_by_hand(source, items, &window)?;
-        refuse_networks(source, items, &window)?;
+        trace(source, &mut found.items, &window)?;
+        follow_by_hand(source, &mut found.items, &window)?;
+        refuse_networks(source, &found.items, &window)?;
         if is_stated {
-            refuse_through(source, items, &window)?;
+            refuse_through(source, &found.items, &window)?;
         }
     }
-    for item in items.iter().filter(|item| item.kind == Kind::Large) {
+    for item in found.items.iter().filter(|item| item.kind == Kind::Large) {
         source.notes.add(Note::LargeElement, || item.name(source));
     }
     Ok(window)

@@ -15,7 +15,10 @@ use crate::svg::{
         stroke::growth,
         subpath::{has_no_length, is_closed},
     },
-    understand::item::{HALF, Item, Kind},
+    understand::{
+        item::{HALF, Item, Kind},
+        parts::bands::length_in,
+    },
 };
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
@@ -155,6 +158,15 @@ pub(crate) fn reaches(item: &Item, window: &Bounds<2>) -> usize {
     let sides =
         |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
     sides(0) + sides(1)
+}
+
+/// Whether some of an item lies in the frame, not only of the box around it.
+pub(crate) fn shows(item: &Item, window: &Bounds<2>) -> bool {
+    let outline = &item.outline;
+    outline.bounds().intersects(window)
+        && (reaches(item, window) < 2
+            || outline.edges().any(|edge| length_in(edge, window) > 0.0)
+            || outline.contains(window.centre()))
 }
 
 /// Whether an item reaches from one side of the frame to the opposite one: a wave of one width.

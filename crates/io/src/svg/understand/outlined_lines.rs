@@ -4,7 +4,6 @@
 use std::{collections::BTreeSet, rc::Rc};
 
 use arabesque_core::{Bounds, Error, Result};
-use kurbo::Affine;
 
 use crate::svg::{
     centreline::centrelines,
@@ -19,7 +18,7 @@ use crate::svg::{
     shape::painted_area::Painter,
     understand::{
         frame::{reaches, runs_through},
-        item::{Item, Kind, Origin},
+        item::{Item, Kind, Origin, Selection},
         parts::outlined::parted,
         surroundings::Surroundings,
     },
@@ -87,30 +86,30 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
 ///
 /// # Errors
 /// As [`Painter::painted`].
-pub(crate) fn take_backgrounds(
-    items: &mut Vec<Item>,
-    background: &mut Vec<(Affine, Rc<Node>)>,
-    painter: &Painter<'_, '_>,
-    window: &Bounds<2>,
-) -> Result<()> {
+pub(crate) fn take_backgrounds(found: &mut Selection, painter: &Painter<'_, '_>, window: &Bounds<2>) -> Result<()> {
+    let Selection { items, background, left_out } = found;
     let areas = items.iter().filter(|item| item.kind == Kind::Area);
     let paints: BTreeSet<String> = areas.map(|item| item.painted.colours_key()).collect();
     if paints.is_empty() {
         return Ok(());
     }
-    let (mut lowest, mut rest) = (Vec::new(), Vec::new());
+    let (mut lowest, mut rest, mut is_taken) = (Vec::new(), Vec::new(), Vec::new());
     for (parent, node) in background.drain(..) {
         let taken = (Kind::Area, Origin::Fill, Reason::Area);
         let item = Item::taken(painter, &node, &Surroundings::new(parent), taken)?;
         let parts = item.map_or_else(|| Ok(Vec::new()), |item| parted(item, painter, window))?;
         let is_like = |item: &Item| paints.contains(&item.painted.colours_key()) && is_plain_fill(item);
-        if parts.iter().any(|item| item.kind == Kind::Area && is_like(item)) {
+        is_taken.push(parts.iter().any(|item| item.kind == Kind::Area && is_like(item)));
+        if is_taken.last() == Some(&true) {
             lowest.extend(parts);
         } else {
             rest.push((parent, node));
         }
     }
     *background = rest;
+    // What is left out for being a background is listed in the same order.
+    let mut is_taken = is_taken.into_iter();
+    left_out.retain(|(reason, ..)| *reason != Reason::Background || is_taken.next() != Some(true));
     items.splice(0..0, lowest);
     Ok(())
 }

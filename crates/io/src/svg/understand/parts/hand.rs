@@ -101,6 +101,11 @@ fn band(outline: &Outline<2>, frame: &Bounds<2>) -> Option<Band> {
     stations.sort_by(f64::total_cmp);
     let gap = |s: f64| Some((at(&left, s)? - at(&right, s)?).abs());
     let rough = middle(stations.iter().filter_map(|&s| gap(s)).collect());
+    // Near the ends, too, where the corners of the edges may be far away.
+    let (first, last) = (stations.first().copied()?, stations.last().copied()?);
+    stations.extend([0.2, 0.5].into_iter().flat_map(|share| [first + share * rough, last - share * rough]));
+    stations.retain(|s| (first..=last).contains(s));
+    stations.sort_by(f64::total_cmp);
     stations.dedup_by(|next, last| *next - *last < STEP * rough);
     let place = |s: f64| Some(centre + way * s + normal * (0.5 * (at(&left, s)? + at(&right, s)?)));
     let mut line: Vec<(Vector<2>, f64)> = stations.iter().filter_map(|&s| Some((place(s)?, gap(s)?))).collect();

@@ -16,7 +16,7 @@ pub(crate) use place::options;
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Result, Watch};
+use arabesque_core::{Error, OrientationField, Request, Result, ScalarField, Watch};
 use arabesque_io::svg::LargeFills;
 use arabesque_patterns::{Params, Prepared as Engine, Regular, Repeats};
 
@@ -87,6 +87,23 @@ impl Plane {
     }
 }
 
+impl Plane {
+    /// Refuses fields that vary where a gradient paints areas: it runs straight.
+    fn refuse_bent_gradients(&self, request: &Request<2>) -> Result<()> {
+        let fields = &request.fields;
+        let varies = matches!(fields.orientation, Some(OrientationField::Grid(_)))
+            || [&fields.scale, &fields.density].iter().any(|field| matches!(field, ScalarField::Grid(_)));
+        let has_gradients = self.exemplar.drawing.fills.iter().any(|fill| fill.paint.contains("url("));
+        if !(varies && has_gradients) {
+            return Ok(());
+        }
+        Err(Error::Unsupported {
+            what: "bending bands with gradients by a field".into(),
+            advice: "turn and scale them evenly, as by --orient 30, or paint them in plain colours".into(),
+        })
+    }
+}
+
 impl Ready for Plane {
     fn understood(&self) -> String {
         let drawing = &self.exemplar.drawing;
@@ -97,6 +114,7 @@ impl Ready for Plane {
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         self.settle_tile(&mut context)?;
         let request = Arc::new(self.exemplar.resolve(&mut context, self.engine.repeat())?);
+        self.refuse_bent_gradients(&request.engine)?;
         let origin = context.origin();
         let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);
         let mut show = Show { watch, origin: &origin, make };

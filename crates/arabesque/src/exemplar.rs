@@ -6,18 +6,18 @@ use arabesque_core::{Budget, Error, Exemplar, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
-    svg::{self, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, ReadOptions, Unit},
+    svg::{self, Dashes, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, ReadOptions, Unit},
     table::csv::{self, Points},
 };
-use arabesque_patterns::repeats;
+use arabesque_patterns::{Regular, regular};
 
 use crate::recipe::{Input, Reading};
 
 /// An exemplar as it was read.
 #[derive(Clone, Debug)]
 pub enum LoadedExemplar {
-    /// An SVG drawing.
-    Drawing(Box<Drawing>),
+    /// An SVG drawing, and how it repeats, where that was looked for and found.
+    Drawing(Box<Drawing>, Option<Arc<Regular>>),
     /// Points of the plane.
     Points(Exemplar<2>),
     /// Points or curves of space, and what was noticed while reading.
@@ -55,24 +55,56 @@ impl LoadedExemplar {
             });
         }
         let options = ReadOptions { budget: budget.clone(), ..options };
-        let mut drawing = svg::read_exemplar(&text, &options)?;
-        if options.tiling == svg::Tiling::Auto && drawing.exemplar.period.is_some() {
-            // A page that repeats by itself is no period, even if what its edges cut fits together by chance; strokes
-            // fit too easily to be taken for one without being asked.
-            let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
-            if let Ok(page) = svg::read_exemplar(&text, &as_page)
-                && (!page.exemplar.curves.is_empty() || repeats(&page.exemplar, budget)?)
-            {
-                drawing = page;
+        let (drawing, regular) = read_drawing(&text, options, budget)?;
+        Ok(Self::Drawing(Box::new(drawing), regular))
+    }
+}
+
+/// Reads a drawing as what can be continued best, and how it repeats, where that is found out on the way.
+fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
+    let mut drawing = svg::read_exemplar(text, &options)?;
+    let mut known = None;
+    if options.tiling == svg::Tiling::Auto && drawing.exemplar.period.is_some() {
+        // A page that repeats by itself is no period, even if what its edges cut fits together by chance; strokes
+        // fit too easily to be taken for one without being asked.
+        let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
+        if let Ok(page) = svg::read_exemplar(text, &as_page) {
+            let found = regular(&page.exemplar, budget)?;
+            if found.is_some() || !page.exemplar.curves.is_empty() {
+                (drawing, known) = (page, found);
             }
         }
-        if drawing.exemplar.areas.is_empty() || repeats(&drawing.exemplar, budget)? {
-            return Ok(Self::Drawing(Box::new(drawing)));
-        }
-        // Without a repeat, lines are all that can be made of areas.
-        let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
-        Ok(Self::Drawing(Box::new(svg::read_exemplar(&text, &options)?)))
     }
+    let is_dashed = drawing.strokes.iter().flatten().any(|stroke| !stroke.dashes.is_empty());
+    if known.is_none() && (!drawing.exemplar.areas.is_empty() || is_dashed && options.large_fills == LargeFills::Areas)
+    {
+        known = regular(&drawing.exemplar, budget)?;
+    }
+    let is_shifted = drawing.strokes.iter().flatten().any(|stroke| stroke.dash_offset != 0.0);
+    if known.is_none() && is_shifted && options.large_fills == LargeFills::Areas {
+        // Lines that repeat but for where their dashes begin are taken for lines alike.
+        let shifted = ReadOptions { dashes: Dashes::Shifted, ..options.clone() };
+        let other = svg::read_exemplar(text, &shifted)?;
+        known = regular(&other.exemplar, budget)?;
+        if known.is_some() {
+            return Ok((other, known));
+        }
+    }
+    if is_dashed && known.is_some() {
+        // Where the dashes repeat too, each has its place.
+        let apart = ReadOptions { dashes: Dashes::Apart, ..options.clone() };
+        if let Ok(dashes) = svg::read_exemplar(text, &apart)
+            && let Some(found) = regular(&dashes.exemplar, budget)?
+        {
+            return Ok((dashes, Some(found)));
+        }
+    }
+    if drawing.exemplar.areas.is_empty() || known.is_some() {
+        return Ok((drawing, known));
+    }
+    // Without a repeat, lines are all that can be made of areas.
+    let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
+    Ok((svg::read_exemplar(text, &options)?, None))
 }
 
 /// By the extension, or else by the first statement that is not a comment.

@@ -161,9 +161,9 @@ pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources
     let bytes = resources.read(input)?;
     let budget = resources.budget();
     Ok(match LoadedExemplar::read(input, &bytes, reading, &budget)? {
-        LoadedExemplar::Drawing(drawing) => {
+        LoadedExemplar::Drawing(drawing, known) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
-            report.repeat = RepeatReport::of(&drawing.exemplar, &budget)?;
+            report.repeat = RepeatReport::of(&drawing.exemplar, known, &budget)?;
             report.unit = Some(drawing.page.unit.name());
             report.unit_per_user = Some(drawing.page.unit_per_user);
             report.understood = UnderstoodReport::of(&drawing);
@@ -174,7 +174,7 @@ pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources
         }
         LoadedExemplar::Points(exemplar) => {
             let drawing = points_as_drawing(&exemplar);
-            let repeat = RepeatReport::of(&exemplar, &budget)?;
+            let repeat = RepeatReport::of(&exemplar, None, &budget)?;
             Report { drawing: Some(drawing), repeat, ..describe(input, "points", &exemplar) }
         }
         LoadedExemplar::Space(exemplar, warnings) => {

@@ -182,7 +182,7 @@ fn fifty_thousand_elements_take_their_share() {
     assert_eq!(reads(&circles(""), 6000).exemplar.elements.len(), MANY - 10_000);
     let off = times(MANY, |k| format!("<circle cx='{}' cy='1e6' r='3'/>", k * 1000));
     let drawing = reads(&format!("{}{off}", dots("")), 6000);
-    assert!(drawing.exemplar.elements.len() == 64 && warned(&drawing, "outside the frame"));
+    assert!(drawing.exemplar.elements.len() == 64 && warned(&drawing, "beyond the frame"));
     let none = "<circle cx='4' cy='4' r='0'/><path d='M5 5h0'/>".repeat(MANY / 2);
     assert_eq!(reads(&format!("{}{none}", dots("")), 2000).exemplar.elements.len(), 64);
     let pieces = times(10_000, |k| format!("M{} {}h.4v.4z", place(k).0, place(k).1));

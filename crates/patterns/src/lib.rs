@@ -68,4 +68,5 @@ pub use finish::clearance::overlap_ratio;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Repeats, Search, Switch};
 #[doc(hidden)]
 pub use prepared::Compiled;
-pub use prepared::{Prepared, repeat_of, repeats};
+pub use prepared::{Prepared, regular};
+pub use regular::Regular;

@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use arabesque_core::{
-    Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Watch, rounded,
+    Border, Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Warning, Watch,
+    rounded,
 };
 
 use crate::{
@@ -26,6 +27,8 @@ pub struct Prepared<const D: usize> {
     exemplar: Arc<Exemplar<D>>,
     /// How its elements lie to one another; `None` where that has no meaning.
     clearance: Option<Arc<ExemplarClearance>>,
+    /// The same with elements told apart by their place in the cell of the repeat, by which they are sorted.
+    staged: Option<Arc<ExemplarClearance>>,
     /// Which of its elements lie on which; `None` where none overlap.
     order: Option<Arc<ExemplarOrder>>,
     pub(crate) params: Params,
@@ -35,13 +38,13 @@ pub struct Prepared<const D: usize> {
     irregular: OnceLock<Irregular<D>>,
 }
 
-/// The repeat by which an exemplar is continued; `None` where it is treated as irregular. The same as
-/// [`Prepared::repeat`], without the analysis that irregular ones need.
+/// How an exemplar is continued by its repeat; `None` where it is treated as irregular. The same as what
+/// [`Prepared::new`] finds, without the analysis that irregular ones need; [`Prepared::knowing`] does not look for it again.
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
-pub fn repeat_of(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Repeat>> {
-    Ok(Regular::new(exemplar, budget)?.map(Regular::into_repeat))
+pub fn regular(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Arc<Regular>>> {
+    Ok(Regular::new(exemplar, budget)?.map(Arc::new))
 }
 
 /// The engine for one dimension, compiled in this crate: left generic, it would be compiled again in every crate that calls it.
@@ -51,7 +54,12 @@ pub trait Compiled<const D: usize>: Dimension<D> {
     ///
     /// # Errors
     /// As there.
-    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Prepared<D>>;
+    fn analysed(
+        exemplar: &Arc<Exemplar<D>>,
+        params: &Params,
+        known: Option<Arc<Regular>>,
+        budget: &Budget,
+    ) -> Result<Prepared<D>>;
 
     /// See [`Prepared::run`].
     ///
@@ -66,9 +74,10 @@ macro_rules! compiled {
             fn analysed(
                 exemplar: &Arc<Exemplar<$dimension>>,
                 params: &Params,
+                known: Option<Arc<Regular>>,
                 budget: &Budget,
             ) -> Result<Prepared<$dimension>> {
-                Prepared::analysed(exemplar, params, budget)
+                Prepared::analysed(exemplar, params, known, budget)
             }
 
             fn filled(
@@ -101,10 +110,31 @@ where
     where
         Vector<D>: Compiled<D>,
     {
-        Vector::<D>::analysed(&exemplar.into(), params, budget)
+        Vector::<D>::analysed(&exemplar.into(), params, None, budget)
     }
 
-    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, budget: &Budget) -> Result<Self> {
+    /// The same for an exemplar whose repeat is known already.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn knowing(
+        exemplar: impl Into<Arc<Exemplar<D>>>,
+        params: &Params,
+        known: Option<Arc<Regular>>,
+        budget: &Budget,
+    ) -> Result<Self>
+    where
+        Vector<D>: Compiled<D>,
+    {
+        Vector::<D>::analysed(&exemplar.into(), params, known, budget)
+    }
+
+    fn analysed(
+        exemplar: &Arc<Exemplar<D>>,
+        params: &Params,
+        known: Option<Arc<Regular>>,
+        budget: &Budget,
+    ) -> Result<Self> {
         params.check()?;
         let has_lines = !exemplar.curves.is_empty() || !exemplar.areas.is_empty();
         if !has_lines && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
@@ -123,26 +153,36 @@ where
             ));
         }
         let regular = match Vector::<D>::plane_exemplar(exemplar) {
-            Some(plane) if params.repeat != Repeats::Off => Regular::new(plane, budget)?.map(Arc::new),
+            Some(_) if params.repeat != Repeats::Off && known.is_some() => known,
+            Some(plane) if params.repeat != Repeats::Off => self::regular(plane, budget)?,
             _ => None,
         };
         if regular.is_none() && params.repeat == Repeats::Exact {
-            let expected = "auto or off: the exemplar shows no repeat that explains it";
-            return Err(Error::parameter("repeat", "exact", expected));
+            let advice = "show two whole periods or more, or leave repeat=exact out";
+            return Err(Error::input(
+                "exemplar",
+                "no repeat that explains the drawing, where repeat=exact asks for one",
+                advice,
+            ));
         }
         if regular.is_none() {
-            no_areas(
-                exemplar,
-                "that run through the frame and do not repeat",
-                "show two periods of the pattern or more, draw the lines as strokes or with one width, use --method elements to \
-                 treat every connected piece as one element, or mark items with data-arabesque=\"element\" or \"ignore\"",
-            )?;
+            no_areas(exemplar, "that do not repeat")?;
         }
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
+        // Of elements alike, those at one place of the cell may lie on others, and those at another place below them.
+        let staged = match (&regular, &clearance, &order) {
+            (Some(regular), Some(clearance), Some(_)) => Some(Arc::new(clearance.classed(regular.places()))),
+            _ => None,
+        };
+        let order = match &staged {
+            Some(staged) => ExemplarOrder::new(staged, budget)?.map(Arc::new),
+            None => order,
+        };
         let prepared = Self {
             exemplar: Arc::clone(exemplar),
             clearance,
+            staged,
             order,
             params: params.clone(),
             regular,
@@ -203,7 +243,8 @@ where
     fn stack(&self, outcome: &mut Outcome<D>, request: &Request<D>) -> Result<()> {
         let is_finished = outcome.stopped == StopReason::Finished;
         let budget = if is_finished { request.budget.clone() } else { ending::last_touches(&request.budget) };
-        let (order, clearance) = (self.order.as_deref(), self.clearance.as_deref());
+        let clearance = self.staged.as_deref().or(self.clearance.as_deref());
+        let order = self.order.as_deref();
         match order::sort(&mut outcome.placements, order, clearance, &request.domain, &budget) {
             Ok(sorted) => {
                 outcome.warnings.extend(sorted.warning);
@@ -213,6 +254,32 @@ where
             Err(_) => {}
         }
         Ok(())
+    }
+
+    /// Refuses areas where the lattice cannot serve the request; `told` is what that said of a tile.
+    fn refuse_bent_areas(&self, request: &Request<D>, told: Option<&Warning>) -> Result<()> {
+        if self.exemplar.areas.is_empty() {
+            return Ok(());
+        }
+        let areas = areas_of(&self.exemplar);
+        let (what, advice) = match told {
+            Some(told) => {
+                (format!("fitting {areas} into this tile, which their repeat does not suit,"), told.advice.as_str())
+            }
+            None if request.border == Border::Turn => (
+                format!("turning {areas} at the border"),
+                "use --border clip, inside or cross, or draw bands as strokes",
+            ),
+            None if !request.frozen_curves.is_empty() => (
+                format!("fitting {areas} to strokes that are kept"),
+                "leave the kept strokes out, or draw bands as strokes",
+            ),
+            None => (
+                format!("bending {areas} by a field"),
+                "use fields that turn and grow more gently, or none, or draw bands as strokes",
+            ),
+        };
+        Err(Error::Unsupported { what, advice: advice.to_owned() })
     }
 
     /// Everything but the order of painting.
@@ -227,40 +294,41 @@ where
             }
             if self.params.repeat == Repeats::Exact {
                 let why = told.first().map_or("fields, or strokes that turn or stay, bend it", |w| w.message.as_str());
-                return Err(Error::parameter("repeat", "exact", format!("auto: {why}")));
+                return Err(Error::Unsupported {
+                    what: format!("keeping the repeat exactly (repeat=exact) here, where {why},"),
+                    advice: told.first().map_or("leave repeat=exact out", |w| w.advice.as_str()).to_owned(),
+                });
             }
         }
-        no_areas(
-            &self.exemplar,
-            "where the repeat cannot follow the fields, turn at the border, join what is kept, or fit the tile",
-            "use fields that turn and grow more gently, another border, or a tile that suits (--tile auto), or draw the areas \
-             as strokes",
-        )?;
+        self.refuse_bent_areas(request, told.first())?;
         let mut outcome = self.irregular(&request.budget)?.filled(request, watch)?;
         outcome.warnings.splice(0..0, told);
         Ok(outcome)
     }
 }
 
-/// Whether an exemplar of the plane has a repeat by which it can be continued.
-///
-/// # Errors
-/// When the budget is used up, or somebody asks to stop.
-pub fn repeats(exemplar: &Exemplar<2>, budget: &Budget) -> Result<bool> {
-    Ok(Regular::new(exemplar, budget)?.is_some())
-}
-
 /// Refuses areas that only a repeat could continue.
-fn no_areas<const D: usize>(exemplar: &Exemplar<D>, why: &str, advice: &str) -> Result<()> {
-    let count = exemplar.areas.len();
-    if count == 0 {
+fn no_areas<const D: usize>(exemplar: &Exemplar<D>, which: &str) -> Result<()> {
+    if exemplar.areas.is_empty() {
         return Ok(());
     }
-    let mut names: Vec<&str> = exemplar.areas.iter().map(|a| exemplar.styles[a.style].name.as_str()).collect();
-    names.sort_unstable();
-    names.dedup();
-    let more = if names.len() > 3 { ", .." } else { "" };
+    Err(Error::Unsupported {
+        what: format!("going on with {} {which}", areas_of(exemplar)),
+        advice: "show two whole periods of the pattern, or draw bands as strokes".into(),
+    })
+}
+
+/// The areas of an exemplar, in words.
+fn areas_of<const D: usize>(exemplar: &Exemplar<D>) -> String {
+    let count = exemplar.areas.len();
+    let mut names: Vec<&str> = Vec::new();
+    for area in &exemplar.areas {
+        let name = exemplar.styles[area.style].name.as_str();
+        if !names.contains(&name) && names.len() < 4 {
+            names.push(name);
+        }
+    }
+    let more = if names.len() > 3 { ", ..." } else { "" };
     names.truncate(3);
-    let what = format!("{count} filled areas ({}{more}) {why}", names.join(", "));
-    Err(Error::Unsupported { what, advice: advice.into() })
+    format!("{count} filled area{} ({}{more})", if count == 1 { "" } else { "s" }, names.join(", "))
 }

@@ -1,10 +1,12 @@
 //! What an exemplar repeats by, for people and machines.
 
+use std::sync::Arc;
+
 use arabesque_core::{Budget, Exemplar, Matrix, Result, Vector};
 use arabesque_io::svg::{Drawing, RepeatCell, with_cell};
 use arabesque_patterns::{
+    Regular, regular,
     repeat::{Explains, Extent, symmetry},
-    repeat_of,
 };
 use serde::Serialize;
 
@@ -42,10 +44,14 @@ pub struct RepeatReport {
 
 impl RepeatReport {
     /// The repeat of an exemplar; `None` where it is treated as irregular.
-    pub(super) fn of(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
+    pub(super) fn of(exemplar: &Exemplar<2>, known: Option<Arc<Regular>>, budget: &Budget) -> Result<Option<Self>> {
         // What can be neither repeated nor read is told by a run, not here.
-        let Some(repeat) = repeat_of(exemplar, budget)? else { return Ok(None) };
-        let group = symmetry(exemplar, &repeat, budget)?;
+        let found = match known {
+            Some(known) => Some(known),
+            None => regular(exemplar, budget)?,
+        };
+        let Some(repeat) = found.as_ref().map(|found| found.repeat()) else { return Ok(None) };
+        let group = symmetry(exemplar, repeat, budget)?;
         let extent = match repeat.extent {
             Extent::Plane => "plane",
             Extent::Frieze => "frieze",

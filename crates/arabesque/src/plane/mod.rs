@@ -16,9 +16,9 @@ pub(crate) use place::options;
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, Result, Watch};
+use arabesque_core::{Error, OrientationField, Request, Result, ScalarField, Watch};
 use arabesque_io::svg::LargeFills;
-use arabesque_patterns::{Params, Prepared as Engine, Repeats};
+use arabesque_patterns::{Params, Prepared as Engine, Regular, Repeats};
 
 use crate::{
     artwork::Artwork,
@@ -45,9 +45,9 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     let bytes = preparation.files.read(input)?;
     let reading = Reading { method: fill.method, exemplar_tile: fill.exemplar_tile, large_fills: large_fills(&params) };
     let loaded = LoadedExemplar::read(input, &bytes, reading, preparation.files.budget())?;
-    let (drawing, points) = match loaded {
-        LoadedExemplar::Drawing(drawing) => (*drawing, None),
-        LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar))),
+    let (drawing, points, known) = match loaded {
+        LoadedExemplar::Drawing(drawing, known) => (*drawing, None, known),
+        LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar)), None),
         LoadedExemplar::Space(..) => {
             return Err(Error::input(
                 input.name(),
@@ -57,7 +57,7 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
         }
     };
     preparation.exemplar = input.embedding(&bytes);
-    Plane::new(PlaneExemplar { drawing, points, region: None }, &params, preparation)
+    Plane::new(PlaneExemplar { drawing, points, region: None }, &params, known, preparation)
 }
 
 /// What large fills are taken for.
@@ -69,16 +69,38 @@ fn large_fills(params: &Params) -> LargeFills {
 pub(crate) fn prepare_region(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Plane> {
     let params = redo.params.engine_params()?;
     let exemplar = redo::read(redo, large_fills(&params), preparation)?;
-    Plane::new(exemplar, &params, preparation)
+    Plane::new(exemplar, &params, None, preparation)
 }
 
 impl Plane {
     /// Analyses the exemplar.
-    fn new(mut exemplar: PlaneExemplar, params: &Params, preparation: &mut Preparation<'_>) -> Result<Self> {
+    fn new(
+        mut exemplar: PlaneExemplar,
+        params: &Params,
+        known: Option<Arc<Regular>>,
+        preparation: &mut Preparation<'_>,
+    ) -> Result<Self> {
         preparation.warnings.append(&mut exemplar.drawing.warnings);
-        let engine = Engine::new(Arc::clone(exemplar.exemplar()), params, preparation.files.budget())
+        let engine = Engine::knowing(Arc::clone(exemplar.exemplar()), params, known, preparation.files.budget())
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
         Ok(Self { exemplar: Arc::new(exemplar), engine })
+    }
+}
+
+impl Plane {
+    /// Refuses fields that vary where a gradient paints areas: it runs straight.
+    fn refuse_bent_gradients(&self, request: &Request<2>) -> Result<()> {
+        let fields = &request.fields;
+        let varies = matches!(fields.orientation, Some(OrientationField::Grid(_)))
+            || [&fields.scale, &fields.density].iter().any(|field| matches!(field, ScalarField::Grid(_)));
+        let has_gradients = self.exemplar.drawing.fills.iter().any(|fill| fill.paint.contains("url("));
+        if !(varies && has_gradients) {
+            return Ok(());
+        }
+        Err(Error::Unsupported {
+            what: "bending bands with gradients by a field".into(),
+            advice: "turn and scale them evenly, as by --orient 30, or paint them in plain colours".into(),
+        })
     }
 }
 
@@ -91,7 +113,8 @@ impl Ready for Plane {
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         self.settle_tile(&mut context)?;
-        let request = Arc::new(self.exemplar.resolve(&mut context, self.engine.repeat().is_some())?);
+        let request = Arc::new(self.exemplar.resolve(&mut context, self.engine.repeat())?);
+        self.refuse_bent_gradients(&request.engine)?;
         let origin = context.origin();
         let make = |snapshot| PlaneMade::of_snapshot(&self.exemplar, &request, snapshot);
         let mut show = Show { watch, origin: &origin, make };

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Outline, Result, Shape, rounded};
 use arabesque_io::svg::{self, Drawing, Page, ReadOptions};
+use arabesque_patterns::repeat::Repeat;
 
 use crate::{
     recipe::{Fill, Input, Size, Tile, pixels_per_user},
@@ -105,17 +106,44 @@ pub(crate) fn options(input: &Input, files: &Files) -> ReadOptions {
     ReadOptions { budget: files.budget().clone(), ..ReadOptions::new(input.name()) }
 }
 
+/// Refuses a tile that is smaller than one cell of the repeat.
+pub(crate) fn check_cell(repeat: Option<&Repeat>, domain: &Domain<2>) -> Result<()> {
+    let (Some(repeat), Domain::Torus(tile)) = (repeat, domain) else { return Ok(()) };
+    let Some(least) = repeat.smallest_tile() else { return Ok(()) };
+    let size = tile.size();
+    if (0..2).all(|k| size[k] >= SMALLER * least[k]) {
+        return Ok(());
+    }
+    let near = [0, 1].map(|k| rounded((size[k] / least[k]).round().max(1.0) * least[k]));
+    let [width, height] = least.map(rounded);
+    Err(Error::no_result(
+        format!(
+            "a tile of {}x{} is smaller than the cell by which the pattern repeats, {width}x{height}",
+            rounded(size[0]),
+            rounded(size[1])
+        ),
+        format!("use the nearest tile that suits, --tile {}x{}, or --tile auto", near[0], near[1]),
+    ))
+}
+
+/// A tile that is smaller than this share of the cell along a side is not stretched to fit.
+const SMALLER: f64 = 0.92;
+
 /// Refuses a domain that is too large or too small for the pattern.
 /// Areas alone, and what repeats in a region that is filled again, fit into any.
 pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, fits: bool, budget: &Budget) -> Result<()> {
     let spacing = spacing(exemplar);
     let expected = domain.measure() / spacing.powi(2);
     if expected.is_nan() || expected > budget.limits().output_elements as f64 {
+        let period = exemplar.period.map_or_else(String::new, |[a, b]| {
+            let [a, b] = [a, b].map(|v| rounded(v.norm()));
+            format!(", or the period of the pattern larger, which is only {a} by {b}")
+        });
         return Err(Error::Limit {
             what: "size of the domain".into(),
             found: format!("room for about {expected:.0} elements"),
             limit: format!("{} elements", budget.limits().output_elements),
-            advice: "make it smaller; sizes without a unit are in the units of the exemplar".into(),
+            advice: format!("make it smaller{period}; sizes without a unit are in the units of the exemplar"),
         });
     }
     if fits || (exemplar.elements.is_empty() && exemplar.curves.is_empty()) {

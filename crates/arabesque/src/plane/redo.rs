@@ -5,7 +5,7 @@ use arabesque_io::{
     file,
     svg::{Document, Drawing, HostDocument, LargeFills, ReadOptions, Tiling},
 };
-use arabesque_patterns::repeats;
+use arabesque_patterns::regular;
 
 use crate::{
     method::Preparation,
@@ -46,7 +46,7 @@ pub(crate) fn read(redo: &Redo, large_fills: LargeFills, preparation: &mut Prepa
         Document::with(&text, options, |document| HostFile { document, name: &name, files }.split(redo, &mut warnings))
     };
     let (mut drawing, mut region) = split(&options)?;
-    if !drawing.exemplar.areas.is_empty() && !repeats(&drawing.exemplar, files.budget())? {
+    if !drawing.exemplar.areas.is_empty() && regular(&drawing.exemplar, files.budget())?.is_none() {
         // Without a repeat, lines are all that can be made of areas.
         (drawing, region) = split(&ReadOptions { large_fills: LargeFills::Lines, ..options })?;
     }

@@ -2,6 +2,7 @@
 
 use arabesque_core::{Border, Error, Outline, Request as EngineRequest, Result};
 use arabesque_io::svg::{Page, Placed};
+use arabesque_patterns::repeat::Repeat;
 
 use crate::{
     method::RunContext,
@@ -9,7 +10,7 @@ use crate::{
         exemplar::PlaneExemplar,
         fields::FieldSources,
         picture::check_picture,
-        place::{Place, check_room},
+        place::{Place, check_cell, check_room},
         redo::check_border,
         surroundings,
     },
@@ -27,23 +28,30 @@ pub(crate) struct PlaneRequest {
 }
 
 impl PlaneExemplar {
-    /// Reads the files of the request, which are embedded in the job of `context`. `repeats`: whether the exemplar is
-    /// continued by a repeat.
-    pub(crate) fn resolve(&self, context: &mut RunContext<'_>, repeats: bool) -> Result<PlaneRequest> {
+    /// Reads the files of the request, which are embedded in the job of `context`.
+    pub(crate) fn resolve(&self, context: &mut RunContext<'_>, repeat: Option<&Repeat>) -> Result<PlaneRequest> {
         let mut job = std::mem::replace(&mut context.job, Job::Fill(Fill::default()));
-        let resolved = self.resolve_job(&mut job, context, repeats);
+        let resolved = self.resolve_job(&mut job, context, repeat);
         context.job = job;
         resolved
     }
 
-    fn resolve_job(&self, job: &mut Job, context: &mut RunContext<'_>, repeats: bool) -> Result<PlaneRequest> {
+    fn resolve_job(
+        &self,
+        job: &mut Job,
+        context: &mut RunContext<'_>,
+        repeat: Option<&Repeat>,
+    ) -> Result<PlaneRequest> {
         let files = context.files;
         let place = match (&self.region, &mut *job) {
             (Some(region), _) => region.place.clone(),
             (None, Job::Fill(fill)) => Place::of(fill, &self.drawing, self.units(), files)?,
             (None, _) => return Err(Error::parameter("request", job.name(), "a request to fill")),
         };
-        let fits = repeats && self.region.is_some();
+        // Fields make the cell another one.
+        let is_plain = matches!(&*job, Job::Fill(f) if f.orient.is_none() && f.scale.is_none() && f.density.is_none());
+        check_cell(repeat.filter(|_| is_plain), &place.domain)?;
+        let fits = repeat.is_some() && self.region.is_some();
         check_room(self.exemplar(), &place.domain, fits, files.budget())
             .map_err(|error| self.in_region(error, context))?;
         check_picture(context.output(), &place.page, files.budget())?;

@@ -79,12 +79,14 @@ impl JsonSchema for FieldSource {
 }
 
 impl FieldSource {
-    /// A field as people write it: `30`, `strokes.svg`, `picture.png`, or `picture.png@0.5..2` with the values of black and white.
+    /// A field as people write it: `30` or `30deg`, `strokes.svg`, `picture.png`, or `picture.png@0.5..2` with the values of black and white.
     ///
     /// # Errors
     /// [`Error::Parameter`] when it is empty or the range is none.
     pub fn parse(text: &str) -> Result<Self> {
-        if let Ok(value) = text.trim().parse::<f64>() {
+        let number = text.trim();
+        let degrees = number.strip_suffix("deg").or_else(|| number.strip_suffix('°'));
+        if let Ok(value) = degrees.map_or(number, str::trim).parse::<f64>() {
             return Ok(Self::Constant(value));
         }
         if text.trim().is_empty() {
@@ -107,7 +109,9 @@ mod tests {
 
     #[test]
     fn fields_are_numbers_or_files_with_a_range() {
-        assert_eq!(FieldSource::parse(" 30 ").unwrap(), FieldSource::Constant(30.0));
+        for text in [" 30 ", "30deg", "30°"] {
+            assert_eq!(FieldSource::parse(text).unwrap(), FieldSource::Constant(30.0));
+        }
         let ranged = FieldFile { range: Some([0.5, 2.0]), file: Input::file("a@b.png") };
         assert_eq!(FieldSource::parse("a@b.png@0.5..2").unwrap(), FieldSource::File(ranged));
         for text in ["", " ", "a.png@x..2"] {

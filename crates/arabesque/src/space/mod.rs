@@ -34,7 +34,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
             preparation.warnings.extend(warnings);
             exemplar
         }
-        LoadedExemplar::Drawing(_) | LoadedExemplar::Points(_) => {
+        LoadedExemplar::Drawing(..) | LoadedExemplar::Points(_) => {
             return Err(Error::input(
                 preparation.exemplar.name(),
                 "an exemplar of the plane, where a box in space is to be filled",

@@ -126,7 +126,11 @@ fn print(report: &Report) -> Result<(), Failure> {
     if report.areas > 0 {
         writeln!(out, "  areas: {}", report.areas)?;
     }
-    writeln!(out, "  spacing: {:.4}; suggested radius: {:.4}", report.spacing, report.suggested_radius)?;
+    if report.elements + report.curves > 0 {
+        // Areas have no distances of their own, and no neighbourhoods.
+        let (spacing, radius) = (rounded(report.spacing), rounded(report.suggested_radius));
+        writeln!(out, "  spacing: {spacing}; suggested radius: {radius}")?;
+    }
     if let Some(repeat) = &report.repeat {
         for line in repeat.lines() {
             writeln!(out, "  {line}")?;
@@ -136,13 +140,23 @@ fn print(report: &Report) -> Result<(), Failure> {
         writeln!(out, "  a whole job, with the layers {}", report.layers.join(", "))?;
     }
     for class in &report.classes {
-        writeln!(out, "  class {}: {} elements, diameter {:.4}", class.name, class.elements, class.diameter)?;
+        let diameter =
+            if class.diameter > 0.0 { format!(", diameter {}", rounded(class.diameter)) } else { String::new() };
+        let s = if class.elements == 1 { "" } else { "s" };
+        writeln!(out, "  class {}: {} element{s}{diameter}", class.name, class.elements)?;
     }
     for style in &report.styles {
         writeln!(
             out,
-            "  style {}: {} curves ({} closed), {} ends inside the frame, length {:.2}, width {:.4}",
-            style.name, style.curves, style.closed, style.ends, style.length, style.width
+            "  style {}: {} curve{} ({} closed), {} end{} inside the frame, length {}, width {}",
+            style.name,
+            style.curves,
+            if style.curves == 1 { "" } else { "s" },
+            style.closed,
+            style.ends,
+            if style.ends == 1 { "" } else { "s" },
+            rounded(style.length),
+            rounded(style.width)
         )?;
     }
     for known in &report.understood {

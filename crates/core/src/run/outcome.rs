@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::{
     curve::Path,
     region::Outline,
-    space::{Similarity, Vector},
+    space::{Matrix, Similarity, Vector},
 };
 
 /// One element of the output.
@@ -38,11 +38,14 @@ pub struct Drawn<const D: usize> {
 /// One filled area of the output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covered<const D: usize> {
-    /// What is filled, in output coordinates, by the even-odd rule. On a torus it may reach beyond the box: what lies there is drawn on
-    /// the other side.
+    /// What is filled, in output coordinates, by the even-odd rule. On a torus all that is seen in the box, and a little
+    /// around it, so that boxes side by side overlap.
     pub outline: Outline<D>,
     /// Index into [`crate::Exemplar::areas`]: how the area is painted.
     pub source: usize,
+    /// From the exemplar to the output: what is applied first, and the shift after it. A paint that is not the same
+    /// everywhere goes with it.
+    pub paint: (Matrix<D>, Vector<D>),
 }
 
 /// A placement as it is drawn: itself, or a copy of it that is seen across an edge of a torus.

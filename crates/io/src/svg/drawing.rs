@@ -63,6 +63,12 @@ impl Stroke {
         Self { width: self.width * factor, dashes, dash_offset: self.dash_offset * factor, ..self.clone() }
     }
 
+    /// The same with dashes times `factor`.
+    pub(crate) fn with_dashes(&self, factor: f64) -> Self {
+        let dashes = self.dashes.iter().map(|d| d * factor).collect();
+        Self { dashes, dash_offset: self.dash_offset * factor, ..self.clone() }
+    }
+
     /// Width and dashes times `scale`, as attributes.
     pub(crate) fn lengths(&self, scale: f64, decimals: Decimals) -> String {
         let fine = decimals.plus(2);

@@ -37,6 +37,18 @@ pub enum LargeFills {
     Areas,
 }
 
+/// What the dashes of a stroke are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dashes {
+    /// A property of the stroke, which begins with a whole one wherever it begins.
+    #[default]
+    OfStroke,
+    /// The same, and strokes are alike whose dashes begin differently.
+    Shifted,
+    /// Strokes of their own: where each of them lies is part of the pattern.
+    Apart,
+}
+
 /// How an SVG file is to be read.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
@@ -48,6 +60,8 @@ pub struct ReadOptions {
     pub tiling: Tiling,
     /// What large fills are taken for. Default: [`LargeFills::Lines`].
     pub large_fills: LargeFills,
+    /// What dashes are. Default: [`Dashes::OfStroke`].
+    pub dashes: Dashes,
     /// Ids (or labels) of items that are not part of the drawing, because they only say where something is. Default:
     /// none.
     pub without: Vec<String>,
@@ -63,6 +77,7 @@ impl ReadOptions {
             method: Method::default(),
             tiling: Tiling::default(),
             large_fills: LargeFills::default(),
+            dashes: Dashes::default(),
             without: Vec::new(),
             budget: Budget::default(),
         }

@@ -71,6 +71,10 @@ pub enum Reason {
     Traced,
     /// A filled band of one width.
     Band,
+    /// A filled band of about one width.
+    HandBand,
+    /// The outline of a filled band.
+    BandOutline,
     /// A fill that runs through the frame.
     Area,
     /// A fill that covers the frame.
@@ -97,7 +101,7 @@ impl Reason {
             Self::Fill | Self::Piece | Self::Group | Self::MarkedElement | Self::Stroke | Self::Touching => "elements",
             Self::Together | Self::Dot | Self::Large => "elements",
             Self::MarkedCurve | Self::Through | Self::Vast | Self::Crowded | Self::Beside | Self::Asked => "curves",
-            Self::Traced | Self::Band => "curves",
+            Self::Traced | Self::Band | Self::HandBand | Self::BandOutline => "curves",
             Self::Area => "areas",
             Self::Background => "background",
             Self::Covered | Self::Original | Self::Border | Self::Outside => "left out",
@@ -124,6 +128,8 @@ impl Reason {
             Self::Asked => "strokes, as --method curves asks",
             Self::Traced => "outlines of lines of one width",
             Self::Band => "filled bands of one width through the frame",
+            Self::HandBand => "filled bands of about one width through the frame, as lines of their mean width",
+            Self::BandOutline => "outlines of fills that run through the frame",
             Self::Area => "fills that run through the frame",
             Self::Background => "fills that cover the frame",
             Self::Covered => "fully covered by something opaque",

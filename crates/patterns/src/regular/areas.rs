@@ -1,6 +1,8 @@
 //! Filled areas on a lattice: the part of them in one cell, copied to all cells and united again.
 
-use arabesque_core::{Border, Budget, Covered, Domain, Exemplar, FillRule, Outline, Result, Ring, Shape, Vector};
+use arabesque_core::{
+    Border, Bounds, Budget, Covered, Domain, Exemplar, FillRule, Outline, Result, Ring, Shape, Vector,
+};
 
 use crate::{
     regular::grid::{Grid, Ground},
@@ -9,6 +11,9 @@ use crate::{
 
 /// Cells overlap by this share of the shorter vector, so that no hair line is left between them.
 const OVERLAP: f64 = 1e-4;
+
+/// How far areas reach over the sides of a tile, as a share of its shorter side.
+const BLEED: f64 = 0.01;
 
 /// Cells that are united at once; what comes of them is united again.
 const AT_ONCE: usize = 64;
@@ -61,21 +66,37 @@ fn parallelogram(origin: Vector<2>, lattice: &Lattice) -> Ring<2> {
     vec![corner, corner + a, corner + a + b, corner + b]
 }
 
-/// Adds the areas in the cells `nodes` to `made`, cut at the border of the domain.
+/// Adds the areas of the cell, in all cells that are seen, to `made`, cut at the border of the domain.
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop; what is made by then is whole.
-pub(crate) fn draw(areas: &[CellArea], ground: &Ground<'_>, nodes: &[Node], made: &mut Vec<Covered<2>>) -> Result<()> {
+pub(crate) fn draw(
+    areas: &[CellArea],
+    origin: Vector<2>,
+    ground: &Ground<'_>,
+    made: &mut Vec<Covered<2>>,
+) -> Result<()> {
+    if areas.is_empty() {
+        return Ok(());
+    }
     let budget = &ground.request.budget.stage("filling areas");
     let cut = Cut::new(ground);
+    let nodes = ground.grid.nodes_around(origin, &seen(&ground.request.domain), budget)?;
     for area in areas {
-        let whole = united(area, ground.grid, nodes, budget)?;
+        let whole = united(area, ground.grid, &nodes, budget)?;
         let outline = cut.apply(whole, budget)?;
         if !outline.rings.is_empty() {
-            made.push(Covered { outline, source: area.source });
+            made.push(Covered { outline, source: area.source, paint: ground.grid.map() });
         }
     }
     Ok(())
+}
+
+/// The box in which a domain is seen: a tile with a little around it, where it overlaps with those beside it.
+fn seen(domain: &Domain<2>) -> Bounds<2> {
+    let bounds = domain.bounds();
+    let [width, height] = bounds.size().0;
+    if domain.period().is_some() { bounds.grown(BLEED * width.min(height)) } else { bounds }
 }
 
 /// The copies of a part in all cells, as one.
@@ -100,6 +121,10 @@ pub(crate) fn united(area: &CellArea, grid: &Grid, nodes: &[Node], budget: &Budg
     Ok(parts.pop().unwrap_or_default())
 }
 
+fn rectangle(b: &Bounds<2>) -> Outline<2> {
+    Outline { rings: vec![vec![b.min, Vector::xy(b.max[0], b.min[1]), b.max, Vector::xy(b.min[0], b.max[1])]] }
+}
+
 /// Cutting areas at the border and at what is in the way.
 pub(crate) struct Cut<'a> {
     domain: Option<Outline<2>>,
@@ -111,8 +136,11 @@ impl<'a> Cut<'a> {
     pub(crate) fn new(ground: &Ground<'a>) -> Self {
         let request = ground.request;
         let crosses = request.border == Border::Cross && request.known.is_none();
-        let endless = matches!(request.domain, Domain::Torus(_)) || crosses;
-        let domain = if endless { None } else { request.domain.outline() };
+        let domain = match &request.domain {
+            torus @ Domain::Torus(_) => Some(rectangle(&seen(torus))),
+            _ if crosses => None,
+            domain => domain.outline(),
+        };
         Self { domain, obstacles: ground.obstacles }
     }
 

@@ -184,8 +184,16 @@ impl Regular {
     }
 
     /// The repeat by which it is continued.
-    pub(crate) fn into_repeat(self) -> Repeat {
-        self.repeat
+    pub fn repeat(&self) -> &Repeat {
+        &self.repeat
+    }
+
+    /// Which elements lie at which place of the cell.
+    pub(crate) fn places(&self) -> Vec<(usize, usize)> {
+        let place = |(number, orbit): (usize, &Orbit)| {
+            orbit.instances.iter().map(move |instance| (instance.element as usize, number)).collect::<Vec<_>>()
+        };
+        self.orbits.iter().enumerate().flat_map(place).collect()
     }
 
     /// Draws strokes and areas into `made`, where they stay when the run is cut short.
@@ -201,7 +209,7 @@ impl Regular {
         let margin = strokes.widest() * ground.grid.scale();
         let nodes = strokes.nodes(ground, margin)?;
         strokes.draw(ground, &nodes, made.0)?;
-        areas::draw(&cell.areas, ground, &nodes, made.1)
+        areas::draw(&cell.areas, cell.origin, ground, made.1)
     }
 
     /// Tells what the run will take, and refuses what is too much.

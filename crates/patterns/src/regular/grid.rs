@@ -133,6 +133,11 @@ impl Grid {
         self.shift += by;
     }
 
+    /// From the exemplar to the output: what is applied first, and the shift after it.
+    pub(crate) fn map(&self) -> (Matrix<2>, Vector<2>) {
+        (self.linear, self.shift)
+    }
+
     /// Where a place of the exemplar lies in the output, `node` of the lattice on.
     pub(crate) fn place(&self, p: Vector<2>, node: Node) -> Vector<2> {
         self.vector(p) + self.shift + self.lattice.at(node)
@@ -157,6 +162,14 @@ impl Grid {
         if let Some(tiling) = &self.tiling {
             return Ok(tiling.nodes());
         }
+        self.nodes_around(corner, bounds, budget)
+    }
+
+    /// All nodes of which the cell may reach into a box, on a torus the same ones of the tile again and again.
+    ///
+    /// # Errors
+    /// When there are more than may be asked about.
+    pub(crate) fn nodes_around(&self, corner: Vector<2>, bounds: &Bounds<2>, budget: &Budget) -> Result<Vec<Node>> {
         let [rows, columns] = self.lattice.nodes_in(self.place(corner, [0, 0]), bounds);
         let [a, b] = self.lattice.vectors;
         let near = |node: &Node| {

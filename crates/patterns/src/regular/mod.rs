@@ -18,4 +18,5 @@ pub(crate) mod joints;
 pub(crate) mod kept;
 pub(crate) mod strokes;
 
-pub(crate) use fill::{Filled, Regular};
+pub(crate) use fill::Filled;
+pub use fill::Regular;

@@ -9,6 +9,7 @@ use crate::repeat::{
     lattice::{Lattice, are_parallel},
     lines::Lines,
     marks::{Anchor, Kinds, Mark, Marks},
+    stacking::Stacking,
     straight,
     support::{LineIndex, is_supported},
 };
@@ -92,6 +93,7 @@ pub(crate) fn find_for<T>(
     let budget = &budget.stage("finding the repeat");
     let lines = Lines::new(exemplar, budget)?;
     let index = LineIndex::new(&lines, exemplar.window, budget)?;
+    let stacking = Stacking::new(exemplar, budget)?;
     let mut doubtful: Option<Repeat> = None;
     for mode in MODES {
         // Lines either go over into themselves or they do not.
@@ -106,8 +108,12 @@ pub(crate) fn find_for<T>(
         if marks.all.len() < mode.least {
             continue;
         }
-        let search = Search { marks: &marks, lines: &index, mode, side: exemplar.view().side(), budget };
-        let Some(mut found) = search.lattice()? else { continue };
+        let order = stacking.as_ref().filter(|_| mode.kinds != Kinds::Any);
+        let search = Search { marks: &marks, lines: &index, order, mode, side: exemplar.view().side(), budget };
+        let in_order = search.lattice()?;
+        let search = Search { order: None, ..search };
+        let found = if in_order.is_none() && order.is_some() { search.lattice()? } else { in_order };
+        let Some(mut found) = found else { continue };
         if mode.kinds == Kinds::Any && mode.anchor == Anchor::Centre {
             // Different things are aligned by their boxes as often as by their centres.
             let by_box = Mode { anchor: Anchor::Box, ..mode };
@@ -167,7 +173,8 @@ fn fitted_by_looks(
     budget: &Budget,
 ) -> Result<Repeat> {
     let Some(marks) = Marks::new(exemplar, lines, Kinds::Looks, Anchor::Centre, budget)? else { return Ok(found) };
-    let search = Search { marks: &marks, lines: index, mode: MODES[0], side: exemplar.view().side(), budget };
+    let (mode, order, side) = (MODES[0], None, exemplar.view().side());
+    let search = Search { marks: &marks, lines: index, order, mode, side, budget };
     let fit = search.fit(&found.lattice)?;
     let better = fit.jitter < 0.5 * found.jitter && fit.pairs >= MANY.0;
     match Lattice::new(fit.vectors[0], fit.vectors[1]).filter(|_| better) {
@@ -187,6 +194,8 @@ fn are_of_all_sizes(exemplar: &Exemplar<2>) -> bool {
 struct Search<'a> {
     marks: &'a Marks,
     lines: &'a LineIndex<'a>,
+    /// What lies on what, where that has to be kept.
+    order: Option<&'a Stacking>,
     mode: Mode,
     side: f64,
     budget: &'a Budget,
@@ -205,7 +214,8 @@ impl Search<'_> {
                 continue;
             }
             let holds = is_supported(self.marks, by, tolerance, self.mode.seen, self.budget)?
-                && self.lines.supports(by, tolerance.min(0.01 * self.side), self.budget)?;
+                && self.lines.supports(by, tolerance.min(0.01 * self.side), self.budget)?
+                && self.order.map_or(Ok(true), |order| order.supports(self.marks, by, tolerance, self.budget))?;
             match (holds, first) {
                 (false, _) => {}
                 (true, None) => first = Some(by),
@@ -235,7 +245,7 @@ impl Search<'_> {
         };
         let marks_inside =
             self.marks.all.iter().all(|m| is_inside(m.extent.min[across], m.extent.max[across]) && !is_cut(m));
-        if !(along && marks_inside && self.lines.are_within(across)) {
+        if !(along && marks_inside && self.lines.are_within_or_go_on(across)) {
             return Ok(None);
         }
         let mut b = Vector::ZERO;

@@ -15,6 +15,7 @@ pub(crate) mod marks;
 pub(crate) mod one_way;
 pub(crate) mod orbits;
 pub(crate) mod seamless;
+pub(crate) mod stacking;
 pub(crate) mod straight;
 pub(crate) mod support;
 pub(crate) mod symmetry;

@@ -1,11 +1,11 @@
 //! The repeat of parallel straight lines, which have no points of their own.
 
-use arabesque_core::{Budget, Result, Vector};
+use arabesque_core::{Bounds, Budget, Result, Segment, Vector};
 
 use crate::repeat::{
     description::{Explains, Extent, Repeat},
     lattice::Lattice,
-    lines::Lines,
+    lines::{Feature, Lines},
     marks::Anchor,
     support::LineIndex,
 };
@@ -24,14 +24,21 @@ const MOST: usize = 2000;
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
 pub(super) fn stripes(lines: &Lines, index: &LineIndex<'_>, budget: &Budget) -> Result<Option<Repeat>> {
-    let stretches = &lines.stretches;
+    // How areas end at the frame or beyond it says nothing.
+    let seen = index.seen();
+    let is_seen = |a: Vector<2>, b: Vector<2>| crosses((a, b), &seen);
+    let stretches: Vec<_> = lines.stretches.iter().filter(|((a, b), _)| is_seen(*a, *b)).collect();
     let Some(((from, to), _)) = stretches.first() else { return Ok(None) };
     let along = (*to - *from).unit_or_zero();
     let normal = Vector::xy(-along[1], along[0]);
     let is_parallel = |way: Vector<2>| way.unit_or_zero().cross(along).abs() < PARALLEL;
-    let all_parallel =
-        lines.tracks.iter().all(|t| t.points.windows(2).all(|w| w[0] == w[1] || is_parallel(w[1] - w[0])));
-    if !all_parallel || stretches.len() < 3 || stretches.len() > MOST {
+    let all_parallel = lines
+        .tracks
+        .iter()
+        .all(|t| t.points.windows(2).all(|w| !is_seen(w[0], w[1]) || w[0] == w[1] || is_parallel(w[1] - w[0])));
+    // What ends inside the frame is not the same all along.
+    let has_ends = lines.features.iter().any(|(_, feature)| matches!(feature, Feature::End(_)));
+    if has_ends || !all_parallel || stretches.len() < 3 || stretches.len() > MOST {
         return Ok(None);
     }
     let mut places: Vec<(f64, usize)> = stretches.iter().map(|((a, _), style)| (a.dot(normal), *style)).collect();
@@ -73,4 +80,21 @@ pub(super) fn stripes(lines: &Lines, index: &LineIndex<'_>, budget: &Budget) -> 
         return Ok(Some(Repeat { lattice, explains, extent, anchor, jitter: 0.0, share: 1.0 }));
     }
     Ok(None)
+}
+
+/// Whether a part of a segment lies in a box.
+fn crosses((a, b): Segment<2>, within: &Bounds<2>) -> bool {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for k in 0..2 {
+        let way = b[k] - a[k];
+        if way == 0.0 {
+            if !(within.min[k]..=within.max[k]).contains(&a[k]) {
+                return false;
+            }
+            continue;
+        }
+        let (s, t) = ((within.min[k] - a[k]) / way, (within.max[k] - a[k]) / way);
+        (from, to) = (from.max(s.min(t)), to.min(s.max(t)));
+    }
+    from <= to
 }

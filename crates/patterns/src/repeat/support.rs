@@ -119,8 +119,46 @@ impl<'a> LineIndex<'a> {
         Ok(Self { lines, window, pieces, index, step })
     }
 
+    /// The frame without what lies along its sides.
+    pub(crate) fn seen(&self) -> Bounds<2> {
+        self.window.grown(-AT_FRAME * self.window.size().0.into_iter().fold(f64::INFINITY, f64::min))
+    }
+
+    /// Whether no line reaches the sides of the frame that lie across an axis, or each that reaches one goes on where another
+    /// reaches the other.
+    pub(crate) fn are_within_or_go_on(&self, axis: usize) -> bool {
+        self.are_within(axis) || self.go_on(axis)
+    }
+
+    /// Whether the frame cuts lines at both of these sides at the same places.
+    fn go_on(&self, axis: usize) -> bool {
+        let near = AT_FRAME * self.window.size()[axis];
+        let [low, high] = [self.window.min[axis] + near, self.window.max[axis] - near].map(|c| self.cut_at(axis, c));
+        let apart = 2.0 * AT_FRAME * self.window.size()[1 - axis];
+        let is_same = |(a, b): (&(usize, f64), &(usize, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= apart;
+        !self.lines.tracks.iter().any(|track| track.is_border)
+            && low.len() == high.len()
+            && low.iter().zip(&high).all(is_same)
+    }
+
+    /// Where lines cross a line across an axis, with their styles.
+    fn cut_at(&self, axis: usize, at: f64) -> Vec<(usize, f64)> {
+        let mut cuts = Vec::new();
+        for track in &self.lines.tracks {
+            let closing = track.closed.then(|| track.points.last().zip(track.points.first())).flatten();
+            for (a, b) in track.points.windows(2).map(|w| (&w[0], &w[1])).chain(closing) {
+                if (a[axis] < at) != (b[axis] < at) {
+                    let place = *a + (*b - *a) * ((at - a[axis]) / (b[axis] - a[axis]));
+                    cuts.push((track.style, place[1 - axis]));
+                }
+            }
+        }
+        cuts.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        cuts
+    }
+
     /// Whether no line reaches the sides of the frame that lie across an axis.
-    pub(crate) fn are_within(&self, axis: usize) -> bool {
+    fn are_within(&self, axis: usize) -> bool {
         let near = AT_FRAME * self.window.size()[axis];
         let (low, high) = (self.window.min[axis] + near, self.window.max[axis] - near);
         self.lines.tracks.iter().flat_map(|t| &t.points).all(|p| (low..=high).contains(&p[axis]))

@@ -13,6 +13,9 @@ const LINES: usize = 480;
 /// Where between two lines the drawing is looked at: no round share, since edges often lie on these.
 const OFF: f64 = 0.381_966;
 
+/// Things that overlap by less than twice this share of the drawing abut.
+const ABUT: f64 = 1e-5;
+
 /// Work for an edge, and for a stretch of a line that is covered.
 const PRICE: (u64, u64) = (20, 150);
 
@@ -78,8 +81,11 @@ fn stretches(painted: &[Painted<'_>], window: &Bounds<2>, axis: usize, budget: &
         }
         for (k, mut places) in std::mem::take(&mut crossings) {
             places.sort_by(f64::total_cmp);
-            let pairs = places.chunks_exact(2).filter(|p| p[1] > window.min[axis] && p[0] < window.max[axis]);
-            lines[k].extend(pairs.map(|p| Stretch { from: p[0], to: p[1], which }));
+            // What ends where another begins does not lie on it.
+            let slack = ABUT * size[axis];
+            let is_seen = |p: &&[f64]| p[1] > window.min[axis] && p[0] < window.max[axis] && p[1] - p[0] > 2.0 * slack;
+            let pairs = places.chunks_exact(2).filter(is_seen);
+            lines[k].extend(pairs.map(|p| Stretch { from: p[0] + slack, to: p[1] - slack, which }));
         }
     }
     Ok(lines)

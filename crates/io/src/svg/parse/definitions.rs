@@ -17,12 +17,50 @@ use crate::{
         guard,
         length::{Axis, Viewport},
         notes::Note,
-        paint::reference,
+        paint::{fraction, reference},
         source::{Source, clip_text, href},
         style::{ComputedStyle, Own, computed},
     },
     text::xml::{number, push_attribute},
 };
+
+/// A stop of a gradient: where it is, from 0 to 1, and its properties as attributes.
+pub(crate) type Stop = (f64, String);
+
+/// A linear gradient that begins anew at every step.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RepeatedGradient {
+    /// Where one of them begins, in the coordinates of the root.
+    pub(crate) start: [f64; 2],
+    /// From there to where the next begins.
+    pub(crate) step: [f64; 2],
+    /// The share of the step that the stops are spread over; before and after them, the nearest goes on.
+    pub(crate) share: f64,
+    pub(crate) stops: Rc<[Stop]>,
+}
+
+/// The stops that a gradient has itself.
+pub(crate) fn stops<'a>(source: &Source<'a>, node: Xml<'a, 'a>, viewport: Viewport) -> Vec<Stop> {
+    let all = node.children().filter(|n| n.tag_name().name() == "stop");
+    all.map(|stop| (fraction(stop.attribute("offset").unwrap_or("0")), stop_properties(source, stop, viewport)))
+        .collect()
+}
+
+/// The properties of a stop as attributes.
+fn stop_properties<'a>(source: &Source<'a>, stop: Xml<'a, 'a>, viewport: Viewport) -> String {
+    let mut style = Rc::new(ComputedStyle::default());
+    let mut own = Own::default();
+    let mut chain: Vec<_> = stop.ancestors().filter(Xml::is_element).collect();
+    chain.reverse();
+    for node in chain {
+        (style, own) = computed(source, node, &style, viewport);
+    }
+    let mut out = String::new();
+    for (name, value) in own.iter().filter(|(name, _)| name.starts_with("stop-")) {
+        push_attribute(&mut out, name, value);
+    }
+    out
+}
 
 /// The definitions of one file that are referred to, by their new ids.
 pub(crate) struct Definitions<'a, 's> {
@@ -32,6 +70,8 @@ pub(crate) struct Definitions<'a, 's> {
     queue: VecDeque<(NodeId, String, Viewport)>,
     /// Clips by rectangles: their markup, and which of them it is.
     rectangles: BTreeMap<String, usize>,
+    /// Gradients that begin anew at every step: all but their ids, and which of them each is.
+    repeated: BTreeMap<String, usize>,
     /// The stops that gradients have themselves, written.
     stops: BTreeMap<u32, Rc<str>>,
     /// What drawing each definition takes, in nodes.
@@ -60,6 +100,7 @@ impl<'a, 's> Definitions<'a, 's> {
             names: BTreeMap::new(),
             queue: VecDeque::new(),
             rectangles: BTreeMap::new(),
+            repeated: BTreeMap::new(),
             stops: BTreeMap::new(),
             weights: BTreeMap::new(),
             failed: None,
@@ -144,6 +185,27 @@ impl<'a, 's> Definitions<'a, 's> {
         Some(format!("url(#{})", self.refer(id, &[tag], viewport)?))
     }
 
+    /// A reference to a gradient that begins anew at every step.
+    pub(crate) fn repeated(&mut self, gradient: &RepeatedGradient) -> String {
+        let RepeatedGradient { start: [x, y], step: [dx, dy], share, stops } = gradient;
+        let mut text = String::from(" gradientUnits=\"userSpaceOnUse\" spreadMethod=\"repeat\"");
+        for (name, value) in [("x1", *x), ("y1", *y), ("x2", x + dx), ("y2", y + dy)] {
+            push_attribute(&mut text, name, &number(value));
+        }
+        text.push('>');
+        let mut stop = |at: f64, properties: &str| {
+            let _ = write!(text, "<stop offset=\"{}\"{properties}/>", number(at));
+        };
+        stops.iter().for_each(|(at, properties)| stop(at * share, properties));
+        if let (Some((_, first)), Some((_, last)), true) = (stops.first(), stops.last(), *share < 1.0) {
+            let middle = 0.5 * (1.0 + share);
+            [(middle, last), (middle, first), (1.0, first)].into_iter().for_each(|(at, p)| stop(at, p));
+        }
+        let number = self.repeated.len();
+        let number = *self.repeated.entry(text).or_insert(number);
+        format!("url(#{}-repeat_{number})", self.prefix)
+    }
+
     /// A reference to a clip by a rectangle.
     pub(crate) fn rectangle(&mut self, clip: &Rect) -> String {
         let [x, y, w, h] = [clip.x0, clip.y0, clip.width(), clip.height()].map(number);
@@ -178,6 +240,11 @@ impl<'a, 's> Definitions<'a, 's> {
         rectangles.sort();
         for (number, shape) in rectangles {
             let _ = write!(out, "<clipPath id=\"{}-viewport_{number}\">{shape}</clipPath>", self.prefix);
+        }
+        let mut repeated: Vec<_> = self.repeated.iter().map(|(text, number)| (number, text)).collect();
+        repeated.sort();
+        for (number, text) in repeated {
+            let _ = write!(out, "<linearGradient id=\"{}-repeat_{number}\"{text}</linearGradient>", self.prefix);
         }
         self.failed.map_or(Ok(out), Err)
     }
@@ -233,18 +300,9 @@ impl<'a, 's> Definitions<'a, 's> {
     }
 
     fn stop(&self, out: &mut String, stop: Xml<'a, 'a>, viewport: Viewport) {
-        let mut style = Rc::new(ComputedStyle::default());
-        let mut own = Own::default();
-        let mut chain: Vec<_> = stop.ancestors().filter(Xml::is_element).collect();
-        chain.reverse();
-        for node in chain {
-            (style, own) = computed(self.source, node, &style, viewport);
-        }
         out.push_str("<stop");
         push_attribute(out, "offset", stop.attribute("offset").unwrap_or("0"));
-        for (name, value) in own.iter().filter(|(name, _)| name.starts_with("stop-")) {
-            push_attribute(out, name, value);
-        }
+        out.push_str(&stop_properties(self.source, stop, viewport));
         out.push_str("/>");
     }
 

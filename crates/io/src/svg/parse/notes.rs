@@ -11,6 +11,8 @@ pub(crate) enum Note {
     External,
     /// A reference leads nowhere.
     Missing,
+    /// A fill or stroke refers to a paint that is not there.
+    MissingPaint,
     /// Text that is not converted to paths.
     Text,
     /// Markers on lines that are continued.
@@ -83,6 +85,10 @@ impl Note {
     fn message(self) -> (&'static str, &'static str) {
         match self {
             Self::External => ("reference to something outside the file, not fetched", "embed it in the file"),
+            Self::MissingPaint => (
+                "fill or stroke by a paint that does not exist, not painted",
+                "define a gradient or pattern of that id, or give it a colour",
+            ),
             Self::Missing => ("reference to an id that does not exist", "remove it, or restore what it refers to"),
             Self::Text => ("text ignored", "convert it to paths (Inkscape: Path > Object to Path)"),
             Self::Marker => (
@@ -101,7 +107,10 @@ impl Note {
                 "put it on each thing, or mark the group data-arabesque=\"element\"",
             ),
             Self::ZeroSize => ("element without extent ignored", "delete it, or give it a size"),
-            Self::Outside => ("element outside the frame ignored", "delete it, or make the page larger"),
+            Self::Outside => (
+                "more than half of what is drawn lies beyond the frame and is ignored",
+                "make the page larger, or move the drawing onto it",
+            ),
             Self::Border => ("stroke along the frame ignored", "mark it data-arabesque=\"element\" to keep it"),
             Self::OldInkscape => (
                 "file of an Inkscape before 0.92, whose pixels were 90 to an inch; 96 are assumed",
@@ -212,7 +221,11 @@ impl Notes {
             !matches!(note, Note::Corner | Note::Period | Note::NoSize | Note::OldInkscape | Note::NoNamespace)
         };
         let told = all.iter().filter(|(note, _)| is_relevant(note));
-        told.map(|(note, (count, _))| format!("{} ({count}x)", note.message().0)).collect::<Vec<_>>().join(", ")
+        let one = |(note, (count, examples)): (&Note, &(usize, Vec<String>))| match examples.first() {
+            Some(name) if *note == Note::MissingPaint => format!("{}: {name} ({count}x)", note.message().0),
+            _ => format!("{} ({count}x)", note.message().0),
+        };
+        told.map(one).collect::<Vec<_>>().join(", ")
     }
 
     /// One warning per kind.

@@ -140,6 +140,20 @@ impl ComputedStyle {
         style
     }
 
+    /// The same without a stroke.
+    pub(crate) fn unstroked(&self) -> Self {
+        let mut style = self.unmarked();
+        style.0[P::Stroke as usize] = None;
+        style
+    }
+
+    /// The same without a fill.
+    pub(crate) fn unfilled(&self) -> Self {
+        let mut style = self.clone();
+        style.0[P::Fill as usize] = Some("none".into());
+        style
+    }
+
     /// Whether line markers are asked for.
     pub(crate) fn has_markers(&self) -> bool {
         [P::MarkerStart, P::MarkerMid, P::MarkerEnd].iter().any(|&p| self.get(p) != "none")

@@ -21,6 +21,7 @@ use crate::{
             document::{Document, Opened, parts},
             domain::shape,
             flow::strokes,
+            missing_paints::note_missing_paints,
         },
         reason::{Reason, Understood},
         shape::{
@@ -33,10 +34,13 @@ use crate::{
             classes::{self, Classes},
             curves::Gatherer,
             fragment::{fragment, push_placed},
-            frame::{self, frame_mark, is_frame_mark},
+            frame::{self, frame_mark, is_frame_mark, shows},
             item::{Item, Kind, Origin, Selection},
-            outlined_lines::{take_areas, take_backgrounds, trace},
-            parts::bands::follow_bands,
+            outlined_lines::{refuse_through, take_areas, take_backgrounds, trace},
+            parts::{
+                bands::follow_bands, gradients::take_gradients, hand::follow_by_hand, outlined::part_outlined,
+                uncovered::uncover,
+            },
             select::select,
             surroundings::Surroundings,
         },
@@ -64,6 +68,7 @@ impl Document<'_> {
         let source = &source;
         let painter = Painter::new(source);
         painter.check_all(&root, Affine::IDENTITY)?;
+        note_missing_paints(source, &root);
         let unrolled = self.periods(source, &root, page.as_ref())?;
         let mut scope = match &unrolled {
             Some(unrolled) => Scope::of(unrolled),
@@ -82,7 +87,7 @@ impl Document<'_> {
             // Copies beside the window are nothing to speak of.
             found.items.retain(|item| item.outline.bounds().intersects(&window));
         }
-        settle(&painter, &mut found, window, self.options)?;
+        let window = settle(&painter, &mut found, (window, scope.window.is_some()), self.options)?;
         let job = job(&painter, &root)?;
         if source.sheet.is_exhausted() {
             source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
@@ -92,7 +97,7 @@ impl Document<'_> {
         let is_line: Vec<bool> = found.items.iter().map(is_curve).collect();
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
-        let mut gatherer = Gatherer::new(&painter, &mut definitions, window);
+        let mut gatherer = Gatherer::new(&painter, &mut definitions, window, self.options.dashes);
         let styles_of = lines.iter().map(|item| gathered(&mut gatherer, item)).collect::<Result<Vec<_>>>()?;
         let found_curves = gatherer.finish()?;
         let paints = found_curves.styles.len();
@@ -279,34 +284,51 @@ fn content(node: &Node, parent: Affine) -> Bounds<2> {
     }
 }
 
-/// Drops what lies outside, and refuses what cannot be handled.
-fn settle(painter: &Painter<'_, '_>, found: &mut Selection, window: Bounds<2>, options: &ReadOptions) -> Result<()> {
+/// Drops what lies outside, and refuses what cannot be handled. Returns the frame, given the one so far and whether the
+/// file states it.
+fn settle(
+    painter: &Painter<'_, '_>,
+    found: &mut Selection,
+    (mut window, is_stated): (Bounds<2>, bool),
+    options: &ReadOptions,
+) -> Result<Bounds<2>> {
     let source = painter.source;
-    let Selection { items, left_out, background } = found;
+    let Selection { items, left_out, .. } = found;
     items.retain(|item| {
-        let inside = item.outline.bounds().intersects(&window);
+        let inside = shows(item, &window);
         if !inside {
-            source.notes.add(Note::Outside, || item.meta.id.clone().unwrap_or_default());
             left_out.push((Reason::Outside, item.name(source), Outline::default()));
         }
         inside
     });
+    // A pattern that was drawn by a program mostly reaches over its page; most of it beside the page is a mistake.
+    if left_out.iter().filter(|(reason, ..)| *reason == Reason::Outside).count() > items.len() {
+        source.notes.add(Note::Outside, String::new);
+    }
     if items.len() > source.limits.elements {
         return Err(guard::too_much(format!("{}: elements", source.name), items.len(), source.limits.elements as u64));
     }
     if options.method != Method::Elements {
-        follow_bands(source, items, &window)?;
-        if options.large_fills == LargeFills::Areas {
-            take_areas(items, &window);
-            take_backgrounds(items, background, painter)?;
+        let as_areas = options.large_fills == LargeFills::Areas;
+        part_outlined(&mut found.items, painter, &window, as_areas)?;
+        follow_bands(source, &mut found.items, &window)?;
+        if as_areas {
+            take_areas(&mut found.items, &window);
+            take_gradients(source, &mut found.items, &window)?;
+            take_backgrounds(found, painter, &window)?;
+            window = uncover(&mut found.items, painter, &window)?;
         }
-        trace(source, items, &window)?;
-        refuse_networks(source, items, &window)?;
+        trace(source, &mut found.items, &window)?;
+        follow_by_hand(source, &mut found.items, &window)?;
+        refuse_networks(source, &found.items, &window)?;
+        if is_stated {
+            refuse_through(source, &found.items, &window)?;
+        }
     }
-    for item in items.iter().filter(|item| item.kind == Kind::Large) {
+    for item in found.items.iter().filter(|item| item.kind == Kind::Large) {
         source.notes.add(Note::LargeElement, || item.name(source));
     }
-    Ok(())
+    Ok(window)
 }
 
 /// Refuses lines that the drawing program has turned into one outline, which are too large for an element.

@@ -10,6 +10,7 @@ pub(crate) mod guides;
 pub(crate) mod host_document;
 pub(crate) mod host_text;
 pub(crate) mod matcher;
+pub(crate) mod missing_paints;
 pub(crate) mod painted_areas;
 pub(crate) mod placed;
 pub(crate) mod sorter;

@@ -5,6 +5,7 @@ use arabesque_core::{Bounds, Decimals, Drawn, Outline, Path, Placement, Result};
 use crate::svg::{
     drawing::Stroke,
     layers::stacks::{Stack, nearness, paints_of, stacks},
+    options::Dashes,
     parse::definitions::Definitions,
     read::matcher::Matcher,
     shape::{
@@ -187,7 +188,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
     }
 
     fn remains(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Remains> {
-        let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
+        let mut gatherer = Gatherer::new(self.painter, definitions, self.window, Dashes::OfStroke);
         gatherer.add(item)?;
         let Curves { curves, strokes, .. } = gatherer.finish()?;
         // A clip takes something away as well: then the line alone is not what the file shows.

@@ -72,7 +72,8 @@ fn is_covered(
     cell: &Cell,
     (look, side, range): (Option<usize>, usize, [f64; 2]),
 ) -> bool {
-    let alike = pieces.iter().filter(|other| look.is_none_or(|look| units[other.unit].look == look));
+    // Something behind it all meets everything, and says nothing.
+    let alike = pieces.iter().filter(|other| look.map_or(!other.covers, |look| units[other.unit].look == look));
     let mut there: Vec<[f64; 2]> =
         alike.flat_map(|other| &other.gaps).filter(|gap| gap.side == side).map(|gap| gap.range).collect();
     there.sort_by(|a, b| a[0].total_cmp(&b[0]));

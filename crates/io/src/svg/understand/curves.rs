@@ -9,6 +9,7 @@ use crate::{
     svg::{
         centreline::Centrelines,
         drawing::Stroke,
+        options::Dashes,
         parse::{
             colour,
             definitions::Definitions,
@@ -29,6 +30,7 @@ use crate::{
         },
         understand::{
             classes::names_of,
+            dashes::DashPattern,
             item::{Item, Kind},
             parts::cells::shared_once,
         },
@@ -65,6 +67,7 @@ pub(crate) struct Gatherer<'a, 's, 'i, 'd> {
     pub(crate) definitions: &'d mut Definitions<'a, 's>,
     /// Nothing outside of it is of interest.
     pub(crate) window: Bounds<2>,
+    dashes: Dashes,
     found: Curves,
     /// Index into the styles by paint.
     style_of: BTreeMap<String, usize>,
@@ -77,9 +80,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         painter: &'i Painter<'a, 's>,
         definitions: &'d mut Definitions<'a, 's>,
         window: Bounds<2>,
+        dashes: Dashes,
     ) -> Self {
         let (found, style_of, seen) = (Curves::default(), BTreeMap::new(), Seen::new(&window));
-        Self { painter, definitions, window, found, style_of, seen }
+        Self { painter, definitions, window, dashes, found, style_of, seen }
     }
 
     /// Adds the strokes of an item.
@@ -116,6 +120,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         }
         paint.push_str(match item.reason {
             Reason::Band => " stroke-miterlimit=\"20\"",
+            Reason::HandBand => " stroke-linejoin=\"round\"",
             _ => " stroke-linecap=\"round\"",
         });
         let stroke = Stroke {
@@ -142,9 +147,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         };
         let mut paint = String::new();
         let fill = leaf.style.get(P::Fill);
-        match reference(fill) {
-            Some(_) => push_attribute(&mut paint, "fill", &self.definitions.paint(fill, leaf.viewport)),
-            None => push_attribute(&mut paint, "fill", fill),
+        match (&item.gradient, reference(fill)) {
+            (Some(gradient), _) => push_attribute(&mut paint, "fill", &self.definitions.repeated(gradient)),
+            (None, Some(_)) => push_attribute(&mut paint, "fill", &self.definitions.paint(fill, leaf.viewport)),
+            (None, None) => push_attribute(&mut paint, "fill", fill),
         }
         if fraction(leaf.style.get(P::FillOpacity)) < 1.0 {
             push_attribute(&mut paint, "fill-opacity", leaf.style.get(P::FillOpacity));
@@ -159,7 +165,10 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
             label: item.meta.label.clone(),
         };
         let style = self.style(&fill, &item.meta);
-        let (outline, colour) = (item.fine_outline(self.painter)?, item.painted.colour());
+        let (mut outline, colour) = (item.fine_outline(self.painter)?, item.painted.colour());
+        if let Some(hidden) = &item.hidden {
+            outline = outline.try_difference(hidden, self.painter.source.budget)?;
+        }
         self.found.areas.push(Area { outline, style, colour });
         self.found.fills.push(fill);
         Ok(())
@@ -228,7 +237,9 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         if node.own.get("mask").is_some_and(|m| m != "none") {
             notes.add(Note::CurveMask, name);
         }
-        let stroke = self.stroke(node, at, item);
+        let mut stroke = self.stroke(node, at, item);
+        let is_apart = self.dashes == Dashes::Apart && !stroke.dashes.is_empty();
+        let pattern = is_apart.then(|| DashPattern::taken_from(&mut stroke));
         let style = self.style(&stroke, &item.meta);
         let colour = colour::of_paint(self.painter.source, node.style.get(P::Stroke));
         for elements in path.subpaths() {
@@ -241,13 +252,32 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
             }
             let budget = self.painter.source.budget;
             budget.spend(PER_EDGE * at.clip.as_ref().map_or(0, |clip| clip.points().count()) as u64)?;
-            let parts = at.clip.as_ref().and_then(|clip| cut(&line, clip, Side::Inside));
-            for path in parts.unwrap_or_else(|| vec![line]) {
+            let mut lines = match &pattern {
+                Some(pattern) => pattern.dashes(&line, self.painter.source)?,
+                None => vec![line],
+            };
+            if let Some(clip) = &at.clip {
+                lines =
+                    lines.into_iter().flat_map(|l| cut(&l, clip, Side::Inside).unwrap_or_else(|| vec![l])).collect();
+            }
+            for path in self.uncovered(lines, item)? {
                 self.push(Curve { path, style, width: stroke.width, colour }, &stroke, item)?;
             }
             self.check_count()?;
         }
         Ok(())
+    }
+
+    /// What shows of lines of an item below what is painted over them.
+    fn uncovered(&self, lines: Vec<Path<2>>, item: &Item) -> Result<Vec<Path<2>>> {
+        let Some(hidden) = &item.hidden else { return Ok(lines) };
+        let mut seen = Vec::new();
+        for line in lines {
+            let edges = (hidden.points().count() * line.cubics.len()) as u64;
+            self.painter.source.budget.spend(PER_EDGE * edges)?;
+            seen.extend(cut(&line, hidden, Side::Outside).unwrap_or_else(|| vec![line]));
+        }
+        Ok(seen)
     }
 
     fn push(&mut self, curve: Curve<2>, stroke: &Stroke, item: &Item) -> Result<()> {
@@ -283,7 +313,8 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         let style = &node.style;
         let dashes = style.get(P::StrokeDasharray).split(' ').filter_map(|n| n.parse::<f64>().ok());
         let dashes: Vec<f64> = dashes.map(|d| d * scale).collect();
-        let dash_offset = if dashes.is_empty() { 0.0 } else { style.number(P::StrokeDashoffset) * scale };
+        let is_free = dashes.is_empty() || self.dashes == Dashes::Shifted;
+        let dash_offset = if is_free { 0.0 } else { style.number(P::StrokeDashoffset) * scale };
         Stroke {
             paint: self.paint(node),
             effects: self.effects(node, at.opacity),

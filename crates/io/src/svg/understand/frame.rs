@@ -15,7 +15,10 @@ use crate::svg::{
         stroke::growth,
         subpath::{has_no_length, is_closed},
     },
-    understand::item::{HALF, Item, Kind},
+    understand::{
+        item::{HALF, Item, Kind},
+        parts::bands::length_in,
+    },
 };
 
 /// Share of its diagonal that an element has along the frame when it is cut there.
@@ -29,6 +32,9 @@ const EXACTLY_NEAR: f64 = 1e-5;
 
 /// How near to a side of the frame a stroke ends that is cut there, as a share of the frame.
 const ENDS_NEAR: f64 = 1e-4;
+
+/// How near to a side of the frame something reaches it, as a share of the frame.
+const REACHES: f64 = 1e-3;
 
 /// Sizes that differ by less than this share of the frame are the same.
 const SAME_SIZE: f64 = 2e-4;
@@ -144,6 +150,29 @@ fn cut_sides(path: &BezPath, frame: &Bounds<2>, cut: &mut [bool; 4]) {
 pub(crate) fn is_thin(extent: &Bounds<2>) -> bool {
     let size = extent.size();
     !extent.is_empty() && size[0].min(size[1]) < THIN * longer(extent)
+}
+
+/// How many sides of the frame an item reaches.
+pub(crate) fn reaches(item: &Item, window: &Bounds<2>) -> usize {
+    let (b, near) = (item.outline.bounds(), REACHES * window.size().norm());
+    let sides =
+        |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
+    sides(0) + sides(1)
+}
+
+/// Whether some of an item lies in the frame, not only of the box around it.
+pub(crate) fn shows(item: &Item, window: &Bounds<2>) -> bool {
+    let outline = &item.outline;
+    outline.bounds().intersects(window)
+        && (reaches(item, window) < 2
+            || outline.edges().any(|edge| length_in(edge, window) > 0.0)
+            || outline.contains(window.centre()))
+}
+
+/// Whether an item reaches from one side of the frame to the opposite one: a wave of one width.
+pub(crate) fn runs_through(item: &Item, window: &Bounds<2>) -> bool {
+    let (extent, near) = (item.outline.bounds(), REACHES * longer(window));
+    (0..2).any(|k| extent.min[k] <= window.min[k] + near && extent.max[k] >= window.max[k] - near)
 }
 
 /// The square around the centre of a box, as wide as the longer side.

@@ -9,6 +9,7 @@ use kurbo::Affine;
 use crate::svg::{
     centreline::Centrelines,
     parse::{
+        definitions::RepeatedGradient,
         meta::Meta,
         notes::Note,
         scene::{Content, Node},
@@ -74,6 +75,10 @@ pub(crate) struct Item {
     pub(crate) clip: Option<Rc<Outline<2>>>,
     /// Whether that takes something away from it.
     pub(crate) is_cut: bool,
+    /// What is painted over it and hides what lies below, where it is one of a stack.
+    pub(crate) hidden: Option<Rc<Outline<2>>>,
+    /// The gradient that paints it, and all like it, where it is an area.
+    pub(crate) gradient: Option<Rc<RepeatedGradient>>,
     /// The compound path that it is made of, and which pieces of it, where these are several.
     pub(crate) compound: Option<(Rc<Compound>, Vec<usize>)>,
 }
@@ -102,6 +107,8 @@ impl Item {
             lines: None,
             clip: at.clip.clone(),
             is_cut: false,
+            hidden: None,
+            gradient: None,
             compound: None,
         };
         if let Some(clip) = &at.clip {

@@ -4,6 +4,7 @@ pub(crate) mod abutting;
 pub(crate) mod classes;
 pub(crate) mod compound;
 pub(crate) mod curves;
+pub(crate) mod dashes;
 pub(crate) mod fragment;
 pub(crate) mod frame;
 pub(crate) mod item;

@@ -4,7 +4,6 @@
 use std::{collections::BTreeSet, rc::Rc};
 
 use arabesque_core::{Bounds, Error, Result};
-use kurbo::Affine;
 
 use crate::svg::{
     centreline::centrelines,
@@ -16,15 +15,17 @@ use crate::svg::{
         style::Property as P,
     },
     reason::Reason,
-    shape::{extent::longer, painted_area::Painter},
+    shape::painted_area::Painter,
     understand::{
-        item::{Item, Kind, Origin},
+        frame::{reaches, runs_through},
+        item::{Item, Kind, Origin, Selection},
+        parts::outlined::parted,
         surroundings::Surroundings,
     },
 };
 
-/// How near to a side of the frame something reaches it, as a share of the frame.
-const NEAR: f64 = 1e-3;
+/// Things that run through the frame before they are no things: one may be.
+const SEVERAL: usize = 2;
 
 /// Finds the lines of outlines that are too large for elements, of what is painted like those, and of what is marked as
 /// a curve.
@@ -67,16 +68,9 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
 
 /// Takes fills that run through the frame for areas.
 pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
-    let reaches_over = |item: &Item| {
-        let b = item.outline.bounds();
-        let near = NEAR * window.size().norm();
-        let reaches =
-            |k: usize| usize::from(b.min[k] <= window.min[k] + near) + usize::from(b.max[k] >= window.max[k] - near);
-        reaches(0) + reaches(1) >= 2
-    };
     for item in items.iter_mut().filter(|item| is_plain_fill(item)) {
         let is_area = match item.kind {
-            Kind::Large => reaches_over(item),
+            Kind::Large => reaches(item, window) >= 2,
             Kind::Element => runs_through(item, window),
             Kind::Curve | Kind::Area => false,
         };
@@ -92,34 +86,85 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
 ///
 /// # Errors
 /// As [`Painter::painted`].
-pub(crate) fn take_backgrounds(
-    items: &mut Vec<Item>,
-    background: &mut Vec<(Affine, Rc<Node>)>,
-    painter: &Painter<'_, '_>,
-) -> Result<()> {
+pub(crate) fn take_backgrounds(found: &mut Selection, painter: &Painter<'_, '_>, window: &Bounds<2>) -> Result<()> {
+    let Selection { items, background, left_out } = found;
     let areas = items.iter().filter(|item| item.kind == Kind::Area);
     let paints: BTreeSet<String> = areas.map(|item| item.painted.colours_key()).collect();
     if paints.is_empty() {
         return Ok(());
     }
-    let (mut lowest, mut rest) = (Vec::new(), Vec::new());
+    let (mut lowest, mut rest, mut is_taken) = (Vec::new(), Vec::new(), Vec::new());
     for (parent, node) in background.drain(..) {
         let taken = (Kind::Area, Origin::Fill, Reason::Area);
         let item = Item::taken(painter, &node, &Surroundings::new(parent), taken)?;
-        match item.filter(|item| paints.contains(&item.painted.colours_key()) && is_plain_fill(item)) {
-            Some(item) => lowest.push(item),
-            None => rest.push((parent, node)),
+        let parts = item.map_or_else(|| Ok(Vec::new()), |item| parted(item, painter, window))?;
+        let is_like = |item: &Item| paints.contains(&item.painted.colours_key()) && is_plain_fill(item);
+        is_taken.push(parts.iter().any(|item| item.kind == Kind::Area && is_like(item)));
+        if is_taken.last() == Some(&true) {
+            lowest.extend(parts);
+        } else {
+            rest.push((parent, node));
         }
     }
     *background = rest;
+    // What is left out for being a background is listed in the same order.
+    let mut is_taken = is_taken.into_iter();
+    left_out.retain(|(reason, ..)| *reason != Reason::Background || is_taken.next() != Some(true));
     items.splice(0..0, lowest);
     Ok(())
 }
 
-/// Whether an item reaches from one side of the frame to the opposite one: a wave of one width.
-fn runs_through(item: &Item, window: &Bounds<2>) -> bool {
-    let (extent, near) = (item.outline.bounds(), NEAR * longer(window));
-    (0..2).any(|k| extent.min[k] <= window.min[k] + near && extent.max[k] >= window.max[k] - near)
+/// Refuses fills that run through the frame and are neither areas nor lines: copied as things they would end in the middle
+/// of the page.
+///
+/// # Errors
+/// [`Error::Unsupported`] where there are several.
+pub(crate) fn refuse_through(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> Result<()> {
+    let is_open = |item: &&Item| {
+        matches!(item.kind, Kind::Element | Kind::Large)
+            && matches!(item.origin, Origin::Fill | Origin::Piece)
+            && !item.is_cut
+            && runs_through(item, window)
+    };
+    let through: Vec<&Item> = items.iter().filter(is_open).collect();
+    if through.len() < SEVERAL {
+        return Ok(());
+    }
+    let named: Vec<_> = through.iter().take(3).map(|item| item.name(source)).collect();
+    let more = if through.len() > named.len() { ", ..." } else { "" };
+    let (why, advice) = if through.iter().any(|item| !has_plain_paints(item)) {
+        (
+            " with gradients or effects",
+            "paint them in plain colours, or mark them data-arabesque=\"element\" to have them copied as they are",
+        )
+    } else {
+        (
+            ", which neither repeat nor are bands of one width",
+            "show two whole periods of what repeats, draw bands as strokes, or mark them data-arabesque=\"element\" to have \
+             them copied as they are",
+        )
+    };
+    Err(Error::Unsupported {
+        what: format!(
+            "{}: going on with {} fills that run through the frame ({}{more}){why}",
+            source.name,
+            through.len(),
+            named.join(", ")
+        ),
+        advice: advice.into(),
+    })
+}
+
+/// Whether everything in an item is painted in plain colours.
+fn has_plain_paints(item: &Item) -> bool {
+    fn is_plain(node: &Node) -> bool {
+        let is_colour = |paint: P| reference(node.style.get(paint)).is_none();
+        match &node.content {
+            Content::Group(children) => children.iter().all(|child| is_plain(child)),
+            Content::Shape(_) => is_colour(P::Fill) && is_colour(P::Stroke),
+        }
+    }
+    item.parts.iter().all(|(_, node)| is_plain(node))
 }
 
 /// Makes an item a curve where it is the outline of lines.
@@ -135,7 +180,7 @@ fn follow(source: &Source<'_>, item: &mut Item, window: &Bounds<2>) -> Result<bo
 }
 
 /// Whether everything in an item is filled with one colour, and nothing has a stroke.
-fn is_plain_fill(item: &Item) -> bool {
+pub(crate) fn is_plain_fill(item: &Item) -> bool {
     fn is_plain(node: &Node) -> bool {
         match &node.content {
             Content::Group(children) => children.iter().all(|child| is_plain(child)),

@@ -90,8 +90,7 @@ impl<'a> Writer<'a> {
                     self.go_to(place, &mut group);
                     if paint == 0 && sheet.areas.iter().any(|a| sheet.drawing.exemplar.areas[a.source].style == style) {
                         self.open(&mut group);
-                        let shifts = |bounds: &Bounds<2>| self.shifts(bounds);
-                        let text = areas(sheet, style, &self.prefix, self.decimals.plus(1), &shifts);
+                        let text = areas(sheet, style, &self.prefix, self.decimals.plus(1));
                         self.out.push_str(&text);
                     }
                     if let Some(members) = by_style.get(&style) {

@@ -78,6 +78,17 @@ pub(crate) struct ExemplarClearance {
 }
 
 impl ExemplarClearance {
+    /// The same with other classes for some elements: pairs of an element and its class, which is none of those that there
+    /// were.
+    pub(crate) fn classed(&self, classes: Vec<(usize, usize)>) -> Self {
+        let first_free = self.class.iter().max().map_or(0, |class| class + 1);
+        let mut all = self.clone();
+        for (element, class) in classes {
+            all.class[element] = first_free + class;
+        }
+        all
+    }
+
     /// Measures the exemplar. `None` when no element has an outline: points never overlap.
     ///
     /// # Errors

@@ -36,7 +36,7 @@ pub(crate) fn draw(strokes: &BentStrokes<'_>, made: &mut Vec<Covered<2>>) -> Res
         let whole = Outline::try_union(&parts, FillRule::EvenOdd, budget)?;
         let outline = cut.apply(whole, budget)?;
         if !outline.rings.is_empty() {
-            made.push(Covered { outline, source: area.source });
+            made.push(Covered { outline, source: area.source, paint: strokes.flat.map() });
         }
     }
     Ok(())

@@ -209,7 +209,7 @@ fn middle(left: &[Vector<2>], right: &[Vector<2>], frame: &Bounds<2>) -> Option<
 }
 
 /// Length of the part of a line that lies in the frame.
-fn length_in((a, b): (Vector<2>, Vector<2>), frame: &Bounds<2>) -> f64 {
+pub(crate) fn length_in((a, b): (Vector<2>, Vector<2>), frame: &Bounds<2>) -> f64 {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for k in 0..2 {
         let way = b[k] - a[k];

@@ -105,7 +105,7 @@ fn is_in(outline: &Outline<2>, p: arabesque_core::Vector<2>) -> bool {
 }
 
 /// Whether nothing is seen through any part of an item.
-fn is_opaque(item: &Item) -> bool {
+pub(crate) fn is_opaque(item: &Item) -> bool {
     item.opacity >= 1.0 && item.kind != Kind::Curve && item.parts.iter().all(|(_, node)| is_solid(node))
 }
 

@@ -122,7 +122,7 @@ impl Document<'_> {
         follow_bands(source, &mut found.items, page)?;
         if self.options.large_fills == LargeFills::Areas {
             take_areas(&mut found.items, page);
-            take_backgrounds(&mut found.items, &mut found.background, painter)?;
+            take_backgrounds(found, painter, page)?;
         }
         trace(source, &mut found.items, page)
     }

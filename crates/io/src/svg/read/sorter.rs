@@ -118,7 +118,7 @@ impl<'a, 's> Sorter<'a, 's, '_, '_> {
     /// What becomes of an area: its part outside of what is refilled stays.
     fn area(&self, item: &Item, definitions: &mut Definitions<'a, 's>) -> Result<Sorted> {
         let budget = self.painter.source.budget;
-        let mut gatherer = Gatherer::new(self.painter, definitions, self.window);
+        let mut gatherer = Gatherer::new(self.painter, definitions, self.window, Dashes::OfStroke);
         gatherer.add(item)?;
         let Curves { areas, fills, .. } = gatherer.finish()?;
         let (mut markup, mut is_touched) = (String::new(), false);

@@ -82,8 +82,9 @@ mod tests {
             format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><g stroke='#000'>{lines}</g></svg>");
         let options = ReadOptions { dashes, large_fills: LargeFills::Areas, ..ReadOptions::new("d.svg") };
         let exemplar = read_exemplar(&text, &options).unwrap().exemplar;
-        let ends = exemplar.curves.iter().map(|c| (c.path.start().unwrap()[0], c.path.end().unwrap()[0]));
-        ends.collect()
+        let rounded = |x: f64| (x * 1e4).round() / 1e4;
+        let ends = exemplar.curves.iter().map(|c| [c.path.start().unwrap()[0], c.path.end().unwrap()[0]].map(rounded));
+        ends.map(|[a, b]| (a, b)).collect()
     }
 
     #[test]

@@ -43,6 +43,7 @@ impl PlaneExemplar {
         repeat: Option<&Repeat>,
     ) -> Result<PlaneRequest> {
         let files = context.files;
+        let repeats = repeat.is_some();
         let place = match (&self.region, &mut *job) {
             (Some(region), _) => region.place.clone(),
             (None, Job::Fill(fill)) => Place::of(fill, &self.drawing, self.units(), files)?,
@@ -51,7 +52,7 @@ impl PlaneExemplar {
         // Fields make the cell another one.
         let is_plain = matches!(&*job, Job::Fill(f) if f.orient.is_none() && f.scale.is_none() && f.density.is_none());
         check_cell(repeat.filter(|_| is_plain), &place.domain)?;
-        let fits = repeat.is_some() && self.region.is_some();
+        let fits = repeats && self.region.is_some();
         check_room(self.exemplar(), &place.domain, fits, files.budget())
             .map_err(|error| self.in_region(error, context))?;
         check_picture(context.output(), &place.page, files.budget())?;

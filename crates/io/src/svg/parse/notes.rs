@@ -85,10 +85,6 @@ impl Note {
     fn message(self) -> (&'static str, &'static str) {
         match self {
             Self::External => ("reference to something outside the file, not fetched", "embed it in the file"),
-            Self::MissingPaint => (
-                "fill or stroke by a paint that does not exist, not painted",
-                "define a gradient or pattern of that id, or give it a colour",
-            ),
             Self::Missing => ("reference to an id that does not exist", "remove it, or restore what it refers to"),
             Self::Text => ("text ignored", "convert it to paths (Inkscape: Path > Object to Path)"),
             Self::Marker => (
@@ -152,6 +148,7 @@ impl Note {
             Self::CutShort => ("path data stops in the middle; drawn up to there", "repair the path"),
             Self::ZeroLength
             | Self::NoWidth
+            | Self::MissingPaint
             | Self::Duplicate
             | Self::Weaving
             | Self::ManyPaints
@@ -165,10 +162,14 @@ impl Note {
         }
     }
 
-    /// The messages about strokes.
+    /// The messages about strokes and paints.
     fn stroke_message(self) -> (&'static str, &'static str) {
         match self {
             Self::ZeroLength => ("stroke without length ignored", "delete it, or give it round caps if it is a dot"),
+            Self::MissingPaint => (
+                "fill or stroke by a paint that does not exist, not painted",
+                "define a gradient or pattern of that id, or give it a colour",
+            ),
             Self::NoWidth => ("stroke of no width ignored", "give it a stroke-width above 0"),
             Self::Weaving => (
                 "strokes go over and under something in turn; the result has all strokes of one look in one layer",

@@ -69,3 +69,31 @@ impl DashPattern {
         Ok(dashes)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use crate::svg::{Dashes, LargeFills, ReadOptions, read_exemplar};
+
+    fn read(attributes: &str, dashes: Dashes) -> Vec<(f64, f64)> {
+        let lines: String = (1..5).map(|k| format!("<path d='M-10 {}H110' {attributes}/>", 20 * k)).collect();
+        let text =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><g stroke='#000'>{lines}</g></svg>");
+        let options = ReadOptions { dashes, large_fills: LargeFills::Areas, ..ReadOptions::new("d.svg") };
+        let exemplar = read_exemplar(&text, &options).unwrap().exemplar;
+        let rounded = |x: f64| (x * 1e4).round() / 1e4;
+        let ends = exemplar.curves.iter().map(|c| [c.path.start().unwrap()[0], c.path.end().unwrap()[0]].map(rounded));
+        ends.map(|[a, b]| (a, b)).collect()
+    }
+
+    #[test]
+    fn dashes_apart_lie_where_the_stroke_has_them() {
+        assert_eq!(read("stroke-dasharray='8 6'", Dashes::OfStroke)[0], (-10.0, 110.0));
+        let apart = read("stroke-dasharray='8 6'", Dashes::Apart);
+        // The first of them ends at -2, beside the frame.
+        assert_eq!(apart[..2], [(4.0, 12.0), (18.0, 26.0)]);
+        let shifted = read("stroke-dasharray='8 6' stroke-dashoffset='3'", Dashes::Apart);
+        assert_eq!(shifted[..2], [(1.0, 9.0), (15.0, 23.0)]);
+    }
+}

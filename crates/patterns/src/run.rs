@@ -15,6 +15,7 @@ use crate::{
     },
     dimension::Dimension,
     ending::{heard, last_touches},
+    evenness::Evenness,
     exemplar::level_exemplar::LevelExemplar,
     finish::placements,
     frozen,
@@ -63,6 +64,8 @@ pub(crate) struct Run<'a, const D: usize> {
     pub(crate) request: &'a Request<D>,
     /// The levels that are used, coarsest first.
     pub(crate) contexts: Vec<LevelContext<'a, D>>,
+    /// How even the exemplar is; `None` where the page is left as it is.
+    pub(crate) evenness: Option<&'a Evenness<D>>,
     /// Iterations per level.
     pub(crate) iterations: usize,
 }
@@ -314,6 +317,9 @@ where
         if self.params.existence == Existence::Voted {
             self.layout(context).fill_holes(state)?;
             edges::link_sources(state)?;
+        }
+        if let Some(evenness) = self.evenness.filter(|_| k + 1 == self.contexts.len()) {
+            evenness.even_out(state, context.targets)?;
         }
         Ok(())
     }

@@ -1,0 +1,217 @@
+//! What evening out works with: the page, what is natural, and the price of a state.
+//!
+//! The price has two parts, both sums of local terms. Places that are farther from ink than the exemplar tolerates cost the
+//! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square. Lengths
+//! are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
+
+use arabesque_core::{Meter, Numbered, Result, Vector};
+
+use crate::{
+    border::Extent,
+    evenness::{
+        ink::Pose,
+        natural::Natural,
+        page::{NOBODY, PRICE, Page},
+    },
+    exemplar::library::Library,
+};
+
+/// Price of a gap that is too narrow: of what is missing, and of its square, in tolerated distances.
+const NARROW: (f64, f64) = (2.0, 20.0);
+
+/// Nanoseconds for a pair of elements.
+const PAIR: u64 = 600;
+
+/// A step that can be undone.
+#[derive(Clone, Copy, Debug)]
+enum Undo<const D: usize> {
+    Change(u32, Pose<D>),
+    Add(u32),
+    Remove(u32),
+}
+
+/// A page that is evened out.
+pub(crate) struct Work<'a, const D: usize> {
+    pub(crate) page: Page<'a, D>,
+    pub(crate) natural: &'a Natural,
+    pub(crate) library: &'a Library<D>,
+    pub(crate) extent: &'a Extent<'a, D>,
+    /// Elements of each class that are there, and that should be.
+    pub(crate) counts: Numbered<f64>,
+    pub(crate) targets: &'a Numbered<f64>,
+    steps: Vec<Undo<D>>,
+}
+
+/// A place whose distance from ink depends on one element.
+#[derive(Clone, Copy, Debug)]
+struct Held<const D: usize> {
+    place: Vector<D>,
+    without: f64,
+    tolerated: f64,
+}
+
+/// What the price of an element depends on, around where it is or may go.
+pub(crate) struct Scene<const D: usize> {
+    held: Vec<Held<D>>,
+    neighbours: Vec<u32>,
+    /// Size of a cell.
+    measure: f64,
+}
+
+impl<'a, const D: usize> Work<'a, D> {
+    pub(crate) fn new(
+        page: Page<'a, D>,
+        (natural, library): (&'a Natural, &'a Library<D>),
+        extent: &'a Extent<'a, D>,
+        targets: &'a Numbered<f64>,
+        counts: Numbered<f64>,
+    ) -> Self {
+        Self { page, natural, library, extent, counts, targets, steps: Vec::new() }
+    }
+
+    /// Price of a place.
+    pub(crate) fn price_at(empty: f64, tolerated: f64) -> f64 {
+        let excess = empty / tolerated - 1.0;
+        if excess > 0.0 { excess * excess } else { 0.0 }
+    }
+
+    /// What the price of an element depends on that has its centre at most `step` from `centre` and is no larger than
+    /// `radius`. `body`: its number, where it is on the page already.
+    pub(crate) fn scene(
+        &self,
+        body: Option<u32>,
+        centre: Vector<D>,
+        (radius, step): (f64, f64),
+        meter: &mut Meter<'_>,
+    ) -> Result<Scene<D>> {
+        let body = body.unwrap_or(NOBODY);
+        let page = &self.page;
+        let mut held = Vec::new();
+        let mut looked = 0;
+        let reach = radius + step + page.reach;
+        page.lattice.around(centre, reach, |c, at| {
+            looked += 1;
+            let cell = &page.cells[c];
+            let without = cell.without(body);
+            if without > cell.tolerated {
+                let place = page.lattice.centre_at(at);
+                held.push(Held { place, without: f64::from(without), tolerated: f64::from(cell.tolerated) });
+            }
+        });
+        let scale = page.request.fields.frame(centre).spacing_scale;
+        let widest = self.natural.widest.max(0.0) * scale;
+        let neighbours = page.neighbours(centre, radius + step + widest, body);
+        meter.spend(PRICE.0 * (looked + 20 * neighbours.len() as u64))?;
+        Ok(Scene { held, neighbours, measure: page.lattice.cell().0.into_iter().product() })
+    }
+
+    /// Price of the surroundings of an element in some pose; without it for `None`.
+    pub(crate) fn price(&self, scene: &Scene<D>, pose: Option<&Pose<D>>, meter: &mut Meter<'_>) -> Result<f64> {
+        let mut sum = 0.0;
+        meter.spend(PRICE.1 * scene.held.len() as u64)?;
+        for held in &scene.held {
+            let own = pose.map_or(f64::INFINITY, |pose| self.page.inks.distance(pose, held.place - pose.centre));
+            let price = Self::price_at(own.min(held.without), held.tolerated);
+            sum += price * scene.measure / held.tolerated.powi(D as i32);
+        }
+        let Some(pose) = pose else { return Ok(sum) };
+        for &o in &scene.neighbours {
+            sum += self.narrow(pose, &self.page.body(o).pose, meter)?;
+        }
+        Ok(sum)
+    }
+
+    /// Price of two elements that come too near each other.
+    fn narrow(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        let missing = self.missing(a, b, meter)?;
+        Ok(if missing > 0.0 { (NARROW.0 + NARROW.1 * missing) * missing } else { 0.0 })
+    }
+
+    /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
+    pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
+        let scale = self.page.request.fields.frame(a.centre).spacing_scale;
+        let least = self.natural.gap(x, y) * scale;
+        let offset = self.page.domain().offset(a.centre, b.centre);
+        if offset.norm() - self.page.inks.radius(a) - self.page.inks.radius(b) >= least {
+            return Ok(0.0);
+        }
+        meter.spend(PAIR)?;
+        let gap = self.page.inks.gap(a, b, offset, least);
+        Ok(((least - gap) / (self.natural.tolerated * scale)).max(0.0))
+    }
+
+    /// The most that is missing of a gap around an element.
+    pub(crate) fn worst(&self, b: u32, meter: &mut Meter<'_>) -> Result<f64> {
+        let body = self.page.body(b);
+        if !body.alive {
+            return Ok(0.0);
+        }
+        let scale = self.page.request.fields.frame(body.pose.centre).spacing_scale;
+        let reach = self.page.inks.radius(&body.pose) + self.natural.widest.max(0.0) * scale;
+        let mut most = 0.0_f64;
+        for o in self.page.neighbours(body.pose.centre, reach, b) {
+            let other = self.page.body(o);
+            if !(body.fixed && other.fixed) {
+                most = most.max(self.missing(&body.pose, &other.pose, meter)?);
+            }
+        }
+        Ok(most)
+    }
+
+    /// Puts an element elsewhere.
+    pub(crate) fn change(&mut self, b: u32, pose: Pose<D>, meter: &mut Meter<'_>) -> Result<()> {
+        let before = self.page.body(b).pose;
+        self.steps.push(Undo::Change(b, before));
+        self.count(before.source, -1.0);
+        self.count(pose.source, 1.0);
+        self.page.change(b, pose, meter)
+    }
+
+    /// Adds an element.
+    pub(crate) fn add(&mut self, pose: Pose<D>, meter: &mut Meter<'_>) -> Result<u32> {
+        let b = self.page.add(pose, meter)?;
+        self.count(pose.source, 1.0);
+        self.steps.push(Undo::Add(b));
+        Ok(b)
+    }
+
+    /// Takes an element away.
+    pub(crate) fn remove(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<()> {
+        self.count(self.page.body(b).pose.source, -1.0);
+        self.steps.push(Undo::Remove(b));
+        self.page.remove(b, meter)
+    }
+
+    fn count(&mut self, source: u32, by: f64) {
+        self.counts[self.library.class[source]] += by;
+    }
+
+    /// Everything up to here stays.
+    pub(crate) fn keep(&mut self) {
+        self.steps.clear();
+    }
+
+    /// Undoes everything since the last [`Work::keep`].
+    pub(crate) fn undo(&mut self, meter: &mut Meter<'_>) -> Result<()> {
+        while let Some(step) = self.steps.pop() {
+            match step {
+                Undo::Change(b, pose) => {
+                    self.count(self.page.body(b).pose.source, -1.0);
+                    self.count(pose.source, 1.0);
+                    self.page.change(b, pose, meter)?;
+                }
+                Undo::Add(b) => {
+                    self.count(self.page.body(b).pose.source, -1.0);
+                    self.page.remove(b, meter)?;
+                    self.page.bodies.pop();
+                }
+                Undo::Remove(b) => {
+                    self.count(self.page.body(b).pose.source, 1.0);
+                    self.page.restore(b, meter)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

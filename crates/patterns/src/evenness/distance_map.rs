@@ -16,6 +16,7 @@ const BEFORE: [(isize, isize); 4] = [(-1, 0), (-1, -1), (0, -1), (1, -1)];
 pub(crate) struct DistanceMap {
     origin: Vector<2>,
     step: f64,
+    per_step: f64,
     counts: [usize; 2],
     value: Vec<f32>,
 }
@@ -31,7 +32,8 @@ impl DistanceMap {
     pub(crate) fn new(outline: &Outline<2>, step: f64, margin: f64) -> Self {
         let bounds = outline.bounds().grown(margin);
         let counts = cells(outline, step, margin);
-        let mut map = Self { origin: bounds.min, step, counts, value: vec![0.0; counts[0] * counts[1]] };
+        let mut map =
+            Self { origin: bounds.min, step, per_step: 1.0 / step, counts, value: vec![0.0; counts[0] * counts[1]] };
         let edges: Vec<Segment<2>> = outline.edges().collect();
         let nearest = map.nearest_edges(&edges);
         for (c, &edge) in nearest.iter().enumerate() {
@@ -120,17 +122,19 @@ impl DistanceMap {
         }
     }
 
-    /// Distance of `p` from the ink, negative on it. Beyond the map, a little too large.
+    /// Distance of a place from the ink, negative on it. Beyond the map, a little too large.
     #[inline]
-    pub(crate) fn at(&self, p: Vector<2>) -> f64 {
-        let q = (p - self.origin) * (1.0 / self.step);
-        let last = [self.counts[0] - 1, self.counts[1] - 1];
-        let inner = Vector::xy(q[0].clamp(0.0, last[0] as f64), q[1].clamp(0.0, last[1] as f64));
-        let (x, y) = ((inner[0] as usize).min(last[0] - 1), (inner[1] as usize).min(last[1] - 1));
-        let (u, v) = ((inner[0] - x as f64) as f32, (inner[1] - y as f64) as f32);
-        let row = y * self.counts[0] + x;
-        let (low, high) = (&self.value[row..row + 2], &self.value[row + self.counts[0]..row + self.counts[0] + 2]);
-        let near = (low[0] * (1.0 - u) + low[1] * u) * (1.0 - v) + (high[0] * (1.0 - u) + high[1] * u) * v;
-        f64::from(near) + if inner == q { 0.0 } else { (q - inner).norm() * self.step }
+    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> f64 {
+        let [width, height] = self.counts;
+        let (u, v) = ((x - self.origin.0[0]) * self.per_step, (y - self.origin.0[1]) * self.per_step);
+        let (a, b) = (u.clamp(0.0, (width - 1) as f64), v.clamp(0.0, (height - 1) as f64));
+        let (i, j) = ((a as usize).min(width - 2), (b as usize).min(height - 2));
+        let (s, t) = ((a - i as f64) as f32, (b - j as f64) as f32);
+        let row = j * width + i;
+        let value = &self.value;
+        let low = value[row] + (value[row + 1] - value[row]) * s;
+        let high = value[row + width] + (value[row + width + 1] - value[row + width]) * s;
+        let near = f64::from(low + (high - low) * t);
+        if a == u && b == v { near } else { near + ((u - a) * (u - a) + (v - b) * (v - b)).sqrt() * self.step }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Exemplar, Held, Matrix, Numbered, Outline, Result, Vector, ring};
+use arabesque_core::{Bounds, Budget, Exemplar, Held, Matrix, Numbered, Outline, Result, Vector, ring};
 use rayon::prelude::*;
 
 use crate::{
@@ -20,18 +20,44 @@ const MOST_CELLS: usize = 1 << 24;
 /// Most points along the rim of one element.
 const RIM: usize = 160;
 
+/// Most places in a piece of a rim.
+const PIECE: usize = 10;
+
 /// Nanoseconds for a cell of a map, and for one and an edge.
 const CELL: u64 = 60;
 
 /// The ink of one element, about its centre, in exemplar directions and units.
 #[derive(Clone, Debug)]
-struct Ink<const D: usize> {
+struct Ink {
     /// Distances around it; `None` for a ball.
     map: Option<DistanceMap>,
-    /// Places along its rim; the centre alone for a ball.
-    rim: Vec<Vector<D>>,
+    /// Places along its rim, in pieces; none for a ball.
+    rim: Vec<Piece>,
     /// Distance from the centre to the farthest ink.
     radius: f64,
+}
+
+/// A part of a rim, in the circle around it.
+#[derive(Clone, Debug)]
+struct Piece {
+    centre: [f64; 2],
+    radius: f64,
+    places: Vec<[f64; 2]>,
+}
+
+/// From the coordinates of one element of the plane to those of another.
+#[derive(Clone, Copy, Debug)]
+struct Change {
+    matrix: [[f64; 2]; 2],
+    shift: [f64; 2],
+}
+
+impl Change {
+    #[inline]
+    fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let ([a, b], [c, d]) = (self.matrix[0], self.matrix[1]);
+        [a * x + b * y + self.shift[0], c * x + d * y + self.shift[1]]
+    }
 }
 
 /// How an element lies.
@@ -47,7 +73,7 @@ pub(crate) struct Pose<const D: usize> {
 /// The ink of all elements.
 #[derive(Clone, Debug)]
 pub(crate) struct Inks<const D: usize> {
-    inks: Numbered<Ink<D>>,
+    inks: Numbered<Ink>,
     _held: Arc<Held>,
 }
 
@@ -79,10 +105,10 @@ where
         let held = Arc::new(budget.hold("distances around outlines", cells(step) * size_of::<f32>())?);
         let ink = |(e, outline): (usize, &Option<Outline<2>>)| {
             let radius = library.radius[e];
-            let Some(outline) = outline else { return Ok(Ink { map: None, rim: vec![Vector::ZERO], radius }) };
+            let Some(outline) = outline else { return Ok(Ink { map: None, rim: Vec::new(), radius }) };
             let [width, height] = distance_map::cells(outline, step, reach);
             budget.spend(CELL * (width * height + outline.edges().count() * 4) as u64)?;
-            let rim = rim(outline, step).into_iter().map(lifted).collect();
+            let rim = pieces(rim(outline, step));
             Ok(Ink { map: Some(DistanceMap::new(outline, step, reach)), rim, radius })
         };
         let inks: Vec<_> = outlines.par_iter().enumerate().map(ink).collect::<Result<_>>()?;
@@ -107,25 +133,55 @@ impl<const D: usize> Inks<D> {
         let ink = &self.inks[pose.source];
         match &ink.map {
             None => offset.norm() - ink.radius * pose.scale,
-            Some(map) => map.at(flat(pose.rotation.transpose().apply(offset) * (1.0 / pose.scale))) * pose.scale,
+            Some(map) => map.at(own(pose, offset)) * pose.scale,
         }
     }
 
     /// Distance between the inks of two elements, the second with its centre at `offset` from the first's; negative by
     /// about how deep they lie in each other. Beyond `enough`, any number larger than that.
     pub(crate) fn gap(&self, a: &Pose<D>, b: &Pose<D>, offset: Vector<D>, enough: f64) -> f64 {
-        let apart = offset.norm() - self.radius(a) - self.radius(b);
+        let (small, large) = (self.radius(a), self.radius(b));
+        if small > large {
+            return self.gap(b, a, -offset, enough);
+        }
+        let apart = offset.norm() - small - large;
         if apart > enough {
             return apart;
         }
-        let way = |from: &Pose<D>, to: &Pose<D>, shift: Vector<D>| {
-            let ink = &self.inks[from.source];
-            let thick = if ink.map.is_none() { ink.radius * from.scale } else { 0.0 };
-            let places = ink.rim.iter().map(|&p| from.rotation.apply(p) * from.scale + shift);
-            places.map(|p| self.distance(to, p)).fold(f64::INFINITY, f64::min) - thick
-        };
-        way(a, b, -offset).min(way(b, a, offset))
+        let (from, to) = (&self.inks[a.source], &self.inks[b.source]);
+        let Some(map) = &to.map else { return self.distance(a, offset) - large };
+        if from.map.is_none() {
+            return self.distance(b, -offset) - small;
+        }
+        let change = change(a, b, offset);
+        let mut nearest = f64::INFINITY;
+        for piece in &from.rim {
+            let least = map.at(change.apply(piece.centre)) * b.scale - piece.radius * a.scale;
+            if least >= nearest || least > enough {
+                nearest = nearest.min(least.max(enough) + piece.radius * a.scale);
+                continue;
+            }
+            for &place in &piece.places {
+                nearest = nearest.min(map.at(change.apply(place)) * b.scale);
+            }
+        }
+        nearest
     }
+}
+
+/// An offset from the centre of an element of the plane in the coordinates of the element.
+#[inline]
+fn own<const D: usize>(pose: &Pose<D>, offset: Vector<D>) -> [f64; 2] {
+    let (r, s) = (&pose.rotation.0, 1.0 / pose.scale);
+    let (x, y) = (offset.0[0] * s, offset.0[1] * s);
+    [r[0][0] * x + r[1][0] * y, r[0][1] * x + r[1][1] * y]
+}
+
+/// From the coordinates of `a` to those of `b`, which has its centre at `offset` from `a`'s.
+fn change<const D: usize>(a: &Pose<D>, b: &Pose<D>, offset: Vector<D>) -> Change {
+    let (p, q, scale) = (&a.rotation.0, &b.rotation.0, a.scale / b.scale);
+    let entry = |r: usize, c: usize| (q[0][r] * p[0][c] + q[1][r] * p[1][c]) * scale;
+    Change { matrix: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]], shift: own(b, -offset) }
 }
 
 /// The outline of an element of the plane about its centre; `None` where it has none.
@@ -154,10 +210,23 @@ fn rim(outline: &Outline<2>, step: f64) -> Vec<Vector<2>> {
     places
 }
 
-fn flat<const D: usize>(v: Vector<D>) -> Vector<2> {
-    Vector::xy(v[0], v[1])
-}
-
-fn lifted<const D: usize>(v: Vector<2>) -> Vector<D> {
-    Vector(std::array::from_fn(|k| if k < 2 { v[k] } else { 0.0 }))
+/// Places in groups that lie close together.
+fn pieces(mut places: Vec<Vector<2>>) -> Vec<Piece> {
+    let mut done = Vec::new();
+    let mut open = vec![0..places.len()];
+    while let Some(range) = open.pop() {
+        let group = &mut places[range.clone()];
+        let bounds = Bounds::around(group.iter().copied());
+        if group.len() > PIECE {
+            let (size, middle) = (bounds.size(), group.len() / 2);
+            let k = usize::from(size[1] > size[0]);
+            group.sort_by(|a, b| a[k].total_cmp(&b[k]));
+            open.extend([range.start..range.start + middle, range.start + middle..range.end]);
+        } else if !group.is_empty() {
+            let centre = bounds.centre();
+            let radius = group.iter().map(|&p| (p - centre).norm()).fold(0.0, f64::max);
+            done.push(Piece { centre: centre.0, radius, places: group.iter().map(|p| p.0).collect() });
+        }
+    }
+    done
 }

@@ -15,6 +15,7 @@ mod ink;
 mod moves;
 mod natural;
 mod page;
+mod share;
 mod work;
 
 use std::sync::Arc;
@@ -27,6 +28,7 @@ use crate::{
         ink::Inks,
         natural::Natural,
         page::{Body, Measures, Page},
+        share::{Shares, Spread},
         work::Work,
     },
     exemplar::library::Library,
@@ -39,8 +41,14 @@ const REACH: f64 = 2.5;
 /// Rounds over the page.
 const ROUNDS: usize = 4;
 
+/// Sweeps over elements that pay.
+const SWEEPS: usize = 6;
+
 /// A place is a hole when it is farther from ink than so many tolerated distances.
 const HOLE: f64 = 1.05;
+
+/// Shares of ink are worked on that are off by so many deviations more than what is natural.
+const OFF: f64 = 0.5;
 
 /// Elements are too near each other when so much is missing, in tolerated distances.
 const NEAR: f64 = 0.02;
@@ -50,6 +58,7 @@ const NEAR: f64 = 0.02;
 pub(crate) struct Evenness<const D: usize> {
     inks: Arc<Inks<D>>,
     natural: Natural,
+    spread: Option<Spread>,
 }
 
 impl<const D: usize> Evenness<D>
@@ -71,7 +80,9 @@ where
         }
         let inks = Arc::new(Inks::new(exemplar, library, count, library.spacing, budget)?);
         let natural = Natural::new(exemplar, library, &inks, budget)?;
-        Ok(natural.filter(|n| n.tolerated > 0.0).map(|natural| Self { inks, natural }))
+        let mass = masses(exemplar, count);
+        let spread = Spread::new(library, mass, budget)?;
+        Ok(natural.filter(|n| n.tolerated > 0.0).map(|natural| Self { inks, natural, spread }))
     }
 
     /// Evens out a state.
@@ -86,12 +97,8 @@ where
         let body = |&i: &u32| {
             let pose = state.pose(i);
             let item = &state.item(i).item;
-            let pose = ink::Pose {
-                source: item.source,
-                centre: item.position,
-                rotation: pose.rotation,
-                scale: pose.scale,
-            };
+            let pose =
+                ink::Pose { source: item.source, centre: item.position, rotation: pose.rotation, scale: pose.scale };
             Body { pose, fixed: item.frozen.is_some(), alive: true }
         };
         let bodies: Vec<_> = numbers.iter().map(body).collect();
@@ -104,7 +111,16 @@ where
         };
         let page = Page::new(state.extent, &self.inks, bodies.clone(), measures, &strokes, &budget)?;
         let counts = counts(state);
-        let mut work = Work::new(page, (&self.natural, state.library), state.extent, targets, counts);
+        let mut shares = match &self.spread {
+            Some(spread) => Some(Shares::new(spread, state.extent, &budget)?),
+            None => None,
+        };
+        for body in &bodies {
+            if let Some(shares) = &mut shares {
+                shares.count((body.pose.source, body.pose.scale), body.pose.centre, 1.0);
+            }
+        }
+        let mut work = Work::new((page, shares), (&self.natural, state.library), state.extent, targets, counts);
         run(&mut work, &budget)?;
         let Work { page, .. } = work;
         for (k, body) in page.bodies.iter().enumerate() {
@@ -145,6 +161,16 @@ fn strokes<const D: usize>(state: &State<'_, D>) -> Vec<(Vector<D>, f64)> {
     places
 }
 
+/// Ink of the first elements of an exemplar; the same for each where none has any.
+fn masses<const D: usize>(exemplar: &Exemplar<D>, count: usize) -> Numbered<f64>
+where
+    Vector<D>: Dimension<D>,
+{
+    let area = |e: usize| Vector::plane_exemplar(exemplar).map_or(0.0, |plane| plane.elements[e].outline.area());
+    let masses: Numbered<f64> = (0..count).map(area).collect();
+    if masses.iter().any(|m| *m > 0.0) { masses } else { Numbered::filled(1.0, count) }
+}
+
 /// Living items of each class, as they are counted against the targets.
 fn counts<const D: usize>(state: &State<'_, D>) -> Numbered<f64> {
     let mut counts = Numbered::filled(0.0, state.library.classes());
@@ -163,14 +189,15 @@ where
     let mut meter = budget.meter();
     for _ in 0..ROUNDS {
         let mut moves = 0;
+        relax(work, &mut meter)?;
         moves += thin_clumps(work, &mut meter)?;
         moves += fill_holes(work, &mut meter)?;
+        moves += balance(work, &mut meter)?;
         if moves == 0 {
             break;
         }
     }
-    thin_clumps(work, &mut meter)?;
-    Ok(())
+    relax(work, &mut meter)
 }
 
 /// Works on holes, the widest first.
@@ -201,6 +228,28 @@ where
     Ok(moves)
 }
 
+/// Lets elements that pay settle, and then those around the ones that did, until nothing moves.
+fn relax<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<()>
+where
+    Vector<D>: Dimension<D>,
+{
+    let mut open: Vec<u32> = (0..work.page.bodies.len() as u32).collect();
+    for _ in 0..SWEEPS {
+        let mut next = Vec::new();
+        for b in open {
+            if work.settle(b, meter)? > 0.0 {
+                let pose = work.page.body(b).pose;
+                next.extend(work.group(pose.centre, work.page.bodies.len()));
+            }
+        }
+        work.keep();
+        next.sort_unstable();
+        next.dedup();
+        open = next;
+    }
+    Ok(())
+}
+
 /// Works on elements that are too near each other, the nearest first.
 fn thin_clumps<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<usize>
 where
@@ -224,6 +273,30 @@ where
         work.keep();
         if work.worst(b, meter)? > NEAR {
             helped |= work.exchange(p, 1, meter)? || work.thin(b, meter)?;
+        }
+        moves += usize::from(helped);
+    }
+    Ok(moves)
+}
+
+/// Works on places where there is too much or too little ink around, the worst first.
+fn balance<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<usize>
+where
+    Vector<D>: Dimension<D>,
+{
+    let off = work.shares.as_ref().map_or_else(Vec::new, Shares::off);
+    let mut moves = 0;
+    for (excess, p) in off.into_iter().filter(|(excess, _)| excess.abs() > OFF) {
+        let mut helped = work.exchange(p, 5, meter)?;
+        if !helped && excess < 0.0 {
+            if let Some(hole) = work.emptiest(p) {
+                helped = work.fill(hole, meter)?;
+            }
+        }
+        if !helped && excess > 0.0 {
+            for b in work.group(p, 5) {
+                helped = helped || work.thin(b, meter)?;
+            }
         }
         moves += usize::from(helped);
     }

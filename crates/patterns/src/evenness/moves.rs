@@ -4,11 +4,17 @@ use arabesque_core::{Matrix, Meter, Result, Vector};
 
 use crate::{
     dimension::Dimension,
-    evenness::{ink::Pose, work::{Scene, Work}},
+    evenness::{
+        ink::Pose,
+        work::{Scene, Work},
+    },
 };
 
 /// A step must lower the price by this much to count.
 const WORTH: f64 = 1e-4;
+
+/// An element that pays less stays where it is.
+const QUIET: f64 = 3e-3;
 
 /// First step of an element that looks for a better place, in tolerated distances, and how often it is halved.
 const STEPS: (f64, u32) = (0.5, 3);
@@ -50,7 +56,7 @@ where
         let radius = self.page.inks.radius(&body.pose);
         let scene = self.scene(Some(b), body.pose.centre, (radius, 2.0 * first), meter)?;
         let start = self.price(&scene, Some(&body.pose), meter)?;
-        if start < WORTH {
+        if start < QUIET {
             return Ok(0.0);
         }
         let (pose, price) = self.descend(&scene, body.pose, start, first, meter)?;
@@ -202,6 +208,19 @@ where
         Ok(rated)
     }
 
+    /// The place farthest from ink around `p`.
+    pub(crate) fn emptiest(&self, p: Vector<D>) -> Option<Vector<D>> {
+        let mut best: Option<(f32, Vector<D>)> = None;
+        let reach = self.library.spacing * self.page.request.fields.frame(p).spacing_scale;
+        self.page.lattice.around(p, reach, |c, at| {
+            let empty = self.page.cells[c].empty();
+            if best.is_none_or(|(most, _)| empty > most) {
+                best = Some((empty, self.page.lattice.centre_at(at)));
+            }
+        });
+        best.map(|(_, place)| place)
+    }
+
     /// Puts a further element into a hole around `p`, where others may give way.
     pub(crate) fn fill(&mut self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<bool> {
         let mut rated = self.rated(p, meter)?;
@@ -275,8 +294,7 @@ where
             return Ok(false);
         }
         let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), meter)?;
-        let mut gain =
-            self.price(&scene, Some(&body.pose), meter)? - self.price(&scene, None, meter)?;
+        let mut gain = self.price(&scene, Some(&body.pose), meter)? - self.price(&scene, None, meter)?;
         self.remove(b, meter)?;
         gain += self.give_way(body.pose.centre, meter)?;
         if gain > WORTH {

@@ -15,7 +15,7 @@ use crate::{
 const PLACES: (f64, usize) = (6.0, 1 << 18);
 
 /// Share of places that are nearer to ink than what is tolerated of the output: natural, but no more of it than there is.
-const TOLERATED: f64 = 0.99;
+const TOLERATED: f64 = 0.993;
 
 /// Distances are measured up to so many mean spacings.
 const FARTHEST: f64 = 1.5;
@@ -29,6 +29,9 @@ const NARROWEST: f64 = 0.01;
 /// The same for kinds of which too few pairs are seen beside each other to tell.
 const COMMON: f64 = 0.03;
 
+/// Up to so many kinds there is an entry for every two of them.
+const TABLE: usize = 512;
+
 /// So many pairs tell how near two kinds come.
 const MANY: usize = 8;
 
@@ -41,7 +44,9 @@ pub(crate) struct Natural {
     /// Distance from ink that most places keep below.
     pub(crate) tolerated: f64,
     /// Narrowest gap between elements of two kinds, the lower number first; where they are seen beside each other.
-    narrowest: BTreeMap<(u32, u32), f64>,
+    narrowest: Vec<f32>,
+    /// Number of kinds; 0 where there are too many for a table.
+    kinds: usize,
     /// The same for kinds that are never seen beside each other.
     otherwise: f64,
     /// Largest of these gaps.
@@ -80,15 +85,21 @@ impl Natural {
             let least = low(gaps, NARROWEST)?;
             Some(if gaps.len() < MANY { least.min(otherwise) } else { least.min(tolerated) })
         };
-        let narrowest: BTreeMap<_, _> =
-            gaps.iter().filter_map(|(&kinds, gaps)| Some((kinds, of_kinds(gaps)?))).collect();
-        let widest = narrowest.values().copied().fold(otherwise, f64::max);
-        Ok(Some(Self { tolerated, narrowest, otherwise, widest }))
+        let kinds = if library.classes() <= TABLE { library.classes() } else { 0 };
+        let mut narrowest = vec![otherwise as f32; kinds * kinds];
+        for (&(a, b), gaps) in gaps.iter().filter(|_| kinds > 0) {
+            let (a, b) = (a as usize, b as usize);
+            if let Some(gap) = of_kinds(gaps) {
+                (narrowest[a * kinds + b], narrowest[b * kinds + a]) = (gap as f32, gap as f32);
+            }
+        }
+        let widest = narrowest.iter().map(|&gap| f64::from(gap)).fold(otherwise, f64::max);
+        Ok(Some(Self { tolerated, narrowest, kinds, otherwise, widest }))
     }
 
     /// Narrowest gap between elements of two kinds.
     pub(crate) fn gap(&self, a: u32, b: u32) -> f64 {
-        self.narrowest.get(&(a.min(b), a.max(b))).copied().unwrap_or(self.otherwise)
+        self.narrowest.get(a as usize * self.kinds + b as usize).map_or(self.otherwise, |&gap| f64::from(gap))
     }
 }
 
@@ -104,12 +115,8 @@ struct Shown<'a, const D: usize> {
 
 impl<'a, const D: usize> Shown<'a, D> {
     fn new(exemplar: &Exemplar<D>, library: &'a Library<D>, inks: &'a Inks<D>) -> Self {
-        let pose = |e: usize| Pose {
-            source: e as u32,
-            centre: library.centre[e],
-            rotation: Matrix::identity(),
-            scale: 1.0,
-        };
+        let pose =
+            |e: usize| Pose { source: e as u32, centre: library.centre[e], rotation: Matrix::identity(), scale: 1.0 };
         let poses: Vec<_> = (0..inks.len()).map(pose).collect();
         let centres: Vec<_> = poses.iter().map(|p| p.centre).collect();
         let largest = poses.iter().map(|p| inks.radius(p)).fold(0.0, f64::max).min(library.reach.max(library.spacing));

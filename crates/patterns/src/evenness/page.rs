@@ -219,7 +219,8 @@ impl<const D: usize> Page<'_, D> {
     /// Living elements whose circle comes nearer than `gap` to a circle, ascending.
     pub(crate) fn neighbours(&self, centre: Vector<D>, radius: f64, except: u32) -> Vec<u32> {
         let mut found = Vec::new();
-        self.parts.around(centre, radius, |part, _| found.extend(self.lists[part].iter().copied().filter(|&o| o != except)));
+        self.parts
+            .around(centre, radius, |part, _| found.extend(self.lists[part].iter().copied().filter(|&o| o != except)));
         found.sort_unstable();
         found.dedup();
         found.retain(|&o| {

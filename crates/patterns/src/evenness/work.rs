@@ -1,8 +1,8 @@
 //! What evening out works with: the page, what is natural, and the price of a state.
 //!
-//! The price has two parts, both sums of local terms. Places that are farther from ink than the exemplar tolerates cost the
-//! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square. Lengths
-//! are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
+//! The price has three parts, all sums of local terms. Places that are farther from ink than the exemplar tolerates cost the
+//! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square;
+//! and so do places where there is more or less ink around than usual. Lengths are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
 
 use arabesque_core::{Meter, Numbered, Result, Vector};
 
@@ -12,6 +12,7 @@ use crate::{
         ink::Pose,
         natural::Natural,
         page::{NOBODY, PRICE, Page},
+        share::{self, Shares},
     },
     exemplar::library::Library,
 };
@@ -33,6 +34,8 @@ enum Undo<const D: usize> {
 /// A page that is evened out.
 pub(crate) struct Work<'a, const D: usize> {
     pub(crate) page: Page<'a, D>,
+    /// Shares of ink; `None` where the exemplar does not tell what is natural.
+    pub(crate) shares: Option<Shares<'a, D>>,
     pub(crate) natural: &'a Natural,
     pub(crate) library: &'a Library<D>,
     pub(crate) extent: &'a Extent<'a, D>,
@@ -54,19 +57,20 @@ struct Held<const D: usize> {
 pub(crate) struct Scene<const D: usize> {
     held: Vec<Held<D>>,
     neighbours: Vec<u32>,
+    shares: share::Around<D>,
     /// Size of a cell.
     measure: f64,
 }
 
 impl<'a, const D: usize> Work<'a, D> {
     pub(crate) fn new(
-        page: Page<'a, D>,
+        (page, shares): (Page<'a, D>, Option<Shares<'a, D>>),
         (natural, library): (&'a Natural, &'a Library<D>),
         extent: &'a Extent<'a, D>,
         targets: &'a Numbered<f64>,
         counts: Numbered<f64>,
     ) -> Self {
-        Self { page, natural, library, extent, counts, targets, steps: Vec::new() }
+        Self { page, shares, natural, library, extent, counts, targets, steps: Vec::new() }
     }
 
     /// Price of a place.
@@ -102,7 +106,12 @@ impl<'a, const D: usize> Work<'a, D> {
         let widest = self.natural.widest.max(0.0) * scale;
         let neighbours = page.neighbours(centre, radius + step + widest, body);
         meter.spend(PRICE.0 * (looked + 20 * neighbours.len() as u64))?;
-        Ok(Scene { held, neighbours, measure: page.lattice.cell().0.into_iter().product() })
+        let there = |b: u32| page.bodies.get(b as usize).map(|body| ink_of(&body.pose));
+        let shares = match &self.shares {
+            Some(shares) => shares.around(centre, step, there(body), meter)?,
+            None => share::Around::default(),
+        };
+        Ok(Scene { held, neighbours, shares, measure: page.lattice.cell().0.into_iter().product() })
     }
 
     /// Price of the surroundings of an element in some pose; without it for `None`.
@@ -113,6 +122,9 @@ impl<'a, const D: usize> Work<'a, D> {
             let own = pose.map_or(f64::INFINITY, |pose| self.page.inks.distance(pose, held.place - pose.centre));
             let price = Self::price_at(own.min(held.without), held.tolerated);
             sum += price * scene.measure / held.tolerated.powi(D as i32);
+        }
+        if let Some(shares) = &self.shares {
+            sum += shares.price(&scene.shares, pose.map(ink_of));
         }
         let Some(pose) = pose else { return Ok(sum) };
         for &o in &scene.neighbours {
@@ -163,28 +175,33 @@ impl<'a, const D: usize> Work<'a, D> {
     pub(crate) fn change(&mut self, b: u32, pose: Pose<D>, meter: &mut Meter<'_>) -> Result<()> {
         let before = self.page.body(b).pose;
         self.steps.push(Undo::Change(b, before));
-        self.count(before.source, -1.0);
-        self.count(pose.source, 1.0);
+        self.count(&before, -1.0);
+        self.count(&pose, 1.0);
         self.page.change(b, pose, meter)
     }
 
     /// Adds an element.
     pub(crate) fn add(&mut self, pose: Pose<D>, meter: &mut Meter<'_>) -> Result<u32> {
         let b = self.page.add(pose, meter)?;
-        self.count(pose.source, 1.0);
+        self.count(&pose, 1.0);
         self.steps.push(Undo::Add(b));
         Ok(b)
     }
 
     /// Takes an element away.
     pub(crate) fn remove(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<()> {
-        self.count(self.page.body(b).pose.source, -1.0);
+        let pose = self.page.body(b).pose;
+        self.count(&pose, -1.0);
         self.steps.push(Undo::Remove(b));
         self.page.remove(b, meter)
     }
 
-    fn count(&mut self, source: u32, by: f64) {
-        self.counts[self.library.class[source]] += by;
+    fn count(&mut self, pose: &Pose<D>, by: f64) {
+        self.counts[self.library.class[pose.source]] += by;
+        if let Some(shares) = &mut self.shares {
+            let (ink, centre) = ink_of(pose);
+            shares.count(ink, centre, by);
+        }
     }
 
     /// Everything up to here stays.
@@ -195,23 +212,30 @@ impl<'a, const D: usize> Work<'a, D> {
     /// Undoes everything since the last [`Work::keep`].
     pub(crate) fn undo(&mut self, meter: &mut Meter<'_>) -> Result<()> {
         while let Some(step) = self.steps.pop() {
+            let (Undo::Change(b, _) | Undo::Add(b) | Undo::Remove(b)) = step;
+            let now = self.page.body(b).pose;
             match step {
                 Undo::Change(b, pose) => {
-                    self.count(self.page.body(b).pose.source, -1.0);
-                    self.count(pose.source, 1.0);
+                    self.count(&now, -1.0);
+                    self.count(&pose, 1.0);
                     self.page.change(b, pose, meter)?;
                 }
                 Undo::Add(b) => {
-                    self.count(self.page.body(b).pose.source, -1.0);
+                    self.count(&now, -1.0);
                     self.page.remove(b, meter)?;
                     self.page.bodies.pop();
                 }
                 Undo::Remove(b) => {
-                    self.count(self.page.body(b).pose.source, 1.0);
+                    self.count(&now, 1.0);
                     self.page.restore(b, meter)?;
                 }
             }
         }
         Ok(())
     }
+}
+
+/// An element as a mass at its centre.
+fn ink_of<const D: usize>(pose: &Pose<D>) -> ((u32, f64), Vector<D>) {
+    ((pose.source, pose.scale), pose.centre)
 }

@@ -159,6 +159,16 @@ params! {
         regrowth "regrowth": Switch = Switch::On;
         /// Whether holes and clumps that the exemplar does not have are evened out.
         even "even": Switch = Switch::On;
+        /// Whether elements are shifted for that.
+        even_shift "even-shift": Switch = Switch::On;
+        /// Whether elements are exchanged for others of their class that suit the room.
+        even_exchange "even-exchange": Switch = Switch::On;
+        /// Whether elements are put into holes.
+        even_fill "even-fill": Switch = Switch::On;
+        /// Whether elements are taken out of clumps.
+        even_thin "even-thin": Switch = Switch::On;
+        /// Whether the share of ink around each place counts, beside gaps.
+        even_share "even-share": Switch = Switch::On;
         /// Elements in a patch of the first layout.
         patch "patch": f64 = 14.0, in 1.0..=1000.0;
         /// Largest patch radius relative to the shorter side of the exemplar.
@@ -284,6 +294,6 @@ mod tests {
             let is_chosen = spec.default == "auto" && !matches!(spec.kind, Kind::Choice(_));
             assert_eq!(is_chosen, told.contains(", "), "{told}");
         }
-        assert_eq!(Params::specs().len(), 29);
+        assert_eq!(Params::specs().len(), 34);
     }
 }

@@ -15,43 +15,33 @@ mod ink;
 mod moves;
 mod natural;
 mod page;
+mod rounds;
 mod share;
 mod work;
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Exemplar, Meter, Numbered, Result, Vector};
+use arabesque_core::{Budget, Exemplar, Matrix, Numbered, Result, Vector};
 
 use crate::{
     dimension::Dimension,
     evenness::{
-        ink::Inks,
+        ink::{Inks, Pose},
         natural::Natural,
         page::{Body, Measures, Page},
         share::{Shares, Spread},
-        work::Work,
+        work::{Moves, Work},
     },
     exemplar::library::Library,
-    output::{draft::Item, state::State},
+    output::{
+        draft::{Item, Items},
+        state::State,
+    },
+    params::Params,
 };
 
 /// Distances are told apart up to so many tolerated ones.
 const REACH: f64 = 2.5;
-
-/// Rounds over the page.
-const ROUNDS: usize = 4;
-
-/// Sweeps over elements that pay.
-const SWEEPS: usize = 6;
-
-/// A place is a hole when it is farther from ink than so many tolerated distances.
-const HOLE: f64 = 1.05;
-
-/// Shares of ink are worked on that are off by so many deviations more than what is natural.
-const OFF: f64 = 0.5;
-
-/// Elements are too near each other when so much is missing, in tolerated distances.
-const NEAR: f64 = 0.02;
 
 /// The exemplar, prepared for evening out.
 #[derive(Clone, Debug)]
@@ -85,64 +75,103 @@ where
         Ok(natural.filter(|n| n.tolerated > 0.0).map(|natural| Self { inks, natural, spread }))
     }
 
-    /// Evens out a state.
+    /// Evens out the elements of a state, which is as it was until [`Evened::write_back`]. Tells what there is from time to time. The
+    /// second result says what cut it short, where anything did.
     ///
     /// # Errors
-    /// When the budget is used up, or somebody asks to stop; then the state stays as it was.
-    pub(crate) fn even_out(&self, state: &mut State<'_, D>, targets: &Numbered<f64>) -> Result<()> {
+    /// When the budget is used up, or somebody asks to stop, before there is anything.
+    pub(crate) fn even_out(
+        &self,
+        state: &State<'_, D>,
+        targets: &Numbered<f64>,
+        params: &Params,
+        tell: &mut dyn FnMut(&Items<D>) -> Result<()>,
+    ) -> Result<(Evened<D>, Result<()>)> {
         let budget = state.budget.stage("evening out");
+        let moves = Moves::new(params);
         let base = state.level.base;
-        let numbers: Vec<u32> =
-            state.items().numbers().filter(|&i| state.item(i).alive && state.item(i).item.source < base).collect();
-        let body = |&i: &u32| {
-            let pose = state.pose(i);
-            let item = &state.item(i).item;
-            let pose =
-                ink::Pose { source: item.source, centre: item.position, rotation: pose.rotation, scale: pose.scale };
-            Body { pose, fixed: item.frozen.is_some(), alive: true }
-        };
-        let bodies: Vec<_> = numbers.iter().map(body).collect();
-        let strokes = strokes(state);
-        let largest = state.extent.largest_spacing_scale;
+        let is_element = |&i: &u32| state.item(i).alive && state.item(i).item.source < base;
+        let numbers: Vec<u32> = state.items().numbers().filter(is_element).collect();
+        let bodies: Vec<_> = numbers.iter().map(|&i| body(state, i)).collect();
+        let shares = self.shares(state, &bodies, moves, &budget)?;
         let measures = Measures {
             spacing: state.library.spacing,
             tolerated: self.natural.tolerated,
-            reach: REACH * self.natural.tolerated * largest,
+            reach: REACH * self.natural.tolerated * state.extent.largest_spacing_scale,
         };
-        let page = Page::new(state.extent, &self.inks, bodies.clone(), measures, &strokes, &budget)?;
-        let counts = counts(state);
-        let mut shares = match &self.spread {
-            Some(spread) => Some(Shares::new(spread, state.extent, &budget)?),
-            None => None,
-        };
-        for body in &bodies {
-            if let Some(shares) = &mut shares {
-                shares.count((body.pose.source, body.pose.scale), body.pose.centre, 1.0);
-            }
+        let page = Page::new(state.extent, &self.inks, bodies, measures, &strokes(state), &budget)?;
+        let known = (&self.natural, state.library);
+        let mut work = Work::new((page, shares), known, state.extent, (counts(state), targets), moves);
+        let ended = rounds::run(&mut work, &budget, &mut |bodies| tell(&items(state, &numbers, bodies)));
+        if ended.is_err() {
+            work.undo(&mut state.budget.fresh().meter())?;
         }
-        let mut work = Work::new((page, shares), (&self.natural, state.library), state.extent, targets, counts);
-        run(&mut work, &budget)?;
-        let Work { page, .. } = work;
-        for (k, body) in page.bodies.iter().enumerate() {
-            let Some((&i, before)) = numbers.get(k).zip(bodies.get(k)) else {
-                if body.alive {
-                    let item = Item { source: body.pose.source, position: body.pose.centre, frozen: None };
-                    state.push(item, arabesque_core::Matrix::identity());
+        Ok((Evened { numbers, bodies: work.page.bodies }, ended))
+    }
+
+    fn shares<'s>(
+        &'s self,
+        state: &State<'_, D>,
+        bodies: &[Body<D>],
+        moves: Moves,
+        budget: &Budget,
+    ) -> Result<Option<Shares<'s, D>>> {
+        let Some(spread) = self.spread.as_ref().filter(|_| moves.share) else { return Ok(None) };
+        let mut shares = Shares::new(spread, state.extent, budget)?;
+        bodies.iter().for_each(|b| shares.count((b.pose.source, b.pose.scale), b.pose.centre, 1.0));
+        Ok(Some(shares))
+    }
+}
+
+/// Elements that were evened out.
+pub(crate) struct Evened<const D: usize> {
+    /// Items of the first bodies; the others are new.
+    numbers: Vec<u32>,
+    bodies: Vec<Body<D>>,
+}
+
+impl<const D: usize> Evened<D> {
+    /// Changes the state from which they come.
+    pub(crate) fn write_back(self, state: &mut State<'_, D>) {
+        for (k, body) in self.bodies.iter().enumerate() {
+            match self.numbers.get(k) {
+                None if body.alive => _ = state.push(new_item(body), Matrix::identity()),
+                None => {}
+                Some(&i) if !body.alive => state.remove_item(i),
+                Some(&i) => {
+                    let item = state.item(i).item;
+                    if item.source != body.pose.source {
+                        state.set_source(i, body.pose.source);
+                    }
+                    if item.position != body.pose.centre {
+                        state.move_item(i, body.pose.centre);
+                    }
                 }
-                continue;
-            };
-            if !body.alive {
-                state.remove_item(i);
-            } else if body.pose != before.pose {
-                if body.pose.source != before.pose.source {
-                    state.set_source(i, body.pose.source);
-                }
-                state.move_item(i, body.pose.centre);
             }
         }
         state.reindex();
-        Ok(())
     }
+}
+
+fn new_item<const D: usize>(body: &Body<D>) -> Item<D> {
+    Item { source: body.pose.source, position: body.pose.centre, frozen: None }
+}
+
+/// Item `i` as a body.
+fn body<const D: usize>(state: &State<'_, D>, i: u32) -> Body<D> {
+    let (item, pose) = (&state.item(i).item, state.pose(i));
+    let pose = Pose { source: item.source, centre: item.position, rotation: pose.rotation, scale: pose.scale };
+    Body { pose, fixed: item.frozen.is_some(), alive: true }
+}
+
+/// Bodies as the items that they would be.
+fn items<const D: usize>(state: &State<'_, D>, numbers: &[u32], bodies: &[Body<D>]) -> Items<D> {
+    let item = |(k, body): (usize, &Body<D>)| {
+        let Some(live) = numbers.get(k).map(|&i| state.item(i)) else { return (new_item(body), Matrix::identity()) };
+        let turn = if live.item.source == body.pose.source { live.turn } else { Matrix::identity() };
+        (Item { frozen: live.item.frozen, ..new_item(body) }, turn)
+    };
+    bodies.iter().enumerate().filter(|(_, body)| body.alive).map(item).collect()
 }
 
 /// Ink of the strokes: places along them, and half their width.
@@ -180,125 +209,4 @@ fn counts<const D: usize>(state: &State<'_, D>) -> Numbered<f64> {
         }
     }
     counts
-}
-
-fn run<const D: usize>(work: &mut Work<'_, D>, budget: &Budget) -> Result<()>
-where
-    Vector<D>: Dimension<D>,
-{
-    let mut meter = budget.meter();
-    for _ in 0..ROUNDS {
-        let mut moves = 0;
-        relax(work, &mut meter)?;
-        moves += thin_clumps(work, &mut meter)?;
-        moves += fill_holes(work, &mut meter)?;
-        moves += balance(work, &mut meter)?;
-        if moves == 0 {
-            break;
-        }
-    }
-    relax(work, &mut meter)
-}
-
-/// Works on holes, the widest first.
-fn fill_holes<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<usize>
-where
-    Vector<D>: Dimension<D>,
-{
-    let cells = &work.page.cells;
-    let depth = |c: usize| cells[c].empty() / cells[c].tolerated;
-    let mut holes: Vec<(f32, usize)> =
-        (0..cells.len()).filter(|&c| depth(c) > HOLE as f32).map(|c| (depth(c), c)).collect();
-    holes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut moves = 0;
-    let mut done: Vec<bool> = vec![false; work.page.cells.len()];
-    for (before, c) in holes {
-        let cell = &work.page.cells[c];
-        if done[c] || cell.empty() / cell.tolerated < before * 0.98 {
-            continue;
-        }
-        let p = work.page.lattice.centre(c);
-        // The hole is looked at once a round.
-        let lattice = work.page.lattice.clone();
-        lattice.around(p, 0.5 * f64::from(cell.empty()), |c, _| done[c] = true);
-        let helped = work.fill(p, meter)? || work.exchange(p, 3, meter)? || work.give_way(p, meter)? > 0.0;
-        work.keep();
-        moves += usize::from(helped);
-    }
-    Ok(moves)
-}
-
-/// Lets elements that pay settle, and then those around the ones that did, until nothing moves.
-fn relax<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<()>
-where
-    Vector<D>: Dimension<D>,
-{
-    let mut open: Vec<u32> = (0..work.page.bodies.len() as u32).collect();
-    for _ in 0..SWEEPS {
-        let mut next = Vec::new();
-        for b in open {
-            if work.settle(b, meter)? > 0.0 {
-                let pose = work.page.body(b).pose;
-                next.extend(work.group(pose.centre, work.page.bodies.len()));
-            }
-        }
-        work.keep();
-        next.sort_unstable();
-        next.dedup();
-        open = next;
-    }
-    Ok(())
-}
-
-/// Works on elements that are too near each other, the nearest first.
-fn thin_clumps<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<usize>
-where
-    Vector<D>: Dimension<D>,
-{
-    let mut clumps = Vec::new();
-    for b in 0..work.page.bodies.len() as u32 {
-        let missing = work.worst(b, meter)?;
-        if missing > NEAR {
-            clumps.push((missing, b));
-        }
-    }
-    clumps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut moves = 0;
-    for (_, b) in clumps {
-        if work.worst(b, meter)? <= NEAR {
-            continue;
-        }
-        let p = work.page.body(b).pose.centre;
-        let mut helped = work.give_way(p, meter)? > 0.0;
-        work.keep();
-        if work.worst(b, meter)? > NEAR {
-            helped |= work.exchange(p, 1, meter)? || work.thin(b, meter)?;
-        }
-        moves += usize::from(helped);
-    }
-    Ok(moves)
-}
-
-/// Works on places where there is too much or too little ink around, the worst first.
-fn balance<const D: usize>(work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<usize>
-where
-    Vector<D>: Dimension<D>,
-{
-    let off = work.shares.as_ref().map_or_else(Vec::new, Shares::off);
-    let mut moves = 0;
-    for (excess, p) in off.into_iter().filter(|(excess, _)| excess.abs() > OFF) {
-        let mut helped = work.exchange(p, 5, meter)?;
-        if !helped && excess < 0.0 {
-            if let Some(hole) = work.emptiest(p) {
-                helped = work.fill(hole, meter)?;
-            }
-        }
-        if !helped && excess > 0.0 {
-            for b in work.group(p, 5) {
-                helped = helped || work.thin(b, meter)?;
-            }
-        }
-        moves += usize::from(helped);
-    }
-    Ok(moves)
 }

@@ -14,10 +14,13 @@ use crate::{
 const WORTH: f64 = 1e-4;
 
 /// An element that pays less stays where it is.
-const QUIET: f64 = 3e-3;
+const QUIET: f64 = 8e-3;
 
 /// First step of an element that looks for a better place, in tolerated distances, and how often it is halved.
 const STEPS: (f64, u32) = (0.5, 3);
+
+/// Steps of one length.
+const TURNS: usize = 4;
 
 /// Elements around a place that give way.
 const AROUND: usize = 8;
@@ -48,7 +51,7 @@ where
     /// Moves an element to where the price is lowest nearby. Returns by how much it fell.
     pub(crate) fn settle(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<f64> {
         let body = *self.page.body(b);
-        if body.fixed || !body.alive {
+        if body.fixed || !body.alive || !self.moves.shift {
             return Ok(0.0);
         }
         let unit = self.unit(body.pose.centre);
@@ -78,11 +81,15 @@ where
     ) -> Result<(Pose<D>, f64)> {
         let turn = self.turn(&pose);
         let start = pose.centre;
+        let mut leading = Vector::ZERO;
         for halving in 0..=STEPS.1 {
             let step = first * 0.5_f64.powi(halving as i32);
-            for _ in 0..3 {
-                let mut best = None;
-                for way in ways::<D>() {
+            let mut left = TURNS;
+            loop {
+                // What helped last is tried first.
+                let tried = std::iter::once(leading).filter(|way| *way != Vector::ZERO).chain(ways::<D>());
+                let mut better = None;
+                for way in tried {
                     let centre = pose.centre + way * step;
                     if self.page.domain().offset(start, centre).norm() > 2.0 * first {
                         continue;
@@ -90,11 +97,16 @@ where
                     let moved = self.page.pose(pose.source, centre, &turn);
                     let there = self.price(scene, Some(&moved), meter)?;
                     if there < price - WORTH && self.admits(&moved) {
-                        (best, price) = (Some(moved), there);
+                        better = Some((moved, there, way));
+                        break;
                     }
                 }
-                let Some(moved) = best else { break };
-                pose = moved;
+                let Some((moved, there, way)) = better else { break };
+                (pose, price, leading) = (moved, there, way);
+                left -= 1;
+                if left == 0 || price < WORTH {
+                    break;
+                }
             }
         }
         Ok((pose, price))
@@ -109,7 +121,7 @@ where
     pub(crate) fn give_way(&mut self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<f64> {
         let group = self.group(p, AROUND);
         let mut sum = 0.0;
-        for _ in 0..3 {
+        for _ in 0..2 {
             let mut gain = 0.0;
             for &b in &group {
                 gain += self.settle(b, meter)?;
@@ -223,6 +235,9 @@ where
 
     /// Puts a further element into a hole around `p`, where others may give way.
     pub(crate) fn fill(&mut self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<bool> {
+        if !self.moves.fill {
+            return Ok(false);
+        }
         let mut rated = self.rated(p, meter)?;
         rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.source.cmp(&b.2.source)));
         for (_, cost, pose) in rated.into_iter().take(CANDIDATES.2) {
@@ -253,7 +268,7 @@ where
 
     fn exchange_one(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<bool> {
         let body = *self.page.body(b);
-        if body.fixed || !body.alive {
+        if body.fixed || !body.alive || !self.moves.exchange {
             return Ok(false);
         }
         let class = self.library.class[body.pose.source];
@@ -286,7 +301,7 @@ where
     /// Takes an element out of a clump, where others may close up.
     pub(crate) fn thin(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<bool> {
         let body = *self.page.body(b);
-        if body.fixed || !body.alive {
+        if body.fixed || !body.alive || !self.moves.thin {
             return Ok(false);
         }
         let class = self.library.class[body.pose.source];

@@ -210,10 +210,24 @@ impl<const D: usize> Page<'_, D> {
         self.parts.around(pose.centre, self.inks.radius(&pose) + self.reach, |part, _| lists[part].retain(|&o| o != b));
     }
 
+    /// Number of parts.
+    pub(crate) fn parts(&self) -> usize {
+        self.parts.count()
+    }
+
+    /// The part of the page that holds `p`.
+    pub(crate) fn part(&self, p: Vector<D>) -> usize {
+        self.parts.at(p).unwrap_or_else(|| self.parts.nearest(p))
+    }
+
+    /// Calls `visit(part)` for the parts to whose places an element may be nearer than the reach.
+    pub(crate) fn parts_around(&self, pose: &Pose<D>, mut visit: impl FnMut(usize)) {
+        self.parts.around(pose.centre, self.inks.radius(pose) + self.reach, |part, _| visit(part));
+    }
+
     /// Elements that may be nearer to `p` than the reach.
     pub(crate) fn near(&self, p: Vector<D>) -> &[u32] {
-        let part = self.parts.at(p).unwrap_or_else(|| self.parts.nearest(p));
-        &self.lists[part]
+        &self.lists[self.part(p)]
     }
 
     /// Living elements whose circle comes nearer than `gap` to a circle, ascending.

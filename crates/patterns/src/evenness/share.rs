@@ -12,7 +12,7 @@ use crate::{border::Extent, dimension::Dimension, exemplar::library::Library};
 const RADIUS: f64 = 2.4;
 
 /// Cells to a radius of the kernel, and most cells of a page.
-const CELLS: (f64, usize) = (3.5, 1 << 20);
+const CELLS: (f64, usize) = (2.5, 1 << 20);
 
 /// Places whose kernel lies inside by less than this share tell nothing.
 const INSIDE: f64 = 0.55;

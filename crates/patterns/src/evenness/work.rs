@@ -15,6 +15,7 @@ use crate::{
         share::{self, Shares},
     },
     exemplar::library::Library,
+    params::{Params, Switch},
 };
 
 /// Price of a gap that is too narrow: of what is missing, and of its square, in tolerated distances.
@@ -42,7 +43,36 @@ pub(crate) struct Work<'a, const D: usize> {
     /// Elements of each class that are there, and that should be.
     pub(crate) counts: Numbered<f64>,
     pub(crate) targets: &'a Numbered<f64>,
+    pub(crate) moves: Moves,
     steps: Vec<Undo<D>>,
+    /// When elements last changed, by the part of the page; and now.
+    changed: Vec<u32>,
+    pub(crate) now: u32,
+}
+
+/// The moves that are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moves {
+    pub(crate) shift: bool,
+    pub(crate) exchange: bool,
+    pub(crate) fill: bool,
+    pub(crate) thin: bool,
+    /// Whether the share of ink counts.
+    pub(crate) share: bool,
+}
+
+impl Moves {
+    /// Those that are asked for.
+    pub(crate) fn new(params: &Params) -> Self {
+        let is_on = |switch: Switch| switch == Switch::On;
+        Self {
+            shift: is_on(params.even_shift),
+            exchange: is_on(params.even_exchange),
+            fill: is_on(params.even_fill),
+            thin: is_on(params.even_thin),
+            share: is_on(params.even_share),
+        }
+    }
 }
 
 /// A place whose distance from ink depends on one element.
@@ -67,10 +97,17 @@ impl<'a, const D: usize> Work<'a, D> {
         (page, shares): (Page<'a, D>, Option<Shares<'a, D>>),
         (natural, library): (&'a Natural, &'a Library<D>),
         extent: &'a Extent<'a, D>,
-        targets: &'a Numbered<f64>,
-        counts: Numbered<f64>,
+        (counts, targets): (Numbered<f64>, &'a Numbered<f64>),
+        moves: Moves,
     ) -> Self {
-        Self { page, shares, natural, library, extent, counts, targets, steps: Vec::new() }
+        let changed = vec![1; page.parts()];
+        let steps = Vec::new();
+        Self { page, shares, natural, library, extent, counts, targets, moves, steps, changed, now: 1 }
+    }
+
+    /// Whether anything has changed around `p` since some time.
+    pub(crate) fn has_changed(&self, p: Vector<D>, since: u32) -> bool {
+        self.changed[self.page.part(p)] >= since
     }
 
     /// Price of a place.
@@ -206,7 +243,12 @@ impl<'a, const D: usize> Work<'a, D> {
 
     /// Everything up to here stays.
     pub(crate) fn keep(&mut self) {
-        self.steps.clear();
+        for step in std::mem::take(&mut self.steps) {
+            let (Undo::Change(b, _) | Undo::Add(b) | Undo::Remove(b)) = step;
+            let pose = self.page.body(b).pose;
+            let (page, changed, now) = (&self.page, &mut self.changed, self.now);
+            page.parts_around(&pose, |part| changed[part] = now);
+        }
     }
 
     /// Undoes everything since the last [`Work::keep`].

@@ -119,6 +119,12 @@ impl<'a, const D: usize> Extent<'a, D> {
         self.request.domain.signed_distance(p)
     }
 
+    /// Distance to the border and to what is in the way, negative beyond the one and within the other.
+    pub(crate) fn room(&self, p: Vector<D>) -> f64 {
+        let depth = self.request.domain.signed_distance(p);
+        self.obstacles.as_ref().map_or(depth, |o| depth.min(-o.signed_distance(p)))
+    }
+
     /// Whether exemplar element `i` may lie with its centre at `p`, by the domain and its border rule alone.
     pub(crate) fn admits(&self, i: u32, p: Vector<D>) -> bool {
         let reach = self.radius[i] * self.request.fields.scale.at(p);

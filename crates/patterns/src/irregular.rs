@@ -10,6 +10,7 @@ use crate::{
     border::Extent,
     dimension::Dimension,
     ending,
+    evenness::Evenness,
     exemplar::{
         checks,
         graph::{crowding, skeleton::Skeleton},
@@ -17,7 +18,7 @@ use crate::{
     },
     finish::{clearance::ExemplarClearance, placements},
     optimise::{search, targets::class_targets},
-    params::Params,
+    params::{Deform, Params, Switch},
     run::{LevelContext, Made, Run},
 };
 
@@ -45,6 +46,8 @@ pub(crate) struct Irregular<const D: usize> {
     clearance: Option<Arc<ExemplarClearance>>,
     pub(crate) levels: Vec<LevelExemplar<D>>,
     params: Params,
+    /// How even its elements lie; `None` where that cannot be told.
+    evenness: Option<Evenness<D>>,
     /// See [`search::dissimilarity`]; `None` without curves.
     dissimilarity: Option<f64>,
 }
@@ -81,7 +84,11 @@ where
             Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
             None => None,
         };
-        Ok(Self { exemplar: Arc::clone(exemplar), clearance, dissimilarity, levels, params: params.clone() })
+        let evenness = match levels.last().filter(|_| params.even == Switch::On && params.deform == Deform::Rigid) {
+            Some(s) => Evenness::new(&s.exemplar, &s.library, s.level.base as usize, budget)?,
+            None => None,
+        };
+        Ok(Self { exemplar: Arc::clone(exemplar), clearance, dissimilarity, levels, evenness, params: params.clone() })
     }
 
     /// Neighbourhood radius of each level, coarsest first, in the exemplar's units.
@@ -123,7 +130,8 @@ where
             LevelContext { sampled: &self.levels[k], extent: &extents[shared], targets: &targets[shared] }
         };
         let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
-        let run = Run { params: &self.params, request, contexts, iterations };
+        let evenness = self.evenness.as_ref();
+        let run = Run { params: &self.params, request, contexts, evenness, iterations };
         let forecast = Self::forecast(&run);
         request.budget.allow_elements(forecast.count);
         watch.foreseen(&Forecast { allowed: request.budget.allowed() as f64, ..forecast });

@@ -45,6 +45,7 @@ mod border;
 mod curves;
 mod dimension;
 mod ending;
+mod evenness;
 mod exemplar;
 mod finish;
 mod frozen;

@@ -157,6 +157,18 @@ params! {
         mending "mending": Switch = Switch::On;
         /// Whether a start in disorder is grown anew from its best part.
         regrowth "regrowth": Switch = Switch::On;
+        /// Whether holes and clumps that the exemplar does not have are evened out.
+        even "even": Switch = Switch::On;
+        /// Whether elements are shifted for that.
+        even_shift "even-shift": Switch = Switch::On;
+        /// Whether elements are exchanged for others of their class that suit the room.
+        even_exchange "even-exchange": Switch = Switch::On;
+        /// Whether elements are put into holes.
+        even_fill "even-fill": Switch = Switch::On;
+        /// Whether elements are taken out of clumps.
+        even_thin "even-thin": Switch = Switch::On;
+        /// Whether the share of ink around each place counts, beside gaps.
+        even_share "even-share": Switch = Switch::On;
         /// Elements in a patch of the first layout.
         patch "patch": f64 = 14.0, in 1.0..=1000.0;
         /// Largest patch radius relative to the shorter side of the exemplar.
@@ -189,6 +201,7 @@ impl Params {
             balance: 0.0,
             clearance: Clearance::Ignored,
             regrowth: Switch::Off,
+            even: Switch::Off,
             ..Self::default()
         };
         match name {
@@ -281,6 +294,6 @@ mod tests {
             let is_chosen = spec.default == "auto" && !matches!(spec.kind, Kind::Choice(_));
             assert_eq!(is_chosen, told.contains(", "), "{told}");
         }
-        assert_eq!(Params::specs().len(), 28);
+        assert_eq!(Params::specs().len(), 34);
     }
 }

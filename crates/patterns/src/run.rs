@@ -1,5 +1,7 @@
 //! One run: initialise, then level by level search and assign, then place and draw.
 
+use std::cell::OnceCell;
+
 use arabesque_core::{Drawn, EnergyPoint, Error, Matrix, Numbered, Progress, Request, Result, Snapshot, Vector, Watch};
 
 use crate::{
@@ -15,6 +17,7 @@ use crate::{
     },
     dimension::Dimension,
     ending::{heard, last_touches},
+    evenness::Evenness,
     exemplar::level_exemplar::LevelExemplar,
     finish::placements,
     frozen,
@@ -63,6 +66,8 @@ pub(crate) struct Run<'a, const D: usize> {
     pub(crate) request: &'a Request<D>,
     /// The levels that are used, coarsest first.
     pub(crate) contexts: Vec<LevelContext<'a, D>>,
+    /// How even the exemplar is; `None` where the page is left as it is.
+    pub(crate) evenness: Option<&'a Evenness<D>>,
     /// Iterations per level.
     pub(crate) iterations: usize,
 }
@@ -315,7 +320,28 @@ where
             self.layout(context).fill_holes(state)?;
             edges::link_sources(state)?;
         }
+        if k + 1 == self.contexts.len() {
+            self.even_out(k, state, watch)?;
+        }
         Ok(())
+    }
+
+    /// Mends holes and clumps that the exemplar does not have. An error leaves the state as far as it has come.
+    fn even_out(&self, k: usize, state: &mut State<'_, D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<()> {
+        let (context, Some(evenness)) = (&self.contexts[k], self.evenness) else { return Ok(()) };
+        let known = Progress { stage: "evening out".into(), ..self.progress(k, self.iterations, state) };
+        let curves = OnceCell::new();
+        let (evened, ended) = evenness.even_out(state, context.targets, self.params, &mut |items| {
+            let progress = Progress { count: items.len(), ..known.clone() };
+            let preview = || {
+                let placements = placements::placements(items, self.request, context.extent, state.level.base);
+                let curves = curves.get_or_init(|| self.preview_strokes(state)).clone();
+                Snapshot { placements, curves, ..Snapshot::default() }
+            };
+            heard(watch.step(&progress, &preview), &progress)
+        })?;
+        evened.write_back(state);
+        ended
     }
 
     /// Patches that agree with one another are as much order as there is to find; any other start may have ended in

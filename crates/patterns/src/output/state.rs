@@ -338,6 +338,17 @@ impl<'a, const D: usize> State<'a, D> {
         }
     }
 
+    /// Puts item `i` elsewhere, turned as it is from the local frame.
+    pub(crate) fn move_item(&mut self, i: u32, position: Vector<D>) {
+        self.items[i].item.position = self.request.domain.wrap(position);
+        let live = self.items[i];
+        for s in live.first..live.first + live.count {
+            let p = self.part_position(i, self.samples[s].part);
+            let sample = &mut self.samples[s];
+            (sample.position, sample.dirty) = (p, true);
+        }
+    }
+
     /// Replaces the source of item `i`, which then lies as in the exemplar again.
     pub(crate) fn set_source(&mut self, i: u32, source: u32) {
         let live = &mut self.items[i];

@@ -1,0 +1,331 @@
+//! The moves that even a page out; each is kept only if the price falls.
+
+use arabesque_core::{Matrix, Meter, Result, Vector};
+
+use crate::{
+    dimension::Dimension,
+    evenness::{
+        ink::Pose,
+        work::{Scene, Work},
+    },
+};
+
+/// A step must lower the price by this much to count.
+const WORTH: f64 = 1e-4;
+
+/// An element that pays less stays where it is.
+const QUIET: f64 = 8e-3;
+
+/// First step of an element that looks for a better place, in tolerated distances, and how often it is halved.
+const STEPS: (f64, u32) = (0.5, 3);
+
+/// Steps of one length.
+const TURNS: usize = 4;
+
+/// Elements around a place that give way.
+const AROUND: usize = 8;
+
+/// Elements that are tried in a hole or in place of another: as they are, moved to where they fit best, and with others giving
+/// way.
+const CANDIDATES: (usize, usize, usize) = (32, 6, 2);
+
+/// Weight of how little an element agrees with its neighbours.
+const AGREEMENT: f64 = 0.15;
+
+/// Numbers of elements of a class stay within this share of what they should be.
+const COUNT: f64 = 0.02;
+
+impl<const D: usize> Work<'_, D>
+where
+    Vector<D>: Dimension<D>,
+{
+    /// Length of a tolerated distance at `p`.
+    pub(crate) fn unit(&self, p: Vector<D>) -> f64 {
+        self.natural.tolerated * self.page.request.fields.frame(p).spacing_scale
+    }
+
+    fn admits(&self, pose: &Pose<D>) -> bool {
+        self.extent.admits(pose.source, pose.centre)
+    }
+
+    /// Moves an element to where the price is lowest nearby. Returns by how much it fell.
+    pub(crate) fn settle(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<f64> {
+        let body = *self.page.body(b);
+        if body.fixed || !body.alive || !self.moves.shift {
+            return Ok(0.0);
+        }
+        let unit = self.unit(body.pose.centre);
+        let first = STEPS.0 * unit;
+        let radius = self.page.inks.radius(&body.pose);
+        let scene = self.scene(Some(b), body.pose.centre, (radius, 2.0 * first), meter)?;
+        let start = self.price(&scene, Some(&body.pose), meter)?;
+        if start < QUIET {
+            return Ok(0.0);
+        }
+        let (pose, price) = self.descend(&scene, body.pose, start, first, meter)?;
+        if start - price < WORTH {
+            return Ok(0.0);
+        }
+        self.change(b, pose, meter)?;
+        Ok(start - price)
+    }
+
+    /// The cheapest pose that steps lead to, each halved until none helps any more.
+    fn descend(
+        &self,
+        scene: &Scene<D>,
+        mut pose: Pose<D>,
+        mut price: f64,
+        first: f64,
+        meter: &mut Meter<'_>,
+    ) -> Result<(Pose<D>, f64)> {
+        let turn = self.turn(&pose);
+        let start = pose.centre;
+        let mut leading = Vector::ZERO;
+        for halving in 0..=STEPS.1 {
+            let step = first * 0.5_f64.powi(halving as i32);
+            let mut left = TURNS;
+            loop {
+                // What helped last is tried first.
+                let tried = std::iter::once(leading).filter(|way| *way != Vector::ZERO).chain(ways::<D>());
+                let mut better = None;
+                for way in tried {
+                    let centre = pose.centre + way * step;
+                    if self.page.domain().offset(start, centre).norm() > 2.0 * first {
+                        continue;
+                    }
+                    let moved = self.page.pose(pose.source, centre, &turn);
+                    let there = self.price(scene, Some(&moved), meter)?;
+                    if there < price - WORTH && self.admits(&moved) {
+                        better = Some((moved, there, way));
+                        break;
+                    }
+                }
+                let Some((moved, there, way)) = better else { break };
+                (pose, price, leading) = (moved, there, way);
+                left -= 1;
+                if left == 0 || price < WORTH {
+                    break;
+                }
+            }
+        }
+        Ok((pose, price))
+    }
+
+    /// How an element is turned from the local frame.
+    fn turn(&self, pose: &Pose<D>) -> Matrix<D> {
+        self.page.request.fields.frame(pose.centre).rotation.transpose().compose(&pose.rotation)
+    }
+
+    /// Lets the elements around a place give way, nearest first, and once more where that helped.
+    pub(crate) fn give_way(&mut self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        let group = self.group(p, AROUND);
+        let mut sum = 0.0;
+        for _ in 0..2 {
+            let mut gain = 0.0;
+            for &b in &group {
+                gain += self.settle(b, meter)?;
+            }
+            sum += gain;
+            if gain < WORTH {
+                break;
+            }
+        }
+        Ok(sum)
+    }
+
+    /// The elements nearest to a place by their ink, the nearest first.
+    pub(crate) fn group(&self, p: Vector<D>, most: usize) -> Vec<u32> {
+        let reach = 1.5 * self.library.spacing * self.page.request.fields.frame(p).spacing_scale;
+        let near = self.page.neighbours(p, reach, u32::MAX);
+        let distance = |b: u32| {
+            let pose = &self.page.body(b).pose;
+            self.page.inks.distance(pose, self.page.domain().offset(pose.centre, p))
+        };
+        let mut near: Vec<_> = near.into_iter().map(|b| (distance(b), b)).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.into_iter().take(most).map(|(_, b)| b).collect()
+    }
+
+    /// How little an element agrees with those around it: 0 where each stands to it as such elements do in the exemplar, 1
+    /// where none does.
+    fn disagreement(&self, pose: &Pose<D>, except: Option<u32>, meter: &mut Meter<'_>) -> Result<f64> {
+        let frame = self.page.request.fields.frame(pose.centre);
+        let reach = 1.3 * self.library.spacing * frame.spacing_scale;
+        let near = self.page.neighbours(pose.centre, reach, except.unwrap_or(u32::MAX));
+        let (mut sum, mut all) = (0.0, 1e-9);
+        for other in near {
+            let other = &self.page.body(other).pose;
+            let offset = frame.to_exemplar(self.page.domain().offset(pose.centre, other.centre));
+            for (from, to, offset) in [(pose, other, offset), (other, pose, -offset)] {
+                let class = self.library.class[to.source];
+                let place = self.library.centre[from.source] + offset;
+                if !self.library.view.contains(place) {
+                    continue;
+                }
+                let alike = self.library.alike(class, place, &self.library.feature[to.source], meter)?[0];
+                let most = self.library.outlier[class].powi(2);
+                sum += alike.map_or(1.0, |(_, cost)| f64::from(cost) / most);
+                all += 1.0;
+            }
+        }
+        Ok(sum / all)
+    }
+
+    /// Exemplar elements that stand beside those around `p` where they come from, by how many of these have them there.
+    fn likely(&self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<Vec<u32>> {
+        let frame = self.page.request.fields.frame(p);
+        let mut found: Vec<u32> = Vec::new();
+        let reach = 1.2 * self.library.spacing;
+        for b in self.group(p, AROUND) {
+            let pose = &self.page.body(b).pose;
+            let offset = frame.to_exemplar(self.page.domain().offset(pose.centre, p));
+            let place = self.library.centre[pose.source] + offset;
+            meter.spend(self.library.within(place, reach, |e, _| found.push(e)))?;
+        }
+        let base = self.page.inks.len() as u32;
+        found.retain(|&e| e < base && self.library.copyable[e]);
+        found.sort_unstable();
+        let mut counted: Vec<(usize, u32)> = found.chunk_by(|a, b| a == b).map(|run| (run.len(), run[0])).collect();
+        counted.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
+        Ok(counted.into_iter().map(|(_, e)| e).take(CANDIDATES.0).collect())
+    }
+
+    /// Elements that could be put into a hole around `p`: their rating, the lower the better, by how much the price would
+    /// rise, and where they would lie.
+    fn rated(&self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<Vec<(f64, f64, Pose<D>)>> {
+        let first = STEPS.0 * self.unit(p);
+        let candidates = self.likely(p, meter)?;
+        let largest = candidates.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max);
+        let largest = largest * self.page.request.fields.frame(p).element_scale;
+        let scene = self.scene(None, p, (largest, 2.0 * first), meter)?;
+        let before = self.price(&scene, None, meter)?;
+        let mut sorted = Vec::new();
+        for source in candidates {
+            let class = self.library.class[source];
+            if self.counts[class] + 1.0 <= (1.0 + COUNT) * self.targets[class] + 0.5 {
+                let pose = self.page.pose(source, p, &Matrix::identity());
+                sorted.push((self.price(&scene, Some(&pose), meter)?, pose));
+            }
+        }
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
+        let mut rated = Vec::new();
+        for (start, pose) in sorted.into_iter().take(CANDIDATES.1) {
+            let (pose, price) = self.descend(&scene, pose, start, first, meter)?;
+            if self.admits(&pose) {
+                let rise = price - before;
+                rated.push((rise + AGREEMENT * self.disagreement(&pose, None, meter)?, rise, pose));
+            }
+        }
+        Ok(rated)
+    }
+
+    /// The place farthest from ink around `p`.
+    pub(crate) fn emptiest(&self, p: Vector<D>) -> Option<Vector<D>> {
+        let mut best: Option<(f32, Vector<D>)> = None;
+        let reach = self.library.spacing * self.page.request.fields.frame(p).spacing_scale;
+        self.page.lattice.around(p, reach, |c, at| {
+            let empty = self.page.cells[c].empty();
+            if best.is_none_or(|(most, _)| empty > most) {
+                best = Some((empty, self.page.lattice.centre_at(at)));
+            }
+        });
+        best.map(|(_, place)| place)
+    }
+
+    /// Puts a further element into a hole around `p`, where others may give way.
+    pub(crate) fn fill(&mut self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<bool> {
+        if !self.moves.fill {
+            return Ok(false);
+        }
+        let mut rated = self.rated(p, meter)?;
+        rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.source.cmp(&b.2.source)));
+        for (_, cost, pose) in rated.into_iter().take(CANDIDATES.2) {
+            let b = self.add(pose, meter)?;
+            let mut gain = -cost;
+            if cost > -WORTH {
+                // It is in the way of others: these may make room.
+                gain += self.give_way(self.page.body(b).pose.centre, meter)?;
+            }
+            if gain > WORTH {
+                self.keep();
+                return Ok(true);
+            }
+            self.undo(meter)?;
+        }
+        Ok(false)
+    }
+
+    /// Puts other elements in place of those around `p`, where they suit the room better.
+    pub(crate) fn exchange(&mut self, p: Vector<D>, most: usize, meter: &mut Meter<'_>) -> Result<bool> {
+        for b in self.group(p, most) {
+            if self.exchange_one(b, meter)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn exchange_one(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<bool> {
+        let body = *self.page.body(b);
+        if body.fixed || !body.alive || !self.moves.exchange {
+            return Ok(false);
+        }
+        let class = self.library.class[body.pose.source];
+        let members = self.library.members(class);
+        let step = members.len().div_ceil(CANDIDATES.0).max(1);
+        let first = STEPS.0 * self.unit(body.pose.centre);
+        let largest = members.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max) * body.pose.scale;
+        let scene = self.scene(Some(b), body.pose.centre, (largest, 2.0 * first), meter)?;
+        let now = self.price(&scene, Some(&body.pose), meter)?;
+        let mine = self.disagreement(&body.pose, Some(b), meter)?;
+        let mut rated = Vec::new();
+        for &source in members.iter().step_by(step).filter(|&&e| self.library.copyable[e]) {
+            let pose = self.page.pose(source, body.pose.centre, &Matrix::identity());
+            let price = self.price(&scene, Some(&pose), meter)?;
+            rated.push((price, pose));
+        }
+        rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
+        for (start, pose) in rated.into_iter().take(CANDIDATES.1) {
+            let (pose, price) = self.descend(&scene, pose, start, first, meter)?;
+            let worse = self.disagreement(&pose, Some(b), meter)? - mine;
+            if now - price > WORTH + AGREEMENT * worse.max(0.0) && self.admits(&pose) {
+                self.change(b, pose, meter)?;
+                self.keep();
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Takes an element out of a clump, where others may close up.
+    pub(crate) fn thin(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<bool> {
+        let body = *self.page.body(b);
+        if body.fixed || !body.alive || !self.moves.thin {
+            return Ok(false);
+        }
+        let class = self.library.class[body.pose.source];
+        if self.counts[class] - 1.0 < (1.0 - COUNT) * self.targets[class] - 0.5 {
+            return Ok(false);
+        }
+        let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), meter)?;
+        let mut gain = self.price(&scene, Some(&body.pose), meter)? - self.price(&scene, None, meter)?;
+        self.remove(b, meter)?;
+        gain += self.give_way(body.pose.centre, meter)?;
+        if gain > WORTH {
+            self.keep();
+            return Ok(true);
+        }
+        self.undo(meter)?;
+        Ok(false)
+    }
+}
+
+/// Directions of a step: to the sides and to the corners.
+fn ways<const D: usize>() -> impl Iterator<Item = Vector<D>> {
+    let count = 3_usize.pow(D as u32);
+    (0..count).filter(move |&n| n != count / 2).map(|n| {
+        let side = |k: usize| (n / 3_usize.pow(k as u32) % 3) as f64 - 1.0;
+        Vector(std::array::from_fn(side)).unit_or_zero()
+    })
+}

@@ -1,0 +1,190 @@
+//! What the exemplar shows of empty space: how far from ink its places are, and how near elements of two kinds come.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Matrix, Result, Vector};
+use rayon::prelude::*;
+
+use crate::{
+    dimension::Dimension,
+    evenness::ink::{Inks, Pose},
+    exemplar::library::Library,
+};
+
+/// Places in a mean spacing at which distances are measured, and most places in all.
+const PLACES: (f64, usize) = (6.0, 1 << 18);
+
+/// Share of places that are nearer to ink than what is tolerated of the output: natural, but no more of it than there is.
+const TOLERATED: f64 = 0.993;
+
+/// Distances are measured up to so many mean spacings.
+const FARTHEST: f64 = 1.5;
+
+/// Places nearer to the frame than a mean spacing, or this share of its side, are not measured.
+const MARGIN: f64 = 0.15;
+
+/// Share of the gaps between elements of two kinds that are narrower than what counts as the narrowest.
+const NARROWEST: f64 = 0.01;
+
+/// The same for kinds of which too few pairs are seen beside each other to tell.
+const COMMON: f64 = 0.03;
+
+/// Up to so many kinds there is an entry for every two of them.
+const TABLE: usize = 512;
+
+/// So many pairs tell how near two kinds come.
+const MANY: usize = 8;
+
+/// Nanoseconds for a distance that is looked up, and for a pair of elements.
+const PRICE: (u64, u64) = (10, 1500);
+
+/// What is natural, in exemplar units.
+#[derive(Clone, Debug)]
+pub(crate) struct Natural {
+    /// Distance from ink that most places keep below.
+    pub(crate) tolerated: f64,
+    /// Narrowest gap between elements of two kinds, the lower number first; where they are seen beside each other.
+    narrowest: Vec<f32>,
+    /// Number of kinds; 0 where there are too many for a table.
+    kinds: usize,
+    /// The same for kinds that are never seen beside each other.
+    otherwise: f64,
+    /// Largest of these gaps.
+    pub(crate) widest: f64,
+}
+
+impl Natural {
+    /// Measures an exemplar. `None` where too little is seen of it.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new<const D: usize>(
+        exemplar: &Exemplar<D>,
+        library: &Library<D>,
+        inks: &Inks<D>,
+        budget: &Budget,
+    ) -> Result<Option<Self>>
+    where
+        Vector<D>: Dimension<D>,
+    {
+        let shown = Shown::new(exemplar, library, inks);
+        let mut distances = shown.distances(budget)?;
+        if distances.len() < 16 {
+            return Ok(None);
+        }
+        distances.sort_by(f64::total_cmp);
+        let quantile = |q: f64| distances[((distances.len() - 1) as f64 * q) as usize];
+        let gaps = shown.gaps(budget)?;
+        let mut all: Vec<f64> = gaps.values().flatten().copied().collect();
+        all.sort_by(f64::total_cmp);
+        let tolerated = quantile(TOLERATED);
+        let low = |sorted: &[f64], share: f64| sorted.get((sorted.len() as f64 * share) as usize).copied();
+        let otherwise = low(&all, COMMON).unwrap_or(0.0).min(tolerated);
+        // A few pairs are hardly ever the nearest that there could be.
+        let of_kinds = |gaps: &Vec<f64>| {
+            let least = low(gaps, NARROWEST)?;
+            Some(if gaps.len() < MANY { least.min(otherwise) } else { least.min(tolerated) })
+        };
+        let kinds = if library.classes() <= TABLE { library.classes() } else { 0 };
+        let mut narrowest = vec![otherwise as f32; kinds * kinds];
+        for (&(a, b), gaps) in gaps.iter().filter(|_| kinds > 0) {
+            let (a, b) = (a as usize, b as usize);
+            if let Some(gap) = of_kinds(gaps) {
+                (narrowest[a * kinds + b], narrowest[b * kinds + a]) = (gap as f32, gap as f32);
+            }
+        }
+        let widest = narrowest.iter().map(|&gap| f64::from(gap)).fold(otherwise, f64::max);
+        Ok(Some(Self { tolerated, narrowest, kinds, otherwise, widest }))
+    }
+
+    /// Narrowest gap between elements of two kinds.
+    pub(crate) fn gap(&self, a: u32, b: u32) -> f64 {
+        self.narrowest.get(a as usize * self.kinds + b as usize).map_or(self.otherwise, |&gap| f64::from(gap))
+    }
+}
+
+/// The exemplar as it is seen.
+struct Shown<'a, const D: usize> {
+    library: &'a Library<D>,
+    inks: &'a Inks<D>,
+    poses: Vec<Pose<D>>,
+    index: GridIndex<D>,
+    largest: f64,
+    strokes: Vec<(Vector<D>, f64)>,
+}
+
+impl<'a, const D: usize> Shown<'a, D> {
+    fn new(exemplar: &Exemplar<D>, library: &'a Library<D>, inks: &'a Inks<D>) -> Self {
+        let pose =
+            |e: usize| Pose { source: e as u32, centre: library.centre[e], rotation: Matrix::identity(), scale: 1.0 };
+        let poses: Vec<_> = (0..inks.len()).map(pose).collect();
+        let centres: Vec<_> = poses.iter().map(|p| p.centre).collect();
+        let largest = poses.iter().map(|p| inks.radius(p)).fold(0.0, f64::max).min(library.reach.max(library.spacing));
+        let index = GridIndex::new(&centres, library.spacing, &Domain::Box(exemplar.window));
+        let strokes = (inks.len()..library.len()).map(|e| (library.centre[e], library.radius[e])).collect();
+        Self { library, inks, poses, index, largest, strokes }
+    }
+
+    /// How far places inside the frame are from ink.
+    fn distances(&self, budget: &Budget) -> Result<Vec<f64>> {
+        let (window, size) = (self.library.view.window, self.library.view.window.size());
+        let mut step = self.library.spacing / PLACES.0;
+        let counts = |step: f64| -> [usize; D] { std::array::from_fn(|k| (size[k] / step).ceil().max(1.0) as usize) };
+        while counts(step).iter().fold(1, |n: usize, c| n.saturating_mul(*c)) > PLACES.1 {
+            step *= 1.2;
+        }
+        let counts = counts(step);
+        let farthest = FARTHEST * self.library.spacing;
+        // Beyond the frame nothing is known: what is near it may be near ink outside.
+        let margin = self.library.spacing.min(MARGIN * self.library.view.side());
+        let places: Vec<_> = (0..counts.iter().product()).map(|c| window.cell_centre(c, &counts)).collect();
+        let strokes: Vec<_> = self.strokes.iter().map(|s| s.0).collect();
+        let strokes = GridIndex::new(&strokes, self.library.spacing, &Domain::Box(window));
+        let distance = |&p: &Vector<D>| {
+            if self.library.view.signed_distance(p) < margin {
+                return Ok(None);
+            }
+            let mut nearest = farthest;
+            let reach = nearest + self.largest;
+            let looked = self.index.within(p, reach, |e, offset| {
+                if offset.norm() - self.inks.radius(&self.poses[e]) < nearest {
+                    nearest = nearest.min(self.inks.distance(&self.poses[e], -offset));
+                }
+            });
+            let widest = self.strokes.iter().map(|s| s.1).fold(0.0, f64::max);
+            strokes.within(p, nearest.max(0.0) + widest, |s, offset| {
+                nearest = nearest.min(offset.norm() - self.strokes[s].1);
+            });
+            budget.spend(PRICE.0 * (4 + looked))?;
+            Ok(Some(nearest.max(0.0)))
+        };
+        let found: Vec<Option<f64>> = places.par_iter().map(distance).collect::<Result<_>>()?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// Gaps between neighbouring elements by their kinds, ascending.
+    fn gaps(&self, budget: &Budget) -> Result<BTreeMap<(u32, u32), Vec<f64>>> {
+        let enough = self.library.spacing;
+        let of = |a: &Pose<D>| {
+            let mut found = Vec::new();
+            let radius = self.inks.radius(a);
+            self.index.within(a.centre, radius + self.largest + enough, |e, offset| {
+                let b = &self.poses[e];
+                if b.source > a.source {
+                    let gap = self.inks.gap(a, b, offset, enough);
+                    if gap <= enough {
+                        let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
+                        found.push(((x.min(y), x.max(y)), gap));
+                    }
+                }
+            });
+            budget.spend(PRICE.1 * (1 + found.len() as u64))?;
+            Ok(found)
+        };
+        let found: Vec<Vec<_>> = self.poses.par_iter().map(of).collect::<Result<_>>()?;
+        let mut gaps = BTreeMap::<_, Vec<f64>>::new();
+        found.into_iter().flatten().for_each(|(kinds, gap)| gaps.entry(kinds).or_default().push(gap));
+        gaps.values_mut().for_each(|list| list.sort_by(f64::total_cmp));
+        Ok(gaps)
+    }
+}

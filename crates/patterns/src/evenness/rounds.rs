@@ -1,0 +1,170 @@
+//! The rounds in which a page is evened out: everything settles, then clumps, holes, and places with too much or too little ink,
+//! the worst first.
+
+use arabesque_core::{Budget, Meter, Result, Vector};
+
+use crate::{
+    dimension::Dimension,
+    evenness::{page::Body, share::Shares, work::Work},
+};
+
+/// Rounds over the page.
+const ROUNDS: usize = 4;
+
+/// Sweeps over elements that pay.
+const SWEEPS: usize = 6;
+
+/// Elements around one that has moved that look again.
+const NEXT: usize = 10;
+
+/// A place is a hole when it is farther from ink than so many tolerated distances.
+const HOLE: f64 = 1.05;
+
+/// Shares of ink are worked on that are off by so many deviations more than what is natural.
+const OFF: f64 = 0.5;
+
+/// Elements are too near each other when so much is missing, in tolerated distances.
+const NEAR: f64 = 0.02;
+
+/// Places that are worked on before something is told.
+const TOLD: usize = 48;
+
+/// What there is, while it is worked on.
+pub(crate) type Tell<'a, const D: usize> = &'a mut dyn FnMut(&[Body<D>]) -> Result<()>;
+
+/// Evens out a page.
+///
+/// # Errors
+/// What `tell` gives, and when the budget is used up or somebody asks to stop; then the move that was tried is undone by whoever calls.
+pub(crate) fn run<const D: usize>(work: &mut Work<'_, D>, budget: &Budget, tell: Tell<'_, D>) -> Result<()>
+where
+    Vector<D>: Dimension<D>,
+{
+    let mut meter = budget.meter();
+    let mut rounds = Rounds { work, tell, handled: 0 };
+    for round in 1..=ROUNDS as u32 {
+        rounds.work.now = round + 1;
+        rounds.relax(&mut meter)?;
+        let moves =
+            rounds.clumps(round, &mut meter)? + rounds.holes(round, &mut meter)? + rounds.shares(round, &mut meter)?;
+        if moves == 0 {
+            return Ok(());
+        }
+    }
+    rounds.relax(&mut meter)
+}
+
+struct Rounds<'r, 'a, const D: usize> {
+    work: &'r mut Work<'a, D>,
+    tell: Tell<'r, D>,
+    handled: usize,
+}
+
+impl<const D: usize> Rounds<'_, '_, D>
+where
+    Vector<D>: Dimension<D>,
+{
+    /// A place was worked on.
+    fn handled(&mut self) -> Result<()> {
+        self.work.keep();
+        self.handled += 1;
+        if self.handled.is_multiple_of(TOLD) { (self.tell)(&self.work.page.bodies) } else { Ok(()) }
+    }
+
+    /// Lets elements that pay settle, and then those around the ones that did, until nothing moves.
+    fn relax(&mut self, meter: &mut Meter<'_>) -> Result<()> {
+        let mut open: Vec<u32> = (0..self.work.page.bodies.len() as u32).collect();
+        for _ in 0..SWEEPS {
+            let mut next = Vec::new();
+            for b in open {
+                if self.work.settle(b, meter)? > 0.0 {
+                    let centre = self.work.page.body(b).pose.centre;
+                    next.extend(self.work.group(centre, NEXT));
+                    self.handled()?;
+                }
+            }
+            next.sort_unstable();
+            next.dedup();
+            open = next;
+        }
+        Ok(())
+    }
+
+    /// Works on elements that are too near each other, the nearest first.
+    fn clumps(&mut self, round: u32, meter: &mut Meter<'_>) -> Result<usize> {
+        let mut clumps = Vec::new();
+        for b in 0..self.work.page.bodies.len() as u32 {
+            let missing = self.work.worst(b, meter)?;
+            if missing > NEAR && self.work.has_changed(self.work.page.body(b).pose.centre, round) {
+                clumps.push((missing, b));
+            }
+        }
+        clumps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut moves = 0;
+        for (_, b) in clumps {
+            if self.work.worst(b, meter)? <= NEAR {
+                continue;
+            }
+            let p = self.work.page.body(b).pose.centre;
+            let mut helped = self.work.give_way(p, meter)? > 0.0;
+            self.work.keep();
+            if self.work.worst(b, meter)? > NEAR {
+                helped |= self.work.exchange(p, 1, meter)? || self.work.thin(b, meter)?;
+            }
+            moves += usize::from(helped);
+            self.handled()?;
+        }
+        Ok(moves)
+    }
+
+    /// Works on holes, the widest first.
+    fn holes(&mut self, round: u32, meter: &mut Meter<'_>) -> Result<usize> {
+        let page = &self.work.page;
+        let depth = |c: usize| page.cells[c].empty() / page.cells[c].tolerated;
+        let is_new = |c: &usize| self.work.has_changed(page.lattice.centre(*c), round);
+        let deep = (0..page.cells.len()).filter(|&c| depth(c) > HOLE as f32).filter(is_new);
+        let mut holes: Vec<(f32, usize)> = deep.map(|c| (depth(c), c)).collect();
+        holes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut done = vec![false; page.cells.len()];
+        let mut moves = 0;
+        for (before, c) in holes {
+            let page = &self.work.page;
+            let cell = &page.cells[c];
+            if done[c] || cell.empty() / cell.tolerated < before * 0.98 {
+                continue;
+            }
+            let p = page.lattice.centre(c);
+            // The hole is looked at once a round.
+            page.lattice.around(p, 0.5 * f64::from(cell.empty()), |c, _| done[c] = true);
+            let work = &mut *self.work;
+            let helped = work.fill(p, meter)? || work.exchange(p, 3, meter)? || work.give_way(p, meter)? > 0.0;
+            moves += usize::from(helped);
+            self.handled()?;
+        }
+        Ok(moves)
+    }
+
+    /// Works on places where there is too much or too little ink around, the worst first.
+    fn shares(&mut self, round: u32, meter: &mut Meter<'_>) -> Result<usize> {
+        let off = self.work.shares.as_ref().map_or_else(Vec::new, Shares::off);
+        let mut moves = 0;
+        for (excess, p) in off.into_iter().filter(|(excess, _)| excess.abs() > OFF) {
+            let work = &mut *self.work;
+            if !work.has_changed(p, round) {
+                continue;
+            }
+            let mut helped = work.exchange(p, 5, meter)?;
+            if let (false, true, Some(hole)) = (helped, excess < 0.0, work.emptiest(p)) {
+                helped = work.fill(hole, meter)?;
+            }
+            if !helped && excess > 0.0 {
+                for b in work.group(p, 5) {
+                    helped = helped || work.thin(b, meter)?;
+                }
+            }
+            moves += usize::from(helped);
+            self.handled()?;
+        }
+        Ok(moves)
+    }
+}

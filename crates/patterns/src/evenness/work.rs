@@ -1,0 +1,283 @@
+//! What evening out works with: the page, what is natural, and the price of a state.
+//!
+//! The price has three parts, all sums of local terms. Places that are farther from ink than the exemplar tolerates cost the
+//! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square;
+//! and so do places where there is more or less ink around than usual. Lengths are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
+
+use arabesque_core::{Meter, Numbered, Result, Vector};
+
+use crate::{
+    border::Extent,
+    evenness::{
+        ink::Pose,
+        natural::Natural,
+        page::{NOBODY, PRICE, Page},
+        share::{self, Shares},
+    },
+    exemplar::library::Library,
+    params::{Params, Switch},
+};
+
+/// Price of a gap that is too narrow: of what is missing, and of its square, in tolerated distances.
+const NARROW: (f64, f64) = (2.0, 20.0);
+
+/// Nanoseconds for a pair of elements.
+const PAIR: u64 = 600;
+
+/// A step that can be undone.
+#[derive(Clone, Copy, Debug)]
+enum Undo<const D: usize> {
+    Change(u32, Pose<D>),
+    Add(u32),
+    Remove(u32),
+}
+
+/// A page that is evened out.
+pub(crate) struct Work<'a, const D: usize> {
+    pub(crate) page: Page<'a, D>,
+    /// Shares of ink; `None` where the exemplar does not tell what is natural.
+    pub(crate) shares: Option<Shares<'a, D>>,
+    pub(crate) natural: &'a Natural,
+    pub(crate) library: &'a Library<D>,
+    pub(crate) extent: &'a Extent<'a, D>,
+    /// Elements of each class that are there, and that should be.
+    pub(crate) counts: Numbered<f64>,
+    pub(crate) targets: &'a Numbered<f64>,
+    pub(crate) moves: Moves,
+    steps: Vec<Undo<D>>,
+    /// When elements last changed, by the part of the page; and now.
+    changed: Vec<u32>,
+    pub(crate) now: u32,
+}
+
+/// The moves that are made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moves {
+    pub(crate) shift: bool,
+    pub(crate) exchange: bool,
+    pub(crate) fill: bool,
+    pub(crate) thin: bool,
+    /// Whether the share of ink counts.
+    pub(crate) share: bool,
+}
+
+impl Moves {
+    /// Those that are asked for.
+    pub(crate) fn new(params: &Params) -> Self {
+        let is_on = |switch: Switch| switch == Switch::On;
+        Self {
+            shift: is_on(params.even_shift),
+            exchange: is_on(params.even_exchange),
+            fill: is_on(params.even_fill),
+            thin: is_on(params.even_thin),
+            share: is_on(params.even_share),
+        }
+    }
+}
+
+/// A place whose distance from ink depends on one element.
+#[derive(Clone, Copy, Debug)]
+struct Held<const D: usize> {
+    place: Vector<D>,
+    without: f64,
+    tolerated: f64,
+}
+
+/// What the price of an element depends on, around where it is or may go.
+pub(crate) struct Scene<const D: usize> {
+    held: Vec<Held<D>>,
+    neighbours: Vec<u32>,
+    shares: share::Around<D>,
+    /// Size of a cell.
+    measure: f64,
+}
+
+impl<'a, const D: usize> Work<'a, D> {
+    pub(crate) fn new(
+        (page, shares): (Page<'a, D>, Option<Shares<'a, D>>),
+        (natural, library): (&'a Natural, &'a Library<D>),
+        extent: &'a Extent<'a, D>,
+        (counts, targets): (Numbered<f64>, &'a Numbered<f64>),
+        moves: Moves,
+    ) -> Self {
+        let changed = vec![1; page.parts()];
+        let steps = Vec::new();
+        Self { page, shares, natural, library, extent, counts, targets, moves, steps, changed, now: 1 }
+    }
+
+    /// Whether anything has changed around `p` since some time.
+    pub(crate) fn has_changed(&self, p: Vector<D>, since: u32) -> bool {
+        self.changed[self.page.part(p)] >= since
+    }
+
+    /// Price of a place.
+    pub(crate) fn price_at(empty: f64, tolerated: f64) -> f64 {
+        let excess = empty / tolerated - 1.0;
+        if excess > 0.0 { excess * excess } else { 0.0 }
+    }
+
+    /// What the price of an element depends on that has its centre at most `step` from `centre` and is no larger than
+    /// `radius`. `body`: its number, where it is on the page already.
+    pub(crate) fn scene(
+        &self,
+        body: Option<u32>,
+        centre: Vector<D>,
+        (radius, step): (f64, f64),
+        meter: &mut Meter<'_>,
+    ) -> Result<Scene<D>> {
+        let body = body.unwrap_or(NOBODY);
+        let page = &self.page;
+        let mut held = Vec::new();
+        let mut looked = 0;
+        let reach = radius + step + page.reach;
+        page.lattice.around(centre, reach, |c, at| {
+            looked += 1;
+            let cell = &page.cells[c];
+            let without = cell.without(body);
+            if without > cell.tolerated {
+                let place = page.lattice.centre_at(at);
+                held.push(Held { place, without: f64::from(without), tolerated: f64::from(cell.tolerated) });
+            }
+        });
+        let scale = page.request.fields.frame(centre).spacing_scale;
+        let widest = self.natural.widest.max(0.0) * scale;
+        let neighbours = page.neighbours(centre, radius + step + widest, body);
+        meter.spend(PRICE.0 * (looked + 20 * neighbours.len() as u64))?;
+        let there = |b: u32| page.bodies.get(b as usize).map(|body| ink_of(&body.pose));
+        let shares = match &self.shares {
+            Some(shares) => shares.around(centre, step, there(body), meter)?,
+            None => share::Around::default(),
+        };
+        Ok(Scene { held, neighbours, shares, measure: page.lattice.cell().0.into_iter().product() })
+    }
+
+    /// Price of the surroundings of an element in some pose; without it for `None`.
+    pub(crate) fn price(&self, scene: &Scene<D>, pose: Option<&Pose<D>>, meter: &mut Meter<'_>) -> Result<f64> {
+        let mut sum = 0.0;
+        meter.spend(PRICE.1 * scene.held.len() as u64)?;
+        for held in &scene.held {
+            let own = pose.map_or(f64::INFINITY, |pose| self.page.inks.distance(pose, held.place - pose.centre));
+            let price = Self::price_at(own.min(held.without), held.tolerated);
+            sum += price * scene.measure / held.tolerated.powi(D as i32);
+        }
+        if let Some(shares) = &self.shares {
+            sum += shares.price(&scene.shares, pose.map(ink_of));
+        }
+        let Some(pose) = pose else { return Ok(sum) };
+        for &o in &scene.neighbours {
+            sum += self.narrow(pose, &self.page.body(o).pose, meter)?;
+        }
+        Ok(sum)
+    }
+
+    /// Price of two elements that come too near each other.
+    fn narrow(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        let missing = self.missing(a, b, meter)?;
+        Ok(if missing > 0.0 { (NARROW.0 + NARROW.1 * missing) * missing } else { 0.0 })
+    }
+
+    /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
+    pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
+        let scale = self.page.request.fields.frame(a.centre).spacing_scale;
+        let least = self.natural.gap(x, y) * scale;
+        let offset = self.page.domain().offset(a.centre, b.centre);
+        if offset.norm() - self.page.inks.radius(a) - self.page.inks.radius(b) >= least {
+            return Ok(0.0);
+        }
+        meter.spend(PAIR)?;
+        let gap = self.page.inks.gap(a, b, offset, least);
+        Ok(((least - gap) / (self.natural.tolerated * scale)).max(0.0))
+    }
+
+    /// The most that is missing of a gap around an element.
+    pub(crate) fn worst(&self, b: u32, meter: &mut Meter<'_>) -> Result<f64> {
+        let body = self.page.body(b);
+        if !body.alive {
+            return Ok(0.0);
+        }
+        let scale = self.page.request.fields.frame(body.pose.centre).spacing_scale;
+        let reach = self.page.inks.radius(&body.pose) + self.natural.widest.max(0.0) * scale;
+        let mut most = 0.0_f64;
+        for o in self.page.neighbours(body.pose.centre, reach, b) {
+            let other = self.page.body(o);
+            if !(body.fixed && other.fixed) {
+                most = most.max(self.missing(&body.pose, &other.pose, meter)?);
+            }
+        }
+        Ok(most)
+    }
+
+    /// Puts an element elsewhere.
+    pub(crate) fn change(&mut self, b: u32, pose: Pose<D>, meter: &mut Meter<'_>) -> Result<()> {
+        let before = self.page.body(b).pose;
+        self.steps.push(Undo::Change(b, before));
+        self.count(&before, -1.0);
+        self.count(&pose, 1.0);
+        self.page.change(b, pose, meter)
+    }
+
+    /// Adds an element.
+    pub(crate) fn add(&mut self, pose: Pose<D>, meter: &mut Meter<'_>) -> Result<u32> {
+        let b = self.page.add(pose, meter)?;
+        self.count(&pose, 1.0);
+        self.steps.push(Undo::Add(b));
+        Ok(b)
+    }
+
+    /// Takes an element away.
+    pub(crate) fn remove(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<()> {
+        let pose = self.page.body(b).pose;
+        self.count(&pose, -1.0);
+        self.steps.push(Undo::Remove(b));
+        self.page.remove(b, meter)
+    }
+
+    fn count(&mut self, pose: &Pose<D>, by: f64) {
+        self.counts[self.library.class[pose.source]] += by;
+        if let Some(shares) = &mut self.shares {
+            let (ink, centre) = ink_of(pose);
+            shares.count(ink, centre, by);
+        }
+    }
+
+    /// Everything up to here stays.
+    pub(crate) fn keep(&mut self) {
+        for step in std::mem::take(&mut self.steps) {
+            let (Undo::Change(b, _) | Undo::Add(b) | Undo::Remove(b)) = step;
+            let pose = self.page.body(b).pose;
+            let (page, changed, now) = (&self.page, &mut self.changed, self.now);
+            page.parts_around(&pose, |part| changed[part] = now);
+        }
+    }
+
+    /// Undoes everything since the last [`Work::keep`].
+    pub(crate) fn undo(&mut self, meter: &mut Meter<'_>) -> Result<()> {
+        while let Some(step) = self.steps.pop() {
+            let (Undo::Change(b, _) | Undo::Add(b) | Undo::Remove(b)) = step;
+            let now = self.page.body(b).pose;
+            match step {
+                Undo::Change(b, pose) => {
+                    self.count(&now, -1.0);
+                    self.count(&pose, 1.0);
+                    self.page.change(b, pose, meter)?;
+                }
+                Undo::Add(b) => {
+                    self.count(&now, -1.0);
+                    self.page.remove(b, meter)?;
+                    self.page.bodies.pop();
+                }
+                Undo::Remove(b) => {
+                    self.count(&now, 1.0);
+                    self.page.restore(b, meter)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An element as a mass at its centre.
+fn ink_of<const D: usize>(pose: &Pose<D>) -> ((u32, f64), Vector<D>) {
+    ((pose.source, pose.scale), pose.centre)
+}

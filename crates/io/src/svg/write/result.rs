@@ -118,6 +118,7 @@ mod tests {
             ),
             layer: None,
             label: None,
+            source: None,
         };
         Drawing {
             fragments: centres.iter().map(dot).collect(),

@@ -18,6 +18,8 @@ use crate::{
 
 /// Difference of places that are the same, in spacings.
 const SAME: f64 = 0.05;
+/// The same where the exemplar is compared with itself: what repeats by hand is never the same to the point.
+const LIKE: f64 = 0.15;
 /// A part grows to features within this distance, in spacings.
 const STEP: f64 = 1.8;
 /// Area of a neighbourhood, in square spacings; a part must be larger.
@@ -66,6 +68,8 @@ struct Origin<'a, const D: usize> {
     /// Features by kind and kind of the nearest.
     by_kinds: BTreeMap<(usize, usize), Vec<usize>>,
     spacing: f64,
+    /// Difference of places that are the same, in user units.
+    same: f64,
     /// Features of a part from which on it is a copy.
     threshold: usize,
 }
@@ -76,7 +80,7 @@ struct Copied {
 }
 
 impl<'a, const D: usize> Origin<'a, D> {
-    fn new(features: &'a Features<D>, spacing: f64, measure: f64) -> Self {
+    fn new(features: &'a Features<D>, spacing: f64, measure: f64, same: f64) -> Self {
         let mut by_kinds: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
         for (e, nearest) in features.nearest.iter().enumerate() {
             if let Some((_, kind)) = nearest {
@@ -87,14 +91,20 @@ impl<'a, const D: usize> Origin<'a, D> {
         let way = |e: usize| features.nearest[e].map_or(0.0, |(way, _)| way[0]);
         by_kinds.values_mut().for_each(|list| list.sort_by(|&a, &b| way(a).total_cmp(&way(b)).then(a.cmp(&b))));
         let density = features.places.len() as f64 * spacing.powi(D as i32) / measure;
-        Self { features, by_kinds, spacing, threshold: FEWEST.max((NEIGHBOURHOOD * density).ceil() as usize) }
+        Self {
+            features,
+            by_kinds,
+            spacing,
+            same: same * spacing,
+            threshold: FEWEST.max((NEIGHBOURHOOD * density).ceil() as usize),
+        }
     }
 
     /// Features of the exemplar whose nearest neighbour lies as that of a feature of the result does.
     fn alike(&self, result: &Features<D>, r: usize) -> Vec<usize> {
         let Some((way, kind)) = result.nearest[r] else { return Vec::new() };
         let Some(list) = self.by_kinds.get(&(result.kinds[r], kind)) else { return Vec::new() };
-        let same = SAME * self.spacing;
+        let same = self.same;
         let own = |e: usize| self.features.nearest[e].map_or(Vector::ZERO, |(way, _)| way);
         let from = list.partition_point(|&e| own(e)[0] < way[0] - same);
         let near = list[from..].iter().copied().take_while(|&e| own(e)[0] <= way[0] + same);
@@ -150,7 +160,7 @@ impl<'a, const D: usize> Origin<'a, D> {
         (seen, round): (&mut [usize], usize),
         meter: &mut arabesque_core::Meter<'_>,
     ) -> Result<Vec<usize>> {
-        let same = SAME * self.spacing;
+        let same = self.same;
         let mut part = vec![r];
         seen[r] = round;
         let mut next = 0;
@@ -192,11 +202,12 @@ pub(crate) fn copies<const D: usize>(
 ) -> Result<Option<(Vec<Measure>, Vec<Mark>)>> {
     let own = Features::of(exemplar.0, exemplar.1, budget)?;
     let found = Features::of(result.0, result.1, budget)?;
-    let origin = Origin::new(&own, exemplar.0.spacing, exemplar.0.domain.measure());
+    let origin = |same: f64| Origin::new(&own, exemplar.0.spacing, exemplar.0.domain.measure(), same);
+    let (origin, by_nature) = (origin(SAME), origin(LIKE));
     if own.places.len() < 2 * origin.threshold || found.places.len() < FEWEST {
         return Ok(None);
     }
-    let by_itself = origin.copies(&own, 0.5 * exemplar.0.spacing, budget)?;
+    let by_itself = by_nature.copies(&own, 0.5 * exemplar.0.spacing, budget)?;
     let taken = origin.copies(&found, -1.0, budget)?;
     let largest = |copies: &[Copied]| copies.iter().map(|c| c.members.len()).max().unwrap_or(0) as f64;
     let natural = share(&by_itself, own.places.len());
@@ -216,8 +227,8 @@ pub(crate) fn copies<const D: usize>(
         unit: "of the exemplar",
         means: "Size of the largest part that is a copy, over the whole exemplar; 1 means that all of it was pasted.",
         side: Side::Above,
-        least: 0.4,
-        most: 0.4,
+        least: 0.8,
+        most: 0.8,
     };
     let size = own.places.len() as f64;
     measures.push(rule.judge_within(largest(&by_itself) / size, rule.least, largest(&taken) / size));

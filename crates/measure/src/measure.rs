@@ -53,6 +53,8 @@ impl Default for Options {
 
 /// Elements of which figures are told of an exemplar.
 const FEWEST: usize = 4;
+/// Largest cells that tell anything of ink, in spacings.
+const COARSEST: f64 = 0.25;
 /// Spacings along the shorter side of a domain in which anything can be measured.
 const SIDES: f64 = 2.0;
 
@@ -79,6 +81,7 @@ pub fn measure<const D: usize>(
         );
         return Err(Error::input(place, problem, "measure a page of several spacings"));
     }
+    check_room(&subject.domain, spacing, budget)?;
     let matches = matches(exemplar, subject.content, subject.sources, budget)?;
     let own = Scene::new(exemplar, Domain::Box(exemplar.window), spacing, budget)?;
     let found = Scene::new(subject.content, subject.domain.clone(), spacing, budget)?
@@ -110,6 +113,21 @@ pub fn measure<const D: usize>(
     Ok(report.summed())
 }
 
+/// Refuses a page that has room for more than results may have.
+fn check_room<const D: usize>(domain: &Domain<D>, spacing: f64, budget: &Budget) -> Result<()> {
+    let room = domain.bounds().measure() / spacing.powi(D as i32);
+    let most = budget.limits().output_elements;
+    if room <= most as f64 {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "size of the page".into(),
+        found: format!("room for about {room:.0} elements"),
+        limit: format!("{most} elements"),
+        advice: format!("measure a part of it, or raise the limit with --limit output-elements={}", room.ceil()),
+    })
+}
+
 /// How things are spread over the page.
 fn spread<const D: usize>(
     report: &mut Report,
@@ -117,7 +135,14 @@ fn spread<const D: usize>(
     found: &Scene<'_, D>,
     budget: &Budget,
 ) -> Result<()> {
+    let (measures, classes) = density(own, found);
+    report.measures.extend(measures);
+    report.functions.density = classes;
     let pitch = pitch(own.spacing, &[own.domain.bounds(), found.domain.bounds()]);
+    if pitch > COARSEST * own.spacing {
+        report.notes.push("evenness: the page is too large to be looked at finely enough".to_owned());
+        return Ok(());
+    }
     let fields = [Field::of(own, pitch, budget)?, Field::of(found, pitch, budget)?];
     match evenness((own, &fields[0]), (found, &fields[1])) {
         Some(told) => {
@@ -127,9 +152,6 @@ fn spread<const D: usize>(
         }
         None => report.notes.push("evenness: there is no ink away from the border".to_owned()),
     }
-    let (measures, classes) = density(own, found);
-    report.measures.extend(measures);
-    report.functions.density = classes;
     report.measures.extend(edges((own, &fields[0]), (found, &fields[1]), budget)?);
     Ok(())
 }

@@ -87,7 +87,8 @@ fn worst<const D: usize>(
     says: &str,
     matches: &[Match],
 ) -> Vec<Mark> {
-    let whole = (0..scene.bodies.len()).filter(|&k| scene.bodies[k].is_whole && beyond(k) > 1.2);
+    let is_seen = |k: usize| scene.domain.contains(scene.bodies[k].centre);
+    let whole = (0..scene.bodies.len()).filter(|&k| scene.bodies[k].is_whole && is_seen(k) && beyond(k) > 1.2);
     let mut off: Vec<usize> = whole.collect();
     off.sort_by(|&a, &b| beyond(b).total_cmp(&beyond(a)).then(a.cmp(&b)));
     let mark = |k: usize| {

@@ -14,9 +14,14 @@ use crate::{
 };
 
 /// Pairs of classes are told where they have so many neighbours, in the exemplar.
-const FEWEST: usize = 8;
+const FEWEST: usize = 12;
 /// Share of neighbours that stand for the least distance.
 const LEAST: f64 = 0.01;
+/// The same in the mean of so few that they have no hundredth.
+fn least_share(count: usize) -> f64 {
+    LEAST.max(1.0 / (count as f64 + 1.0))
+}
+
 /// Longest list of classes that are told one by one.
 const CLASSES: usize = 12;
 
@@ -98,9 +103,9 @@ pub(crate) fn distances<const D: usize>(
     let mut measures = Vec::new();
     let rules = [
         (
-            "nearest element, 1 %",
-            LEAST,
-            "One element in a hundred has less clear space than this; less means that some come too close.",
+            "nearest element, closest",
+            least_share(own.len()),
+            "The closest of the exemplar have this much clear space, and as many in a hundred here; less means that some come too close.",
             Side::Below,
         ),
         ("nearest element, half", 0.5, "Half of the elements have less clear space than this.", Side::Both),
@@ -135,19 +140,20 @@ fn closest_pair<const D: usize>(exemplar: &Neighbourhood<'_, D>, result: &Neighb
     let name = |k: usize| exemplar.scene.content.classes.get(k).map_or("unlike any", |c| c.name.as_str());
     let each = exemplar.of_pairs().into_iter().filter(|(_, list)| list.len() >= FEWEST).filter_map(|(pair, own)| {
         let found = found.get(&pair).filter(|list| list.len() >= FEWEST)?;
-        // Of few neighbours the least is told by the next ones as well.
-        let (least, next) = (quantile(&own, LEAST), quantile(&own, 0.15));
+        // The least of few is no hundredth: the same share is looked at in both. How certain it is, the next ones tell.
+        let share = least_share(own.len());
+        let (least, next) = (quantile(&own, share), quantile(&own, 0.15_f64.max(3.0 * share)));
         let rule = Rule {
             name: "least distance by pair of classes",
             family: Family::Distances,
             unit: "spacings",
-            means: "The pair of classes that come closer than they do in the exemplar: the clear space that one in a hundred has less of.",
+            means: "The pair of classes that come closer than they do in the exemplar: the clear space of the closest.",
             side: Side::Below,
             least: 0.05,
             most: 0.5,
         };
-        let half = (0.1 * least + 0.6 * (next - least)).max(rule.least);
-        let mut measure = rule.judge_within(least, half, quantile(found, LEAST));
+        let half = (0.15 * least + (next - least)).max(rule.least);
+        let mut measure = rule.judge_within(least, half, quantile(found, share));
         measure.about = Some(format!("{} and {}", name(pair.0), name(pair.1)));
         Some(measure)
     });

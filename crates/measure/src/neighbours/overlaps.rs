@@ -105,8 +105,10 @@ pub(crate) fn overlaps<const D: usize>(
         rule.judge(&Natural { whole: whole[k], parts, times }, values[k])
     });
     let measures: Vec<Measure> = measures.collect();
+    let page = result.0.domain.bounds();
     let deepest = own.iter().map(|o| o.depth).fold(0.0, f64::max);
-    found.retain(|o| o.depth > 1.05 * deepest);
+    let is_seen = |o: &Overlap| (0..2).all(|k| (page.min[k]..=page.max[k]).contains(&o.at[k]));
+    found.retain(|o| o.depth > 1.05 * deepest && is_seen(o));
     found.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.at.0[0].total_cmp(&b.at.0[0])));
     let mark = |o: Overlap| Mark {
         fault: Fault::Overlap,

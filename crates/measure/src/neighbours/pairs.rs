@@ -208,8 +208,8 @@ pub(crate) fn pairs<const D: usize>(
         unit: "ratio",
         means: "How different the distances between elements are, by class: 0 as in the exemplar, 1 as if they were scattered at random.",
         side: Side::Above,
-        least: 0.15,
-        most: 0.35,
+        least: 0.25,
+        most: 0.4,
     };
     let times = result.domain.measure() / exemplar.domain.measure();
     let measure = rule.judge(&Natural { whole: 0.0, parts, times }, found.difference(Some(&own)) / order);

@@ -1,7 +1,7 @@
 //! Holes and clumps: how far places are from ink, and how evenly ink is spread.
 //!
 //! The empty-space function tells, for every distance, the share of places that have no ink so near. An eye sees its far end: the holes.
-//! Unevenness is the standard deviation of the share of ink under a bell one spacing wide, over its mean: holes and clumps together.
+//! Unevenness is the standard deviation of the share of ink under a bell half a spacing wide, over its mean: holes and clumps together.
 
 use arabesque_core::{Bounds, Budget, Result, Vector};
 use rayon::prelude::*;
@@ -30,6 +30,8 @@ const MEANS: [&str; 5] = [
 ];
 /// Least and most half width of the natural range of unevenness, as a share of the exemplar's.
 const UNEVEN: (f64, f64) = (0.09, 0.2);
+/// Standard deviation of the bell under which ink is looked at, in spacings.
+const BELL: f64 = 0.5;
 /// What distances may be off where the exemplar has none, in spacings.
 const NOTHING: f64 = 0.02;
 /// Worst places that are marked, of each fault.
@@ -66,7 +68,7 @@ impl<const D: usize> Field<D> {
         let depth = |k: usize| scene.domain.signed_distance(raster.middle(k)) as f32;
         let depths: Vec<f32> = (0..raster.ink.len()).into_par_iter().map(depth).collect();
         let inside: Vec<bool> = depths.iter().map(|&d| d >= 0.0).collect();
-        let around = raster.smoothed(scene.spacing, &inside, budget)?;
+        let around = raster.smoothed(BELL * scene.spacing, &inside, budget)?;
         let distances = raster.distances(budget)?;
         let inner = (0..depths.len()).filter(|&k| f64::from(depths[k]) >= scene.margin).collect();
         Ok(Self { raster, distances, around, depths, inner })
@@ -145,7 +147,7 @@ pub(crate) fn evenness<const D: usize>(
         name: "unevenness",
         family: Family::Evenness,
         unit: "ratio",
-        means: "How much the share of ink under a bell one spacing wide varies, over its mean; more means holes and clumps.",
+        means: "How much the share of ink under a bell half a spacing wide varies, over its mean; more means holes and clumps.",
         side: Side::Above,
         least: UNEVEN.0 * own.unevenness + 0.01,
         most: UNEVEN.1 * own.unevenness + 0.01,

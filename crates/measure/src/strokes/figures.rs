@@ -16,6 +16,8 @@ const BENDS: [f64; 6] = [0.05, 0.2, 0.5, 1.0, 2.0, 5.0];
 const DIRECTIONS: usize = 12;
 /// Loose ends that are marked.
 const MARKS: usize = 8;
+/// Junctions for each square spacing below which they tell nothing.
+const FEW_NODES: f64 = 0.08;
 /// What is nearer to the border than this belongs to it, in spacings.
 const EDGE: f64 = 0.2;
 
@@ -53,6 +55,9 @@ impl<const D: usize> Strokes<'_, D> {
         for piece in self.graph.pieces.iter().filter(|piece| is_in(piece.middle())) {
             figures.add(piece, self.scene);
         }
+        for (_, bend) in self.graph.bends.iter().filter(|(p, _)| is_in(*p)) {
+            figures.bends[BENDS.iter().position(|b| bend < b).unwrap_or(BENDS.len())] += 1.0;
+        }
         for node in self.graph.nodes.iter().filter(|node| is_in(node.at)) {
             match node.degree {
                 1 => figures.ends += 1.0,
@@ -72,10 +77,6 @@ impl Figures {
         let length = piece.length();
         self.length += length;
         self.width += length * scene.lines[piece.line].width;
-        // A smooth bend: how much it turns on its length. What turns at once is a kink, and counted there.
-        let bend = if piece.turn > 0.5 { 0.0 } else { piece.turn / length.max(1e-12) * scene.spacing };
-        let class = BENDS.iter().position(|b| bend < *b).unwrap_or(BENDS.len());
-        self.bends[class] += length;
         if D == 2 {
             let way = piece.ends.1 - piece.ends.0;
             let turn = way[1].atan2(way[0]).rem_euclid(std::f64::consts::PI) / std::f64::consts::PI;
@@ -182,7 +183,9 @@ fn told<'a, const D: usize>(own: &'a Figures, spacing: f64, are_turns_judged: bo
             Box::new(|f| apart(&f.directions, &own.directions)),
         ));
     }
-    if own.junctions.iter().sum::<f64>() >= 6.0 {
+    // Where strokes hardly ever meet, that they touch here or there is chance.
+    let met = own.junctions.iter().sum::<f64>();
+    if met >= 6.0 && own_nodes >= FEW_NODES {
         all.push((
             rule(
                 "junctions",
@@ -200,8 +203,10 @@ fn told<'a, const D: usize>(own: &'a Figures, spacing: f64, are_turns_judged: bo
             "Share of the junctions where five strokes or more meet.",
         ];
         for class in 0..3 {
+            let share = own.share(class).clamp(0.05, 0.95);
+            let chance = 2.5 * (share * (1.0 - share) / met).sqrt();
             all.push((
-                rule(names[class], "share of junctions", means[class], Side::Both, (0.05, 0.25)),
+                rule(names[class], "share of junctions", means[class], Side::Both, (chance.max(0.05), 0.25)),
                 Box::new(move |f| f.share(class)),
             ));
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use arabesque_core::{Bounds, Budget, DisjointSets, Domain, GridIndex, Result, Vector, segment};
+use arabesque_core::{Bounds, Budget, DisjointSets, Domain, GridIndex, Result, Vector, arc_lengths, segment};
 use rayon::prelude::*;
 
 use crate::scene::Scene;
@@ -11,6 +11,8 @@ use crate::scene::Scene;
 const PIECE: f64 = 0.4;
 /// What ends may lie apart and still meet: share of the spacing, and of the width of the strokes.
 const MEET: (f64, f64) = (0.02, 0.6);
+/// Steps in which bends are looked at, in spacings.
+const STEP: f64 = 0.2;
 /// Work for each pair of pieces.
 const PAIR: u64 = 20;
 /// Turn at a node of a stroke from which on it is a kink, in radians.
@@ -22,9 +24,7 @@ pub(crate) struct Piece<const D: usize> {
     pub(crate) line: usize,
     pub(crate) ends: (Vector<D>, Vector<D>),
     /// Distance of its start along the stroke.
-    pub(crate) from: f64,
-    /// Turn from the piece before it, in radians.
-    pub(crate) turn: f64,
+    from: f64,
 }
 
 impl<const D: usize> Piece<D> {
@@ -53,6 +53,8 @@ pub(crate) struct Graph<const D: usize> {
     pub(crate) nodes: Vec<Node<D>>,
     /// Places at which a stroke turns sharply away from any junction.
     pub(crate) kinks: Vec<Vector<D>>,
+    /// Places in equal steps along all strokes, with the turn there in radians for each spacing.
+    pub(crate) bends: Vec<(Vector<D>, f64)>,
 }
 
 /// Something that happens to a stroke at a place: it ends there, or goes through.
@@ -67,6 +69,7 @@ impl<const D: usize> Graph<D> {
     /// The graph of the strokes of a scene.
     pub(crate) fn of(scene: &Scene<'_, D>, budget: &Budget) -> Result<Self> {
         let (pieces, kinks) = pieces(scene);
+        let bends = scene.lines.iter().flat_map(|line| bends(&line.points, scene.spacing)).collect();
         if pieces.is_empty() {
             return Ok(Self::default());
         }
@@ -102,7 +105,7 @@ impl<const D: usize> Graph<D> {
         let nodes = nodes(&events, meet(widest), budget)?;
         let near = |p: &Vector<D>| !nodes.iter().any(|n| n.degree > 2 && (n.at - *p).norm() < 2.0 * meet(widest));
         let kinks = if nodes.len() * kinks.len() < 1 << 24 { kinks.into_iter().filter(near).collect() } else { kinks };
-        Ok(Self { pieces, nodes, kinks })
+        Ok(Self { pieces, nodes, kinks, bends })
     }
 }
 
@@ -126,13 +129,36 @@ fn pieces<const D: usize>(scene: &Scene<'_, D>) -> (Vec<Piece<D>>, Vec<Vector<D>
             let count = (length / (PIECE * scene.spacing)).ceil().clamp(1.0, 1e5) as usize;
             for j in 0..count {
                 let at = |j: usize| w[0] + way * (j as f64 / count as f64);
-                let turn = if j == 0 { bend } else { 0.0 };
-                pieces.push(Piece { line: number, ends: (at(j), at(j + 1)), from, turn });
+                pieces.push(Piece { line: number, ends: (at(j), at(j + 1)), from });
                 from += length / count as f64;
             }
         }
     }
     (pieces, kinks)
+}
+
+/// The turns along a polyline in equal steps, whatever its corners are.
+fn bends<const D: usize>(points: &[Vector<D>], spacing: f64) -> Vec<(Vector<D>, f64)> {
+    if points.len() < 2 {
+        return Vec::new();
+    }
+    let arcs = arc_lengths(points);
+    let length = arcs.last().copied().unwrap_or(0.0);
+    let count = (length / (STEP * spacing)).floor().min(1e6) as usize;
+    let step = length / count.max(1) as f64;
+    let mut k = 0;
+    let places: Vec<Vector<D>> = (0..=count)
+        .map(|n| {
+            let arc = n as f64 * step;
+            while k + 2 < arcs.len() && arcs[k + 1] < arc {
+                k += 1;
+            }
+            let share = (arc - arcs[k]) / (arcs[k + 1] - arcs[k]).max(f64::MIN_POSITIVE);
+            points[k] + (points[k + 1] - points[k]) * share.clamp(0.0, 1.0)
+        })
+        .collect();
+    let turn = |w: &[Vector<D>]| (w[1] - w[0]).cosine(w[2] - w[1]).clamp(-1.0, 1.0).acos();
+    places.windows(3).map(|w| (w[1], turn(w) * spacing / step)).collect()
 }
 
 fn ends<const D: usize>(scene: &Scene<'_, D>) -> Vec<Event<D>> {
@@ -241,6 +267,20 @@ mod tests {
         assert_eq!(degrees(&graph(&[&[(2.0, 5.0), (8.0, 5.0)], &[(8.0, 5.0), (14.0, 6.0)]])), [1, 1]);
         let star: &[&[(f64, f64)]] = &[&[(5.0, 5.0), (1.0, 5.0)], &[(5.0, 5.0), (9.0, 2.0)], &[(5.0, 5.0), (9.0, 9.0)]];
         assert_eq!(degrees(&graph(star)), [1, 1, 1, 3]);
+    }
+
+    #[test]
+    fn bends_are_those_of_the_curve_and_not_of_its_corners() {
+        let corner = |k: u32, n: u32| {
+            let turn = f64::from(k) / f64::from(n) * std::f64::consts::TAU;
+            Vector::xy(turn.cos(), turn.sin()) * 5.0
+        };
+        for n in [90, 400] {
+            let circle: Vec<_> = (0..=n).map(|k| corner(k, n)).collect();
+            let bends = bends(&circle, 4.0);
+            assert!(bends.len() > 30 && bends.iter().all(|(_, bend)| (bend - 0.8).abs() < 0.15), "{bends:?}");
+        }
+        assert!(bends(&[Vector::xy(0.0, 0.0)], 4.0).is_empty() && bends::<2>(&[], 4.0).is_empty());
     }
 
     #[test]

@@ -277,8 +277,8 @@ mod tests {
         let mut raster = Raster::of(&scene, 0.1, &Budget::default()).unwrap();
         let share = |raster: &Raster<2>| raster.ink.iter().filter(|i| **i).count() as f64 * 0.01;
         assert!((share(&raster) - 12.0).abs() < 0.1, "{}", share(&raster));
-        raster.stroke((Vector::xy(0.0, 9.0), Vector::xy(10.0, 9.0)), 0.24);
-        assert!((share(&raster) - 17.0).abs() < 0.2, "{}", share(&raster));
+        raster.stroke((Vector::xy(0.0, 9.0), Vector::xy(10.0, 9.0)), 0.2);
+        assert!((share(&raster) - 16.0).abs() < 0.2, "{}", share(&raster));
     }
 
     #[test]
@@ -292,7 +292,7 @@ mod tests {
         let dot = raster.smoothed(1.0, &all, &Budget::default()).unwrap();
         let variance: f64 =
             (0..dot.len()).map(|k| f64::from(dot[k]) * (raster.middle(k)[0] - 5.05).powi(2)).sum::<f64>();
-        assert!((variance - 1.0).abs() < 0.05, "{variance}");
+        assert!((variance - 1.0).abs() < 0.12, "{variance}");
         raster.ink.fill(true);
         let flat = raster.smoothed(1.0, &all, &Budget::default()).unwrap();
         assert!(flat.iter().all(|v| (v - 1.0).abs() < 1e-3));

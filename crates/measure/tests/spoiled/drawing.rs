@@ -114,7 +114,7 @@ pub(crate) fn spoiled(things: &[Thing], exemplar: &[Thing], how: Spoil) -> Vec<T
     }
 }
 
-/// A net of strokes: a square grid whose nodes are moved a little, an edge in eight missing.
+/// A net of strokes: a square grid whose nodes are moved a little, few edges missing.
 pub(crate) fn net(seed: u64, side: f64) -> Vec<[Vector<2>; 2]> {
     let step = 20.0;
     let count = (side / step) as usize + 1;
@@ -130,7 +130,7 @@ pub(crate) fn net(seed: u64, side: f64) -> Vec<[Vector<2>; 2]> {
         let right = (k % count + 1 < count).then_some(k + 1);
         let below = (k + count < nodes.len()).then_some(k + count);
         for other in [right, below].into_iter().flatten() {
-            if random.unit() > 0.125 {
+            if random.unit() > 0.03 {
                 edges.push([nodes[k], nodes[other]]);
             }
         }

@@ -50,7 +50,7 @@ fn the_same_page_is_at_most_a_copy() {
     let exemplar = drawn(&tossed(1, SMALL), SMALL);
     let report = told(&exemplar, &exemplar);
     for measure in report.measures.iter().filter(|m| m.family != Family::Copies) {
-        assert!(measure.fault < 0.05, "{measure:?}");
+        assert!(measure.fault < 0.1, "{measure:?}");
     }
     assert!(fault(&report, Family::Copies) > 0.4);
 }

@@ -135,6 +135,17 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// The family whose measures count it.
+    pub fn family(self) -> Family {
+        match self {
+            Self::Hole | Self::Clump => Family::Evenness,
+            Self::Overlap => Family::Overlaps,
+            Self::Broken | Self::Turned => Family::Elements,
+            Self::LooseEnd => Family::Strokes,
+            Self::Copy => Family::Copies,
+        }
+    }
+
     /// Its name for people.
     pub fn name(self) -> &'static str {
         match self {

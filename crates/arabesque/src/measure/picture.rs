@@ -2,7 +2,7 @@
 
 use arabesque_core::{Error, Outline, Result, Vector};
 use arabesque_io::svg::{MarkedPlace, MarkedSheet, PanelLine, write_marked};
-use arabesque_measure::{Fault, Mark, Verdict};
+use arabesque_measure::{Family, Fault, Mark, Verdict};
 
 use super::{
     MeasureReport,
@@ -59,10 +59,12 @@ impl MeasureReport {
         Ok(write_marked(&MarkedSheet { drawing, places: &below, lines: &lines }).into_bytes())
     }
 
-    /// The marks that are drawn: some of each fault, the worst first.
+    /// The marks that are drawn: some of each fault, the worst first; none of a family that is good, where single ones are natural.
     fn marks(&self) -> Vec<&Mark> {
         let mut kept: Vec<&Mark> = Vec::new();
-        for mark in &self.report.marks {
+        let is_good =
+            |family: Family| self.report.families.iter().any(|f| f.family == family && f.verdict == Verdict::Good);
+        for mark in self.report.marks.iter().filter(|mark| !is_good(mark.fault.family())) {
             if kept.iter().filter(|k| k.fault == mark.fault).count() < MOST {
                 kept.push(mark);
             }

@@ -116,7 +116,7 @@ pub(crate) fn distances<const D: usize>(
         let rule = Rule { name, family: Family::Distances, unit: "spacings", means, side, least, most };
         measures.push(rule.judge(&natural(&|list| quantile(list, q)), quantile(&found, q)));
     }
-    let scatter = difference(&own, &vec![quantile(&own, 0.5); 2]);
+    let scatter = difference(&own, &[quantile(&own, 0.5); 2]);
     let rule = Rule {
         name: "nearest elements, all",
         family: Family::Distances,

@@ -116,9 +116,8 @@ fn told<'a, const D: usize>(own: &'a Figures, spacing: f64, are_turns_judged: bo
     let rule =
         |name, unit, means, side, (least, most)| Rule { name, family: Family::Strokes, unit, means, side, least, most };
     let (ends, kinks) = (own.for_length(own.ends, spacing), own.for_length(own.kinks, spacing));
-    let nodes = move |f: &Figures| f.junctions.iter().sum::<f64>() * spacing.powi(D as i32) / f.measure.max(1e-12);
     let length = move |f: &Figures| f.length * spacing.powi(D as i32 - 1) / f.measure.max(1e-12);
-    let (own_length, own_nodes) = (length(own), nodes(own));
+    let own_length = length(own);
     let mut all: Vec<Told<'a>> = vec![
         (
             rule(
@@ -183,19 +182,38 @@ fn told<'a, const D: usize>(own: &'a Figures, spacing: f64, are_turns_judged: bo
             Box::new(|f| apart(&f.directions, &own.directions)),
         ));
     }
+    all.extend(junctions::<D>(own, spacing));
+    all
+}
+
+/// What is told of places where strokes meet.
+fn junctions<'a, const D: usize>(own: &'a Figures, spacing: f64) -> Vec<Told<'a>> {
+    let rule = |name, unit, means, (least, most)| Rule {
+        name,
+        family: Family::Strokes,
+        unit,
+        means,
+        side: Side::Both,
+        least,
+        most,
+    };
+    let nodes = move |f: &Figures| f.junctions.iter().sum::<f64>() * spacing.powi(D as i32) / f.measure.max(1e-12);
+    let own_nodes = nodes(own);
+    let mut all: Vec<Told<'a>> = Vec::new();
     // Where strokes hardly ever meet, that they touch here or there is chance.
     let met = own.junctions.iter().sum::<f64>();
-    if met >= 6.0 && own_nodes >= FEW_NODES {
-        all.push((
-            rule(
-                "junctions",
-                "per square spacing",
-                "Places where strokes meet, for each unit of area.",
-                Side::Both,
-                (0.07 * own_nodes, 0.3 * own_nodes),
-            ),
-            Box::new(nodes),
-        ));
+    let are_few = met < 6.0 || own_nodes < FEW_NODES;
+    let chance = if are_few { FEW_NODES } else { 0.0 };
+    all.push((
+        rule(
+            "junctions",
+            "per square spacing",
+            "Places where strokes meet, for each unit of area; more where they should not means that they cross.",
+            (0.07 * own_nodes + chance, 0.3 * own_nodes + chance),
+        ),
+        Box::new(nodes),
+    ));
+    if !are_few {
         let names = ["junctions of three", "junctions of four", "junctions of more"];
         let means = [
             "Share of the junctions where three strokes meet.",
@@ -206,7 +224,7 @@ fn told<'a, const D: usize>(own: &'a Figures, spacing: f64, are_turns_judged: bo
             let share = own.share(class).clamp(0.05, 0.95);
             let chance = 2.5 * (share * (1.0 - share) / met).sqrt();
             all.push((
-                rule(names[class], "share of junctions", means[class], Side::Both, (chance.max(0.05), 0.25)),
+                rule(names[class], "share of junctions", means[class], (chance.max(0.05), 0.25)),
                 Box::new(move |f| f.share(class)),
             ));
         }

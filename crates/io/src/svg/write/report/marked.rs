@@ -30,7 +30,7 @@ const PALE: f64 = 0.32;
 const DISC: f64 = 10.0;
 const SMALLEST: f64 = 7.0;
 /// Letters of a line of the panel.
-const LETTERS: usize = 84;
+const LETTERS: usize = 74;
 
 /// A place that is marked.
 #[derive(Clone, Debug, PartialEq)]

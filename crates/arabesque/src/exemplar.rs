@@ -140,6 +140,7 @@ pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
         ),
         layer: None,
         label: Some(points.classes[e.class].name.clone()),
+        source: None,
     });
     Drawing {
         fragments: fragments.collect(),

@@ -56,6 +56,7 @@
 mod artwork;
 mod exemplar;
 mod inspect;
+mod measure;
 mod method;
 mod plane;
 mod pool;
@@ -80,6 +81,7 @@ pub use arabesque_ribbons::Closing;
 pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};
+pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, Measurements, Verdict, measure};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use arabesque::{
-    Limits, Recipe,
+    Limits, Measurements, Recipe,
     core::options::{markdown_table, preset_list},
     patterns::Params,
     ribbons::RibbonParams,
@@ -23,6 +23,11 @@ fn is_current(name: &str, generated: &str) {
 #[test]
 fn the_shipped_schema_is_current() {
     is_current("recipe.schema.json", &Recipe::schema());
+}
+
+#[test]
+fn the_shipped_schema_of_reports_is_current() {
+    is_current("measure.schema.json", &Measurements::schema());
 }
 
 #[test]

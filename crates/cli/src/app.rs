@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    commands::{completions, fill, inspect, man, ribbon, run},
+    commands::{completions, fill, inspect, man, measure, ribbon, run},
     failure::Failure,
 };
 
@@ -29,6 +29,8 @@ enum Command {
     Ribbon(Box<ribbon::Ribbon>),
     /// Say what was understood of an exemplar
     Inspect(inspect::Inspect),
+    /// Say how good results are beside their exemplar: holes, clumps, overlaps, broken elements, copies
+    Measure(measure::Measure),
     /// Repeat a run from a recipe, or from any result that carries one
     Run(run::Run),
     /// Write the completion script of a shell
@@ -43,6 +45,7 @@ impl App {
             Command::Fill(c) => c.execute(),
             Command::Ribbon(c) => c.execute(),
             Command::Inspect(c) => c.execute(),
+            Command::Measure(c) => c.execute(),
             Command::Run(c) => c.execute(),
             Command::Completions(c) => c.execute(Self::command()),
             Command::Man(c) => c.execute(Self::command()),

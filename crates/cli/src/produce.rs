@@ -156,7 +156,7 @@ fn guard(recipe: &Recipe, from: Option<RecipeFile<'_>>, options: WriteOptions) -
 }
 
 /// `out.svg` as `out-3.svg`.
-fn variation(path: &str, number: u64) -> String {
+pub(crate) fn variation(path: &str, number: u64) -> String {
     let path = Path::new(path);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = match path.extension() {

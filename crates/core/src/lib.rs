@@ -43,7 +43,7 @@ pub use numerics::{
 };
 pub use random::{Stage, Stream};
 pub use region::{
-    Domain, FillRule, Outline, Region, Ring, Shape, ring,
+    Domain, FillRule, Fit, Outline, Region, Ring, Shape, Signature, ring,
     segment::{self, Segment},
 };
 pub use run::{

@@ -4,5 +4,6 @@ pub(crate) mod completions;
 pub(crate) mod fill;
 pub(crate) mod inspect;
 pub(crate) mod man;
+pub(crate) mod measure;
 pub(crate) mod ribbon;
 pub(crate) mod run;

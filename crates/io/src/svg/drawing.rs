@@ -34,6 +34,8 @@ pub struct Fragment {
     pub layer: Option<String>,
     /// Its own name: `inkscape:label`, else `id`.
     pub label: Option<String>,
+    /// Where the file is a result: the element of its exemplar that it says this is a copy of.
+    pub source: Option<usize>,
 }
 
 /// The appearance of one curve: everything that paints a path alike.

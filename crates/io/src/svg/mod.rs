@@ -44,6 +44,10 @@ pub use shape::{
 };
 pub use write::{
     document::recipe_of,
+    report::{
+        marked::{MarkedPlace, MarkedSheet, PanelLine, write_marked},
+        survey::write_survey,
+    },
     result::write_svg,
     ribbon::{
         Cell, Embedded, Look, RibbonSheet,
@@ -51,5 +55,4 @@ pub use write::{
         write_ribbons,
     },
     sheet::{Bend, Sheet, Style, Written},
-    survey::write_survey,
 };

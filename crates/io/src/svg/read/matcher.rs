@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use arabesque_core::{
-    Bounds, Budget, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Similarity, Vector,
+    Bounds, Budget, Drawn, Element, Matrix, Outline, Path, Placement, Result, Role, Signature, Similarity, Vector,
 };
 use kurbo::Affine;
 
 use crate::svg::{
     drawing::{Drawing, Stroke},
     parse::meta::Meta,
-    understand::{classes::WOBBLE, item::Item, signature::Signature},
+    understand::{classes::WOBBLE, item::Item},
 };
 
 /// Work for looking at an element that something may be a copy of.

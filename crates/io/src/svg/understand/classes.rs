@@ -5,11 +5,11 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Budget, Class, Result, Similarity};
+use arabesque_core::{Budget, Class, Result, Signature, Similarity};
 
 use crate::svg::{
     parse::{css::StyleRules, meta::Meta},
-    understand::{item::Item, signature::Signature},
+    understand::item::Item,
 };
 
 /// Mean distance of borders up to which two outlines are the same by hand, in radii.

@@ -33,7 +33,9 @@ pub(crate) fn fragment(item: &Item, definitions: &mut Definitions<'_, '_>) -> Fr
         markup.push_str("</g>");
     }
     let label = item.meta.label.clone().or_else(|| item.meta.id.clone());
-    Fragment { markup, layer: item.layer.as_deref().map(str::to_owned), label }
+    // What was put together of several things is no copy of one.
+    let source = item.meta.source.filter(|_| item.parts.len() == 1);
+    Fragment { markup, layer: item.layer.as_deref().map(str::to_owned), label, source }
 }
 
 /// Appends a node under the transform of its parent.

@@ -13,5 +13,4 @@ pub(crate) mod outlined_lines;
 pub(crate) mod parts;
 pub(crate) mod pieces;
 pub(crate) mod select;
-pub(crate) mod signature;
 pub(crate) mod surroundings;

@@ -1,4 +1,4 @@
-//! Results as SVG text: a file of placed elements and strokes, a file of ribbons, and the survey of an exemplar.
+//! Results as SVG text: a file of placed elements and strokes, a file of ribbons, and pictures that tell of a drawing.
 
 pub(crate) mod areas;
 pub(crate) mod background;
@@ -10,9 +10,9 @@ pub(crate) mod flat;
 pub(crate) mod hosted;
 pub(crate) mod kept;
 pub(crate) mod pieces;
+pub(crate) mod report;
 pub(crate) mod result;
 pub(crate) mod ribbon;
 pub(crate) mod sheet;
-pub(crate) mod survey;
 pub(crate) mod text;
 pub(crate) mod writer;

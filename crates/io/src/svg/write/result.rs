@@ -132,6 +132,7 @@ mod tests {
             ),
             layer: None,
             label: None,
+            source: None,
         };
         Drawing {
             fragments: centres.iter().map(dot).collect(),

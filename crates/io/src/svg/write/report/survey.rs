@@ -63,7 +63,7 @@ fn elements(out: &mut String, drawing: &Drawing, d: Decimals, line: f64) {
 }
 
 /// The curves as the file has them, in all their paints.
-fn faded_curves(out: &mut String, drawing: &Drawing, d: Decimals) {
+pub(super) fn faded_curves(out: &mut String, drawing: &Drawing, d: Decimals) {
     for (area, fill) in drawing.exemplar.areas.iter().zip(&drawing.fills) {
         let _ = writeln!(out, "<path d=\"{}\"{} fill-rule=\"evenodd\"/>", outline_data(&area.outline, d), fill.paint);
     }

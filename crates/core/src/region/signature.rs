@@ -6,7 +6,10 @@
 
 use std::f64::consts::TAU;
 
-use arabesque_core::{Matrix, Outline, Similarity, Vector};
+use crate::{
+    region::Outline,
+    space::{Matrix, Similarity, Vector},
+};
 
 /// Directions of the radial profile.
 const DIRECTIONS: usize = 64;
@@ -22,15 +25,16 @@ const LANES: usize = 8;
 
 /// The shape of an outline in short.
 #[derive(Clone, Debug)]
-pub(crate) struct Signature {
+pub struct Signature {
     centre: Vector<2>,
     /// Root mean square of the profile, in user units.
-    pub(crate) size: f64,
+    pub size: f64,
     /// Covered area, in square user units.
     area: f64,
     /// Covered share of the disc with that radius.
     fullness: f64,
-    is_round: bool,
+    /// Whether no turn can be told from another.
+    pub is_round: bool,
     /// Farthest painted area by direction, in sizes; 0 where there is none.
     profile: [f64; DIRECTIONS],
     /// Points along the border at equal steps, relative to the centre, in sizes.
@@ -39,16 +43,16 @@ pub(crate) struct Signature {
 
 /// How one outline lies on another.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fit {
+pub struct Fit {
     /// Root mean square distance between the borders, in sizes.
-    pub(crate) distance: f64,
+    pub distance: f64,
     /// From the coordinates of the first to those of the second.
-    pub(crate) pose: Similarity<2>,
+    pub pose: Similarity<2>,
 }
 
 impl Signature {
     /// The signature of an outline; `None` when it has no extent.
-    pub(crate) fn new(outline: &Outline<2>) -> Option<Self> {
+    pub fn new(outline: &Outline<2>) -> Option<Self> {
         let centre = outline.centroid()?;
         let profile = radial_profile(outline, centre);
         let mean_square = profile.iter().map(|r| r * r).sum::<f64>() / DIRECTIONS as f64;
@@ -65,7 +69,7 @@ impl Signature {
     }
 
     /// The best similarity from this outline to `other`.
-    pub(crate) fn fit(&self, other: &Self) -> Fit {
+    pub fn fit(&self, other: &Self) -> Fit {
         let scale = (other.area / self.area).sqrt();
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { other.size / self.size };
         let pose = |turn: f64| Similarity::about(self.centre, other.centre, Matrix::rotation(turn), scale);
@@ -82,12 +86,12 @@ impl Signature {
     }
 
     /// Whether the sizes are within a factor of two and the outlines are about equally full.
-    pub(crate) fn may_match(&self, other: &Self) -> bool {
+    pub fn may_match(&self, other: &Self) -> bool {
         self.has_size_of(other) && (self.fullness - other.fullness).abs() < 0.2 * self.fullness.max(other.fullness)
     }
 
     /// Whether the sizes are within a factor of two.
-    pub(crate) fn has_size_of(&self, other: &Self) -> bool {
+    pub fn has_size_of(&self, other: &Self) -> bool {
         (0.5..=2.0).contains(&(other.size / self.size))
     }
 
@@ -112,7 +116,9 @@ impl Signature {
         lowest.into_iter().map(refined).collect()
     }
 
-    fn border_distance(&self, other: &Self, turn: f64) -> f64 {
+    /// How well the outline lies on `other` once it is turned by `turn` and both are of one size about one centre: root mean square
+    /// distance between the borders, in sizes.
+    pub fn border_distance(&self, other: &Self, turn: f64) -> f64 {
         let rotation = Matrix::rotation(turn);
         let turned: Vec<_> = self.points.iter().map(|&p| rotation.apply(p)).collect();
         (0.5 * (square_gap(&turned, &other.points) + square_gap(&other.points, &turned))).sqrt()

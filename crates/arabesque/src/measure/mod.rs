@@ -104,7 +104,7 @@ fn one(
     };
     let name = input.name();
     match (exemplar, found) {
-        (LoadedExemplar::Drawing(own), Found::Drawing(drawing)) => {
+        (LoadedExemplar::Drawing(own, _), Found::Drawing(drawing)) => {
             let (domain, what) = intent.domain(own, &drawing, options, resources)?;
             let sources: Vec<Option<usize>> = drawing.fragments.iter().map(|f| f.source).collect();
             let subject = Subject { content: &drawing.exemplar, domain, sources: &sources };

@@ -37,7 +37,7 @@ impl Found {
 /// What an exemplar is, for people.
 pub(super) fn kind(exemplar: &LoadedExemplar) -> &'static str {
     match exemplar {
-        LoadedExemplar::Drawing(_) => "a drawing",
+        LoadedExemplar::Drawing(..) => "a drawing",
         LoadedExemplar::Points(_) => "points",
         LoadedExemplar::Space(content, _) => in_space(content),
     }
@@ -57,9 +57,9 @@ pub(super) fn read(
 ) -> Result<Found> {
     let name = input.name();
     let is_drawing = || file::decode_text(name, bytes, budget).map(|text| text.trim_start().starts_with('<'));
-    let LoadedExemplar::Drawing(own) = exemplar else {
+    let LoadedExemplar::Drawing(own, _) = exemplar else {
         return Ok(match LoadedExemplar::read(input, bytes, reading, budget)? {
-            LoadedExemplar::Drawing(drawing) => Found::Drawing(drawing),
+            LoadedExemplar::Drawing(drawing, _) => Found::Drawing(drawing),
             LoadedExemplar::Points(content) => Found::Points(content),
             LoadedExemplar::Space(content, _) => Found::Space(content),
         });
@@ -69,7 +69,7 @@ pub(super) fn read(
         return match LoadedExemplar::read(input, bytes, reading, budget)? {
             LoadedExemplar::Points(content) => Ok(Found::Points(content)),
             LoadedExemplar::Space(content, _) => Ok(Found::Space(content)),
-            LoadedExemplar::Drawing(_) => Err(Error::input(name, "no drawing", "give an SVG drawing")),
+            LoadedExemplar::Drawing(..) => Err(Error::input(name, "no drawing", "give an SVG drawing")),
         };
     }
     let text = file::decode_text(name, bytes, budget)?;

@@ -107,8 +107,9 @@ fn a_turn_that_takes_inside_to_outside_is_none() {
 
 /// The name of the group of what repeats.
 fn named(exemplar: &Exemplar<2>) -> &'static str {
-    let repeat = arabesque_patterns::repeat_of(exemplar, &Budget::default()).unwrap().expect("a repeat");
-    symmetry(exemplar, &repeat, &Budget::default()).unwrap().name()
+    let regular = arabesque_patterns::regular(exemplar, &Budget::default()).unwrap().expect("a repeat");
+    let repeat = regular.repeat();
+    symmetry(exemplar, repeat, &Budget::default()).unwrap().name()
 }
 
 /// The elements of a pattern as areas, cut by the frame.

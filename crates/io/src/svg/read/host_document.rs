@@ -226,7 +226,7 @@ fn is_in_the_open(source: &Source<'_>, id: u32) -> bool {
         matches!(a.tag_name().name(), "g" | "a") && !a.attributes().any(|attribute| changes(attribute.name()))
     };
     let root = source.xml.root_element();
-    node.ancestors().skip(1).take_while(|a| *a != root).all(|a| is_plain(a))
+    node.ancestors().skip(1).take_while(|a| *a != root).all(is_plain)
 }
 
 #[cfg(test)]

@@ -8,7 +8,11 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Budget, Exemplar, Result, Stage, Stream, Vector};
 
-use crate::repeat::{lattice::Node, looks::looks, orbits::Orbit};
+use crate::repeat::{
+    lattice::Node,
+    looks::{ALIKE, looks},
+    orbits::Orbit,
+};
 
 /// Draws of this module.
 const CHOOSE: Stage = Stage::new(5);
@@ -59,7 +63,7 @@ impl Cells {
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, orbits: &[Orbit], unit: f64, budget: &Budget) -> Result<Self> {
-        let looks = looks(exemplar, budget)?;
+        let looks = looks(exemplar, ALIKE, budget)?;
         let kind =
             |e: u32| looks.as_ref().map_or_else(|| exemplar.elements[e as usize].class, |l| l[e as usize] as usize);
         let features: Vec<Vec<_>> = orbits

@@ -9,7 +9,9 @@ const DIRECTIONS: usize = 16;
 const NUMBERS: usize = DIRECTIONS + 4 + 3 + 6;
 
 /// Looks differ by less than this in each number, lengths in terms of the radius of the element.
-const ALIKE: f64 = 0.06;
+pub(crate) const ALIKE: f64 = 0.06;
+/// The same of what is drawn by hand, for sizes and extents.
+pub(crate) const ALIKE_BY_HAND: f64 = 0.16;
 
 /// Weight of the ways in which colours lean.
 const LEAN: f64 = 6.0;
@@ -28,11 +30,12 @@ struct Look {
     numbers: [f64; NUMBERS],
 }
 
-/// Number of the look of each element; no numbers at all where there are too many looks.
+/// Number of the look of each element, where looks are one that differ by less than `alike`; no numbers at all where there are too
+/// many looks.
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
-pub(crate) fn looks(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Vec<u32>>> {
+pub(crate) fn looks(exemplar: &Exemplar<2>, alike: f64, budget: &Budget) -> Result<Option<Vec<u32>>> {
     let mut known: Vec<Look> = Vec::new();
     let mut of = Vec::with_capacity(exemplar.elements.len());
     for element in &exemplar.elements {
@@ -40,7 +43,7 @@ pub(crate) fn looks(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Ve
         let look = Look::of(element);
         // The latest looks first: rows of one kind are common. With very many looks, nothing repeats.
         budget.spend(WORK.1 * known.len() as u64)?;
-        let number = known.iter().rposition(|other| look.is_like(other));
+        let number = known.iter().rposition(|other| look.is_like(other, alike));
         of.push(number.unwrap_or(known.len()) as u32);
         if number.is_none() {
             known.push(look);
@@ -73,10 +76,11 @@ impl Look {
         Self { class: element.class, radius, numbers }
     }
 
-    fn is_like(&self, other: &Self) -> bool {
+    fn is_like(&self, other: &Self, alike: f64) -> bool {
+        let within = |k: usize| if k < DIRECTIONS { alike } else { ALIKE };
         self.class == other.class
-            && (self.radius - other.radius).abs() <= ALIKE * self.radius.max(other.radius)
-            && self.numbers.iter().zip(&other.numbers).all(|(a, b)| (a - b).abs() <= ALIKE)
+            && (self.radius - other.radius).abs() <= alike * self.radius.max(other.radius)
+            && self.numbers.iter().zip(&other.numbers).enumerate().all(|(k, (a, b))| (a - b).abs() <= within(k))
     }
 }
 
@@ -135,7 +139,7 @@ mod tests {
         ];
         let window = Bounds::new(Vector::ZERO, Vector::xy(20.0, 20.0));
         let exemplar = Exemplar::new("t", elements, vec![Class { name: "arcs".into() }], window).unwrap();
-        let of = looks(&exemplar, &Budget::default()).unwrap().unwrap();
+        let of = looks(&exemplar, ALIKE, &Budget::default()).unwrap().unwrap();
         assert_eq!(of, vec![0, 1, 0, 1]);
     }
 }

@@ -75,7 +75,7 @@ impl Marks {
         budget: &Budget,
     ) -> Result<Option<Self>> {
         let looks = match kinds {
-            Kinds::Looks => match looks::looks(exemplar, budget)? {
+            Kinds::Looks => match looks::looks(exemplar, looks::ALIKE, budget)? {
                 Some(looks) => looks,
                 None => return Ok(None),
             },
@@ -107,6 +107,11 @@ impl Marks {
         let places: Vec<_> = all.iter().map(|mark| mark.place).collect();
         let index = GridIndex::new(&places, 0.25 * unit, &Domain::Box(window));
         Ok(Some(Self { all, window, unit, unknown: Arc::clone(&lines.unknown), index }))
+    }
+
+    /// The same marks, of which nothing is known beyond a box.
+    pub(crate) fn seen_in(&self, window: Bounds<2>) -> Self {
+        Self { window, ..self.clone() }
     }
 
     /// The mark of this kind that is nearest to a place, within a distance.

@@ -12,6 +12,8 @@ pub(crate) mod lattice;
 pub(crate) mod lines;
 pub(crate) mod looks;
 pub(crate) mod marks;
+pub(crate) mod near;
+pub(crate) mod offsets;
 pub(crate) mod one_way;
 pub(crate) mod orbits;
 pub(crate) mod seamless;

@@ -10,7 +10,7 @@ use crate::{
         description::Repeat,
         lattice::{Lattice, Node},
         marks::place_of,
-        unknown::touches,
+        unknown::{drawn, touches},
     },
 };
 
@@ -55,7 +55,6 @@ pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -
     let lattice = &repeat.lattice;
     let shorter = lattice.shorter();
     let tolerance = (TOLERANCE.0 * shorter).max(TOLERANCE.1 * repeat.jitter).min(0.45 * shorter);
-    let mut found = Found { lattice, tolerance, orbits: Vec::new(), cells: BTreeMap::new(), budget };
     let mut groups: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
     for (e, element) in (0..).zip(&exemplar.elements) {
         if element.role == Role::Source && element.outline.radius(element.centre) <= farthest(&exemplar.window) {
@@ -65,17 +64,33 @@ pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -
     // Common classes first: an exception among them takes one of their nodes, and no orbit of its own.
     let mut groups: Vec<_> = groups.into_iter().collect();
     groups.sort_by_key(|(class, members)| (std::cmp::Reverse(members.len()), *class));
-    let touches = |e: u32| touches(&exemplar.elements[e as usize].outline.bounds(), &exemplar.window);
-    // What touches the frame may be cut there: it may take a node of others, but says nothing by itself.
-    for may_be_cut in [false, true] {
-        for (class, members) in &groups {
-            for &e in members.iter().filter(|&&e| touches(e) == may_be_cut) {
-                let place = place_of(&exemplar.elements[e as usize], repeat.anchor);
-                found.add(e, *class, place, may_be_cut)?;
+    let gather = |known: &[(Vector<2>, usize)]| -> Result<Found<'_>> {
+        let mut found = Found::new((lattice, tolerance), known, budget);
+        let touches = |e: u32| touches(&exemplar.elements[e as usize].outline.bounds(), &exemplar.window);
+        // What touches the frame may be cut there: it may take a node of others, but says nothing by itself.
+        for may_be_cut in [false, true] {
+            for (class, members) in &groups {
+                for &e in members.iter().filter(|&&e| touches(e) == may_be_cut) {
+                    let place = place_of(&exemplar.elements[e as usize], repeat.anchor);
+                    found.add(e, *class, place, may_be_cut)?;
+                }
             }
         }
+        Ok(found)
+    };
+    let mut found = gather(&[])?;
+    let is_by_hand = TOLERANCE.1 * repeat.jitter > TOLERANCE.0 * shorter;
+    if is_by_hand || found.is_mixed {
+        // By hand, the first element at a place lies as far off as any other. And where different ones lie at one place, the
+        // first of the second kind came before that was known.
+        let first: Vec<Vector<2>> = found.orbits.iter().map(|(orbit, ..)| orbit.base).collect();
+        let known = found.settled(exemplar).0.into_iter();
+        let known = known.map(|(k, orbit, class)| (if is_by_hand { orbit.base } else { first[k] }, class));
+        found = gather(&known.collect::<Vec<_>>())?;
     }
-    Ok(found.settled(exemplar))
+    let (mut orbits, others) = found.settled(exemplar);
+    orbits.sort_by_key(|(_, orbit, _)| orbit.instances.first().map(|i| i.element));
+    Ok((orbits.into_iter().map(|(_, orbit, _)| orbit).collect(), others))
 }
 
 struct Found<'a> {
@@ -85,10 +100,28 @@ struct Found<'a> {
     orbits: Vec<(Orbit, usize, BTreeMap<Node, u32>)>,
     /// Orbits by the square of the cell that their base lies in.
     cells: BTreeMap<(i64, i64), Vec<usize>>,
+    /// Whether something took a node of an orbit that another class began.
+    is_mixed: bool,
     budget: &'a Budget,
 }
 
-impl Found<'_> {
+impl<'a> Found<'a> {
+    /// Without elements, at `known` places, each with the class that began it.
+    fn new((lattice, tolerance): (&'a Lattice, f64), known: &[(Vector<2>, usize)], budget: &'a Budget) -> Self {
+        let mut found =
+            Self { lattice, tolerance, orbits: Vec::new(), cells: BTreeMap::new(), is_mixed: false, budget };
+        for (base, class) in known {
+            found.begin(lattice.folded(*base), *class);
+        }
+        found
+    }
+
+    fn begin(&mut self, base: Vector<2>, class: usize) {
+        let key = self.key(base);
+        self.cells.entry(key).or_default().push(self.orbits.len());
+        self.orbits.push((Orbit { base, instances: Vec::new() }, class, BTreeMap::new()));
+    }
+
     fn key(&self, p: Vector<2>) -> (i64, i64) {
         let side = 2.0 * self.tolerance;
         ((p[0] / side).floor() as i64, (p[1] / side).floor() as i64)
@@ -123,12 +156,13 @@ impl Found<'_> {
         }
         self.budget.spend(COMPARE * (looked + 20))?;
         let number = match best {
-            Some((_, _, o)) => o,
+            Some((is_other, _, o)) => {
+                self.is_mixed |= is_other;
+                o
+            }
             None if may_be_cut => return Ok(()),
             None => {
-                let key = self.key(folded);
-                self.cells.entry(key).or_default().push(self.orbits.len());
-                self.orbits.push((Orbit { base: folded, instances: Vec::new() }, class, BTreeMap::new()));
+                self.begin(folded, class);
                 self.budget.within("places in one cell of the repeat", self.orbits.len(), ("elements", MOST))?;
                 self.orbits.len() - 1
             }
@@ -140,11 +174,12 @@ impl Found<'_> {
         Ok(())
     }
 
-    /// The orbits that hold, moved to the middle of their elements, and the elements of the others.
-    fn settled(self, exemplar: &Exemplar<2>) -> (Vec<Orbit>, Vec<u32>) {
-        let (lattice, window) = (*self.lattice, exemplar.window);
+    /// The orbits that hold, moved to the middle of their elements, with their numbers and classes, and the elements of the others.
+    fn settled(self, exemplar: &Exemplar<2>) -> (Vec<(usize, Orbit, usize)>, Vec<u32>) {
+        let (lattice, window) = (*self.lattice, drawn(exemplar).unwrap_or(exemplar.window));
         let (mut kept, mut others) = (Vec::new(), Vec::new());
-        for (mut orbit, _, taken) in self.orbits {
+        let met = self.orbits.into_iter().enumerate().filter(|(_, (orbit, ..))| !orbit.instances.is_empty());
+        for (number, (mut orbit, class, taken)) in met {
             let count = orbit.instances.len() as f64;
             let mean = orbit.instances.iter().fold(Vector::ZERO, |sum, i| sum + i.residual) * (1.0 / count);
             orbit.base += mean;
@@ -156,12 +191,11 @@ impl Found<'_> {
             });
             if is_taken {
                 orbit.instances.sort_by_key(|i| i.element);
-                kept.push(orbit);
+                kept.push((number, orbit, class));
             } else {
                 others.extend(orbit.instances.iter().map(|i| i.element));
             }
         }
-        kept.sort_by_key(|orbit| orbit.instances.first().map(|i| i.element));
         others.sort_unstable();
         (kept, others)
     }

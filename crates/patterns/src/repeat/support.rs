@@ -17,6 +17,9 @@ const ENOUGH_LINE: f64 = 0.975;
 /// Marks that are looked at before a hopeless translation is given up, and the share of them that must have a partner.
 const FIRST: (usize, f64) = (24, 0.6);
 
+/// Of so many marks, less than a quarter with a partner is hopeless.
+const HOPELESS: usize = 8;
+
 /// Places along the lines of an exemplar that are compared.
 const PLACES: f64 = 3000.0;
 
@@ -65,7 +68,8 @@ pub(crate) fn is_supported(
             found[group] += usize::from(partner.is_some());
         }
         let (so_far, met) = (seen[0] + seen[1], found[0] + found[1]);
-        if so_far >= FIRST.0 && (met as f64) < FIRST.1 * so_far as f64 {
+        let is_poor = so_far >= FIRST.0 && (met as f64) < FIRST.1 * so_far as f64;
+        if is_poor || (so_far >= HOPELESS && 4 * met < so_far) {
             break;
         }
     }

@@ -1,6 +1,6 @@
 //! Where an exemplar does not show what it would.
 
-use arabesque_core::{Bounds, Exemplar, Role, Vector};
+use arabesque_core::{Bounds, Element, Exemplar, Role, Vector};
 
 /// What is this near to the frame touches it, as a share of its diagonal.
 const TOUCH: f64 = 1e-4;
@@ -13,6 +13,19 @@ pub(crate) fn touches(extent: &Bounds<2>, window: &Bounds<2>) -> bool {
     let near = TOUCH * window.size().norm();
     let is_at = |a: f64, b: f64| (a - b).abs() <= near;
     (0..2).any(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
+}
+
+/// The box around everything, where nothing reaches the frame: what lies beyond it is a margin. `None` where something does.
+pub(crate) fn drawn(exemplar: &Exemplar<2>) -> Option<Bounds<2>> {
+    let reaches = |e: &Element<2>| e.role == Role::Context || touches(&e.outline.bounds(), &exemplar.window);
+    if exemplar.elements.iter().any(reaches) {
+        return None;
+    }
+    let extents = exemplar
+        .elements
+        .iter()
+        .map(|e| if e.outline.rings.is_empty() { Bounds::around([e.centre]) } else { e.outline.bounds() });
+    Some(Bounds::around(extents.flat_map(|b| [b.min, b.max]))).filter(|b| !b.is_empty())
 }
 
 /// The boxes around elements that the frame has cut, which may be lines elsewhere, and the hole, as a raster over the
@@ -82,7 +95,7 @@ impl Unknown {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
-    use arabesque_core::{Class, Element, Outline, Similarity};
+    use arabesque_core::{Class, Outline, Similarity};
 
     use super::*;
 

@@ -109,3 +109,8 @@ pub(crate) fn of_strokes(name: &str) -> Pattern {
     let (vectors, lines) = images(name, &HOOK);
     Pattern::of_pieces(vectors, lines.into_iter().map(|points| Piece { points, style: 0 }).collect())
 }
+
+/// A pattern of this group with a stroke in every element.
+pub(crate) fn of_both(name: &str) -> Pattern {
+    Pattern { pieces: of_strokes(name).pieces, ..of_elements(name) }
+}

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic, its helpers as well")]
 
+mod by_hand;
 mod drawing;
 mod elements;
 mod friezes;

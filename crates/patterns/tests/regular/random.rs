@@ -13,7 +13,7 @@ fn dots(places: &[Vector<2>], radius: f64, window: Bounds<2>) -> Exemplar<2> {
 }
 
 /// Whether two lattices have the same cell, and the vectors of one lie on the other within a share of the shorter one.
-fn agree(a: &Lattice, b: &Lattice, within: f64) -> bool {
+pub(crate) fn agree(a: &Lattice, b: &Lattice, within: f64) -> bool {
     let shorter = b.vectors[0].norm().min(b.vectors[1].norm());
     let off = |v: &Vector<2>| {
         let c = b.coordinates(*v);

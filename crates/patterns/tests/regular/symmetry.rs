@@ -1,10 +1,10 @@
 //! All seventeen groups are named, and patterns of each are continued.
 
-use arabesque_core::{Bounds, Budget, Domain, Request, Vector};
+use arabesque_core::{Area, Bounds, Budget, Class, Contents, Domain, Exemplar, Outline, Request, Vector};
 use arabesque_patterns::repeat::{Symmetry, symmetry};
 
 use crate::{
-    drawing::{Pattern, xy},
+    drawing::{Pattern, rectangle, xy},
     groups::{self, NAMES},
     measure::{TOLERANCE, assert_same, centres, expected, hausdorff, page, prepared, run},
 };
@@ -56,6 +56,64 @@ fn groups_of_strokes() {
         let scale = [12.0, 0.5, 500.0][k % 3];
         check(name, &groups::of_strokes(name).scaled(scale), k + 2);
     }
+}
+
+#[test]
+fn groups_of_elements_and_strokes_together() {
+    for (k, name) in NAMES.into_iter().enumerate() {
+        let pattern = groups::of_both(name).scaled([37.0, 1.0][k % 2]);
+        assert_eq!(named(&pattern.exemplar(frame(&pattern, k + 1))), name);
+    }
+}
+
+#[test]
+fn groups_of_areas() {
+    for (k, name) in NAMES.into_iter().enumerate() {
+        let pattern = groups::of_elements(name).scaled([1.0, 80.0][k % 2]);
+        assert_eq!(named(&of_areas(&pattern, frame(&pattern, k + 3))), name);
+    }
+}
+
+#[test]
+fn a_turn_that_takes_inside_to_outside_is_none() {
+    // Bands between two borders: the first two are taken to the gaps between them by moving or turning, the third by turning alone.
+    let window = Bounds::new(xy(0.3, 0.2), xy(50.0, 47.0));
+    for (upper, lower, name) in
+        [([2.0, 0.0], [2.0, 0.0], "pmg"), ([2.0, 0.0], [-2.0, 0.0], "pmm"), ([2.0, 1.0], [1.0, 0.0], "p1")]
+    {
+        let border = |y: f64, [one, two]: [f64; 2]| -> Vec<Vector<2>> {
+            let at = |k: i64| k as f64 * 0.5 - 5.0;
+            let turn = |k: i64| at(k) * std::f64::consts::TAU / 16.0;
+            (0..=120).map(|k| xy(at(k), y + one * turn(k).sin() + two * (2.0 * turn(k)).sin())).collect()
+        };
+        let band = |j: i64| {
+            let back = border(j as f64 * 16.0 + 8.0, lower).into_iter().rev();
+            border(j as f64 * 16.0, upper).into_iter().chain(back).collect::<Vec<_>>()
+        };
+        let rings: Vec<_> = (-1..4).map(band).collect();
+        assert_eq!(named(&areas(&rings, window)), name, "{upper:?} {lower:?}");
+    }
+}
+
+/// The name of the group of what repeats.
+fn named(exemplar: &Exemplar<2>) -> &'static str {
+    let repeat = arabesque_patterns::repeat_of(exemplar, &Budget::default()).unwrap().expect("a repeat");
+    symmetry(exemplar, &repeat, &Budget::default()).unwrap().name()
+}
+
+/// The elements of a pattern as areas, cut by the frame.
+fn of_areas(pattern: &Pattern, window: Bounds<2>) -> Exemplar<2> {
+    let rings: Vec<_> = pattern.outlines(&window).into_iter().flat_map(|(outline, _)| outline.rings).collect();
+    areas(&rings, window)
+}
+
+fn areas(rings: &[Vec<Vector<2>>], window: Bounds<2>) -> Exemplar<2> {
+    let frame = Outline { rings: vec![rectangle(window.min, window.max)] };
+    let shown = rings.iter().map(|ring| Outline { rings: vec![ring.clone()] }.intersection(&frame));
+    let area = |outline: Outline<2>| Area { outline, style: 0, colour: [0.2, 0.4, 0.6] };
+    let areas = shown.filter(|outline| outline.area() > 0.0).map(area).collect();
+    let styles = vec![Class { name: "fill".into() }];
+    Exemplar::with_curves("areas", Contents { areas, styles, ..Contents::default() }, window).unwrap()
 }
 
 #[test]

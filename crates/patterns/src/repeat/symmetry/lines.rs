@@ -1,6 +1,6 @@
 //! The lines of one cell: what lies on them, and where they pass through a direction.
 
-use arabesque_core::{Budget, Exemplar, Matrix, Result, Vector};
+use arabesque_core::{Bounds, Budget, Exemplar, Matrix, Result, Vector};
 
 use crate::repeat::{
     lattice::Lattice,
@@ -29,17 +29,20 @@ const AIM: f64 = 0.2371;
 /// Work for each entry of an index that is looked at.
 const LOOK: u64 = 6;
 
-/// A place on a line: the way it runs there, and its style.
+/// A place on a line: the way it runs there, its style, and whether it is the border of an area, which lies on one side of it.
 #[derive(Clone, Copy, Debug)]
 struct OnLine {
     way: Vector<2>,
     style: usize,
+    is_border: bool,
 }
 
 /// The lines of a cell.
 pub(super) struct CellLines {
     tracks: Vec<Track>,
     features: Vec<(Vector<2>, Feature)>,
+    /// Where lines are not made by the frame.
+    seen: Bounds<2>,
     index: Torus<OnLine>,
     places: Vec<(Vector<2>, OnLine)>,
     tolerance: f64,
@@ -65,7 +68,7 @@ impl CellLines {
             for (a, b) in track.points.windows(2).map(|w| (w[0], w[1])).chain(closing).filter(|(a, b)| a != b) {
                 let count = ((b - a).norm() / step).ceil().clamp(1.0, 1e5);
                 budget.spend(LOOK * count as u64)?;
-                let on = OnLine { way: (b - a).unit_or_zero(), style: track.style };
+                let on = OnLine { way: (b - a).unit_or_zero(), style: track.style, is_border: track.is_border };
                 for k in 0..count as usize {
                     let place = a + (b - a) * ((k as f64 + 0.5) / count);
                     if seen.contains(place) {
@@ -75,7 +78,7 @@ impl CellLines {
                 }
             }
         }
-        Ok(Self { tracks: lines.tracks, features: lines.features, index, places, tolerance, step })
+        Ok(Self { tracks: lines.tracks, features: lines.features, seen, index, places, tolerance, step })
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -94,14 +97,19 @@ impl CellLines {
         } else {
             order.collect()
         };
+        let [[a, b], [c, d]] = linear.0;
+        // Seen in a mirror, an area lies on the other side of its border.
+        let sign = (a * d - b * c).signum();
         for (k, &i) in order.iter().enumerate() {
             let (place, on) = self.places[i];
-            let (there, way) = (linear.apply(place) + shift, linear.apply(on.way));
+            let (there, way) = (linear.apply(place) + shift, linear.apply(on.way) * sign);
             let mut found = false;
             looked += self.index.near(there, |offset, other| {
                 let across = offset.cross(other.way).abs();
                 let is_on = across <= self.tolerance && offset.norm() <= self.tolerance + self.step;
-                found = found || (is_on && other.style == on.style && other.way.dot(way).abs() >= SAME_WAY);
+                let along = other.way.dot(way);
+                let same_way = along >= SAME_WAY || (along <= -SAME_WAY && !on.is_border);
+                found = found || (is_on && other.style == on.style && same_way);
             });
             met += usize::from(found);
             if k + 1 == PLACES.1 && (met as f64) < 0.8 * PLACES.1 as f64 {
@@ -138,7 +146,8 @@ impl CellLines {
         for style in styles {
             let passing = |aim: Vector<2>| -> Vec<Vector<2>> {
                 let tracks = self.tracks.iter().filter(|t| t.style == style);
-                self.folded(tracks.flat_map(|t| passes(t, aim)), lattice)
+                let passes = tracks.flat_map(|t| passes(t, aim));
+                self.folded(passes.filter(|place| self.seen.contains(*place)), lattice)
             };
             let from = passing(aim);
             let to = if from.is_empty() { Vec::new() } else { passing(linear.apply(aim)) };

@@ -4,7 +4,7 @@ use arabesque_core::{Area, Bounds, Budget, Class, Contents, Domain, Exemplar, Ou
 use arabesque_patterns::repeat::{Symmetry, symmetry};
 
 use crate::{
-    drawing::{Motif, Pattern, rectangle, xy},
+    drawing::{Pattern, rectangle, xy},
     groups::{self, NAMES},
     measure::{TOLERANCE, assert_same, centres, expected, hausdorff, page, prepared, run},
 };
@@ -72,16 +72,6 @@ fn groups_of_areas() {
         let pattern = groups::of_elements(name).scaled([1.0, 80.0][k % 2]);
         assert_eq!(named(&of_areas(&pattern, frame(&pattern, k + 3))), name);
     }
-}
-
-#[test]
-fn things_and_their_mirror_images_about_one_middle() {
-    let flag = [[-1.0, -1.0], [0.5, -0.6], [1.2, 0.4], [-0.2, 0.3], [-0.4, 1.1]].map(|[x, y]| xy(x, y));
-    let middle = Outline { rings: vec![flag.to_vec()] }.centroid().unwrap();
-    let ring = |sign: f64| flag.iter().map(|p| xy(sign * (p[0] - middle[0]), p[1])).collect::<Vec<_>>();
-    let motifs = [1.0, -1.0].into_iter().enumerate().map(|(class, sign)| Motif { ring: ring(sign), class });
-    let pattern = Pattern::of_motifs([xy(4.0, 0.0), xy(0.0, 5.0)], motifs.collect());
-    assert_eq!(named(&pattern.exemplar(Bounds::new(xy(0.7, -0.9), xy(17.2, 19.0)))), "pm");
 }
 
 #[test]

@@ -17,6 +17,8 @@ mod natural;
 mod page;
 mod rounds;
 mod share;
+#[cfg(test)]
+mod tests;
 mod work;
 
 use std::sync::Arc;
@@ -94,12 +96,7 @@ where
         let numbers: Vec<u32> = state.items().numbers().filter(is_element).collect();
         let bodies: Vec<_> = numbers.iter().map(|&i| body(state, i)).collect();
         let shares = self.shares(state, &bodies, moves, &budget)?;
-        let measures = Measures {
-            spacing: state.library.spacing,
-            tolerated: self.natural.tolerated,
-            reach: REACH * self.natural.tolerated * state.extent.largest_spacing_scale,
-        };
-        let page = Page::new(state.extent, &self.inks, bodies, measures, &strokes(state), &budget)?;
+        let page = self.page(state, bodies, &budget)?;
         let known = (&self.natural, state.library);
         let mut work = Work::new((page, shares), known, state.extent, (counts(state), targets), moves);
         let ended = rounds::run(&mut work, &budget, &mut |bodies| tell(&items(state, &numbers, bodies)));
@@ -107,6 +104,15 @@ where
             work.undo(&mut state.budget.fresh().meter())?;
         }
         Ok((Evened { numbers, bodies: work.page.bodies }, ended))
+    }
+
+    fn page<'s>(&'s self, state: &State<'s, D>, bodies: Vec<Body<D>>, budget: &Budget) -> Result<Page<'s, D>> {
+        let measures = Measures {
+            spacing: state.library.spacing,
+            tolerated: self.natural.tolerated,
+            reach: REACH * self.natural.tolerated * state.extent.largest_spacing_scale,
+        };
+        Page::new(state.extent, &self.inks, bodies, measures, &strokes(state), budget)
     }
 
     fn shares<'s>(

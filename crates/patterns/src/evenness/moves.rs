@@ -16,8 +16,9 @@ const WORTH: f64 = 1e-4;
 /// An element that pays less stays where it is.
 const QUIET: f64 = 8e-3;
 
-/// First step of an element that looks for a better place, in tolerated distances, and how often it is halved.
-const STEPS: (f64, u32) = (0.5, 3);
+/// First step of an element that looks for a better place, in tolerated distances, by how much it is shortened,
+/// and how often.
+const STEPS: (f64, f64, u32) = (0.5, 0.4, 2);
 
 /// Steps of one length.
 const TURNS: usize = 4;
@@ -27,7 +28,16 @@ const AROUND: usize = 8;
 
 /// Elements that are tried in a hole or in place of another: as they are, moved to where they fit best, and with others giving
 /// way.
-const CANDIDATES: (usize, usize, usize) = (32, 6, 2);
+const CANDIDATES: (usize, usize, usize) = (24, 4, 2);
+
+/// What raises the price by more than this is not tried any farther.
+const HOPELESS: f64 = 8.0;
+
+/// The same for others that would have to give way.
+const CROWDED: f64 = 1.5;
+
+/// Elements that differ by less, in mean spacings, are not worth an exchange.
+const SAME: f64 = 0.03;
 
 /// Weight of how little an element agrees with its neighbours.
 const AGREEMENT: f64 = 0.15;
@@ -41,7 +51,7 @@ where
 {
     /// Length of a tolerated distance at `p`.
     pub(crate) fn unit(&self, p: Vector<D>) -> f64 {
-        self.natural.tolerated * self.page.request.fields.frame(p).spacing_scale
+        self.natural.tolerated * self.page.spacing_scale(p)
     }
 
     fn admits(&self, pose: &Pose<D>) -> bool {
@@ -58,7 +68,7 @@ where
         let first = STEPS.0 * unit;
         let radius = self.page.inks.radius(&body.pose);
         let scene = self.scene(Some(b), body.pose.centre, (radius, 2.0 * first), meter)?;
-        let start = self.price(&scene, Some(&body.pose), meter)?;
+        let start = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
         if start < QUIET {
             return Ok(0.0);
         }
@@ -70,7 +80,7 @@ where
         Ok(start - price)
     }
 
-    /// The cheapest pose that steps lead to, each halved until none helps any more.
+    /// The cheapest pose that steps lead to, shorter ones where none helps any more.
     fn descend(
         &self,
         scene: &Scene<D>,
@@ -82,8 +92,8 @@ where
         let turn = self.turn(&pose);
         let start = pose.centre;
         let mut leading = Vector::ZERO;
-        for halving in 0..=STEPS.1 {
-            let step = first * 0.5_f64.powi(halving as i32);
+        for n in 0..=STEPS.2 {
+            let step = first * STEPS.1.powi(n as i32);
             let mut left = TURNS;
             loop {
                 // What helped last is tried first.
@@ -95,7 +105,7 @@ where
                         continue;
                     }
                     let moved = self.page.pose(pose.source, centre, &turn);
-                    let there = self.price(scene, Some(&moved), meter)?;
+                    let there = self.price(scene, Some(&moved), price, meter)?;
                     if there < price - WORTH && self.admits(&moved) {
                         better = Some((moved, there, way));
                         break;
@@ -136,7 +146,7 @@ where
 
     /// The elements nearest to a place by their ink, the nearest first.
     pub(crate) fn group(&self, p: Vector<D>, most: usize) -> Vec<u32> {
-        let reach = 1.5 * self.library.spacing * self.page.request.fields.frame(p).spacing_scale;
+        let reach = 1.5 * self.library.spacing * self.page.spacing_scale(p);
         let near = self.page.neighbours(p, reach, u32::MAX);
         let distance = |b: u32| {
             let pose = &self.page.body(b).pose;
@@ -199,13 +209,16 @@ where
         let largest = candidates.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max);
         let largest = largest * self.page.request.fields.frame(p).element_scale;
         let scene = self.scene(None, p, (largest, 2.0 * first), meter)?;
-        let before = self.price(&scene, None, meter)?;
+        let before = self.price(&scene, None, f64::INFINITY, meter)?;
         let mut sorted = Vec::new();
         for source in candidates {
             let class = self.library.class[source];
             if self.counts[class] + 1.0 <= (1.0 + COUNT) * self.targets[class] + 0.5 {
                 let pose = self.page.pose(source, p, &Matrix::identity());
-                sorted.push((self.price(&scene, Some(&pose), meter)?, pose));
+                let price = self.price(&scene, Some(&pose), before + HOPELESS, meter)?;
+                if price <= before + HOPELESS {
+                    sorted.push((price, pose));
+                }
             }
         }
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
@@ -223,7 +236,7 @@ where
     /// The place farthest from ink around `p`.
     pub(crate) fn emptiest(&self, p: Vector<D>) -> Option<Vector<D>> {
         let mut best: Option<(f32, Vector<D>)> = None;
-        let reach = self.library.spacing * self.page.request.fields.frame(p).spacing_scale;
+        let reach = self.library.spacing * self.page.spacing_scale(p);
         self.page.lattice.around(p, reach, |c, at| {
             let empty = self.page.cells[c].empty();
             if best.is_none_or(|(most, _)| empty > most) {
@@ -240,7 +253,8 @@ where
         }
         let mut rated = self.rated(p, meter)?;
         rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.source.cmp(&b.2.source)));
-        for (_, cost, pose) in rated.into_iter().take(CANDIDATES.2) {
+        let fits = rated.into_iter().filter(|(_, cost, _)| *cost <= CROWDED);
+        for (_, cost, pose) in fits.take(CANDIDATES.2) {
             let b = self.add(pose, meter)?;
             let mut gain = -cost;
             if cost > -WORTH {
@@ -277,13 +291,18 @@ where
         let first = STEPS.0 * self.unit(body.pose.centre);
         let largest = members.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max) * body.pose.scale;
         let scene = self.scene(Some(b), body.pose.centre, (largest, 2.0 * first), meter)?;
-        let now = self.price(&scene, Some(&body.pose), meter)?;
+        let now = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
         let mine = self.disagreement(&body.pose, Some(b), meter)?;
         let mut rated = Vec::new();
-        for &source in members.iter().step_by(step).filter(|&&e| self.library.copyable[e]) {
+        let own = &self.library.feature[body.pose.source];
+        let same = (SAME * self.library.spacing).powi(2) as f32;
+        let differs = |e: &&u32| self.library.copyable[**e] && self.library.feature[**e].distance2(own) > same;
+        for &source in members.iter().step_by(step).filter(differs) {
             let pose = self.page.pose(source, body.pose.centre, &Matrix::identity());
-            let price = self.price(&scene, Some(&pose), meter)?;
-            rated.push((price, pose));
+            let price = self.price(&scene, Some(&pose), now + HOPELESS, meter)?;
+            if price <= now + HOPELESS {
+                rated.push((price, pose));
+            }
         }
         rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
         for (start, pose) in rated.into_iter().take(CANDIDATES.1) {
@@ -309,7 +328,8 @@ where
             return Ok(false);
         }
         let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), meter)?;
-        let mut gain = self.price(&scene, Some(&body.pose), meter)? - self.price(&scene, None, meter)?;
+        let mut gain = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?
+            - self.price(&scene, None, f64::INFINITY, meter)?;
         self.remove(b, meter)?;
         gain += self.give_way(body.pose.centre, meter)?;
         if gain > WORTH {

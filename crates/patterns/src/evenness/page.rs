@@ -3,7 +3,7 @@
 //! Two, so that it is known at once what a place would be like without the nearest. Distances are cut off at a reach beyond
 //! which a place is empty in any case.
 
-use arabesque_core::{Budget, Domain, Held, Lattice, Meter, Request, Result, Vector};
+use arabesque_core::{Budget, Domain, Held, Lattice, Matrix, Meter, Request, Result, Vector};
 
 use crate::{
     border::Extent,
@@ -76,6 +76,8 @@ pub(crate) struct Page<'a, const D: usize> {
     /// For each part of the page, the elements that are nearer to a place in it than the reach.
     lists: Vec<Vec<u32>>,
     parts: Lattice<D>,
+    /// Whether the pattern is turned and scaled as in the exemplar everywhere.
+    is_neutral: bool,
     /// Distances from here on are all the same.
     pub(crate) reach: f64,
     _held: Held,
@@ -115,7 +117,8 @@ where
         }
         let lists = vec![Vec::new(); parts.count()];
         let reach = measures.reach;
-        let mut page = Self { request, inks, bodies, cells, lattice, lists, parts, reach, _held: held };
+        let is_neutral = request.fields.are_neutral();
+        let mut page = Self { request, inks, bodies, cells, lattice, lists, parts, is_neutral, reach, _held: held };
         for &(place, radius) in strokes {
             page.draw(place, radius, &mut meter)?;
         }
@@ -159,10 +162,18 @@ impl<const D: usize> Page<'_, D> {
     }
 
     /// The pose of an element turned by `turn` from the local frame.
-    pub(crate) fn pose(&self, source: u32, centre: Vector<D>, turn: &arabesque_core::Matrix<D>) -> Pose<D> {
+    pub(crate) fn pose(&self, source: u32, centre: Vector<D>, turn: &Matrix<D>) -> Pose<D> {
         let centre = self.domain().wrap(centre);
+        if self.is_neutral {
+            return Pose { source, centre, rotation: *turn, scale: 1.0 };
+        }
         let frame = self.request.fields.frame(centre);
         Pose { source, centre, rotation: frame.rotation.compose(turn), scale: frame.element_scale }
+    }
+
+    /// By how much gaps are wider at `p` than in the exemplar.
+    pub(crate) fn spacing_scale(&self, p: Vector<D>) -> f64 {
+        if self.is_neutral { 1.0 } else { self.request.fields.frame(p).spacing_scale }
     }
 
     /// Makes the ink of a stroke part of what is still.

@@ -9,10 +9,10 @@ use crate::{
 };
 
 /// Rounds over the page.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 3;
 
 /// Sweeps over elements that pay.
-const SWEEPS: usize = 6;
+const SWEEPS: usize = 4;
 
 /// Elements around one that has moved that look again.
 const NEXT: usize = 10;

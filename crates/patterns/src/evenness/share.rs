@@ -207,6 +207,12 @@ impl<const D: usize> Shares<'_, D> {
         sum * self.price
     }
 
+    /// Price of the whole page.
+    #[cfg(test)]
+    pub(crate) fn total(&self) -> f64 {
+        self.places.iter().map(|place| self.excess(place.ink, place).powi(2)).sum::<f64>() * self.price
+    }
+
     /// By how many deviations a place is off, beyond what is natural.
     fn excess(&self, ink: f64, place: &Place) -> f64 {
         if place.scale <= 0.0 {

@@ -81,6 +81,8 @@ struct Held<const D: usize> {
     place: Vector<D>,
     without: f64,
     tolerated: f64,
+    /// Its size, in squares or cubes of what is tolerated.
+    weight: f64,
 }
 
 /// What the price of an element depends on, around where it is or may go.
@@ -88,8 +90,6 @@ pub(crate) struct Scene<const D: usize> {
     held: Vec<Held<D>>,
     neighbours: Vec<u32>,
     shares: share::Around<D>,
-    /// Size of a cell.
-    measure: f64,
 }
 
 impl<'a, const D: usize> Work<'a, D> {
@@ -129,6 +129,7 @@ impl<'a, const D: usize> Work<'a, D> {
         let page = &self.page;
         let mut held = Vec::new();
         let mut looked = 0;
+        let measure: f64 = page.lattice.cell().0.into_iter().product();
         let reach = radius + step + page.reach;
         page.lattice.around(centre, reach, |c, at| {
             looked += 1;
@@ -136,10 +137,12 @@ impl<'a, const D: usize> Work<'a, D> {
             let without = cell.without(body);
             if without > cell.tolerated {
                 let place = page.lattice.centre_at(at);
-                held.push(Held { place, without: f64::from(without), tolerated: f64::from(cell.tolerated) });
+                let tolerated = f64::from(cell.tolerated);
+                let weight = measure * tolerated.powi(-(D as i32));
+                held.push(Held { place, without: f64::from(without), tolerated, weight });
             }
         });
-        let scale = page.request.fields.frame(centre).spacing_scale;
+        let scale = page.spacing_scale(centre);
         let widest = self.natural.widest.max(0.0) * scale;
         let neighbours = page.neighbours(centre, radius + step + widest, body);
         meter.spend(PRICE.0 * (looked + 20 * neighbours.len() as u64))?;
@@ -148,26 +151,35 @@ impl<'a, const D: usize> Work<'a, D> {
             Some(shares) => shares.around(centre, step, there(body), meter)?,
             None => share::Around::default(),
         };
-        Ok(Scene { held, neighbours, shares, measure: page.lattice.cell().0.into_iter().product() })
+        Ok(Scene { held, neighbours, shares })
     }
 
-    /// Price of the surroundings of an element in some pose; without it for `None`.
-    pub(crate) fn price(&self, scene: &Scene<D>, pose: Option<&Pose<D>>, meter: &mut Meter<'_>) -> Result<f64> {
+    /// Price of the surroundings of an element in some pose; without it for `None`. Beyond `limit`, any number larger than that.
+    pub(crate) fn price(
+        &self,
+        scene: &Scene<D>,
+        pose: Option<&Pose<D>>,
+        limit: f64,
+        meter: &mut Meter<'_>,
+    ) -> Result<f64> {
         let mut sum = 0.0;
+        if let Some(pose) = pose {
+            for &o in &scene.neighbours {
+                sum += self.narrow(pose, &self.page.body(o).pose, meter)?;
+                if sum > limit {
+                    return Ok(sum);
+                }
+            }
+        }
         meter.spend(PRICE.1 * scene.held.len() as u64)?;
         for held in &scene.held {
             let own = pose.map_or(f64::INFINITY, |pose| self.page.inks.distance(pose, held.place - pose.centre));
-            let price = Self::price_at(own.min(held.without), held.tolerated);
-            sum += price * scene.measure / held.tolerated.powi(D as i32);
+            sum += Self::price_at(own.min(held.without), held.tolerated) * held.weight;
         }
-        if let Some(shares) = &self.shares {
-            sum += shares.price(&scene.shares, pose.map(ink_of));
+        match &self.shares {
+            Some(shares) if sum <= limit => Ok(sum + shares.price(&scene.shares, pose.map(ink_of))),
+            _ => Ok(sum),
         }
-        let Some(pose) = pose else { return Ok(sum) };
-        for &o in &scene.neighbours {
-            sum += self.narrow(pose, &self.page.body(o).pose, meter)?;
-        }
-        Ok(sum)
     }
 
     /// Price of two elements that come too near each other.
@@ -179,7 +191,7 @@ impl<'a, const D: usize> Work<'a, D> {
     /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
     pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
         let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
-        let scale = self.page.request.fields.frame(a.centre).spacing_scale;
+        let scale = self.page.spacing_scale(a.centre);
         let least = self.natural.gap(x, y) * scale;
         let offset = self.page.domain().offset(a.centre, b.centre);
         if offset.norm() - self.page.inks.radius(a) - self.page.inks.radius(b) >= least {
@@ -196,7 +208,7 @@ impl<'a, const D: usize> Work<'a, D> {
         if !body.alive {
             return Ok(0.0);
         }
-        let scale = self.page.request.fields.frame(body.pose.centre).spacing_scale;
+        let scale = self.page.spacing_scale(body.pose.centre);
         let reach = self.page.inks.radius(&body.pose) + self.natural.widest.max(0.0) * scale;
         let mut most = 0.0_f64;
         for o in self.page.neighbours(body.pose.centre, reach, b) {
@@ -206,6 +218,27 @@ impl<'a, const D: usize> Work<'a, D> {
             }
         }
         Ok(most)
+    }
+
+    /// Price of the whole page.
+    #[cfg(test)]
+    pub(crate) fn total(&self, meter: &mut Meter<'_>) -> Result<f64> {
+        let page = &self.page;
+        let measure: f64 = page.lattice.cell().0.into_iter().product();
+        let price = |cell: &crate::evenness::page::Cell| {
+            let tolerated = f64::from(cell.tolerated);
+            Self::price_at(f64::from(cell.empty()), tolerated) * measure / tolerated.powi(D as i32)
+        };
+        let mut sum: f64 = page.cells.iter().map(price).sum();
+        sum += self.shares.as_ref().map_or(0.0, Shares::total);
+        for b in 0..page.bodies.len() as u32 {
+            let body = page.body(b);
+            let reach = page.inks.radius(&body.pose) + self.natural.widest.max(0.0);
+            for o in page.neighbours(body.pose.centre, reach, b).into_iter().filter(|&o| o > b && body.alive) {
+                sum += self.narrow(&body.pose, &page.body(o).pose, meter)?;
+            }
+        }
+        Ok(sum)
     }
 
     /// Puts an element elsewhere.

@@ -1,5 +1,7 @@
 //! `arabesque measure`: reports as text, JSON and drawing, of good results, spoiled ones, and of what cannot be measured.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 mod common;
 
 use common::{Folder, example, stdout, svg};

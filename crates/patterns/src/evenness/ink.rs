@@ -213,15 +213,15 @@ fn rim(outline: &Outline<2>, step: f64) -> Vec<Vector<2>> {
 /// Places in groups that lie close together.
 fn pieces(mut places: Vec<Vector<2>>) -> Vec<Piece> {
     let mut done = Vec::new();
-    let mut open = vec![0..places.len()];
-    while let Some(range) = open.pop() {
-        let group = &mut places[range.clone()];
+    let mut open = vec![(0, places.len())];
+    while let Some((first, end)) = open.pop() {
+        let group = &mut places[first..end];
         let bounds = Bounds::around(group.iter().copied());
         if group.len() > PIECE {
             let (size, middle) = (bounds.size(), group.len() / 2);
             let k = usize::from(size[1] > size[0]);
             group.sort_by(|a, b| a[k].total_cmp(&b[k]));
-            open.extend([range.start..range.start + middle, range.start + middle..range.end]);
+            open.extend([(first, first + middle), (first + middle, end)]);
         } else if !group.is_empty() {
             let centre = bounds.centre();
             let radius = group.iter().map(|&p| (p - centre).norm()).fold(0.0, f64::max);

@@ -70,13 +70,11 @@ fn item<const D: usize>(source: u32, position: Vector<D>) -> Item<D> {
     Item { source, position, frozen: None }
 }
 
+/// Looks at what is told.
+type Look<'a, const D: usize> = &'a mut dyn FnMut(&[(Item<D>, Matrix<D>)]);
+
 /// What becomes of items on a square page; calls `look` whenever something is told.
-fn evened<const D: usize>(
-    exemplar: &Arc<Exemplar<D>>,
-    items: &[Item<D>],
-    side: f64,
-    look: &mut dyn FnMut(&[(Item<D>, Matrix<D>)]),
-) -> Vec<Item<D>>
+fn evened<const D: usize>(exemplar: &Arc<Exemplar<D>>, items: &[Item<D>], side: f64, look: Look<'_, D>) -> Vec<Item<D>>
 where
     Vector<D>: Dimension<D>,
 {

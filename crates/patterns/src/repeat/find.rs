@@ -114,7 +114,7 @@ pub(crate) fn find_for<T>(
         return Ok(Some(made));
     }
     if exemplar.elements.is_empty() {
-        return match straight::stripes(&lines, &index, budget)? {
+        return match straight::stripes(lines, index, budget)? {
             Some(found) => make(&found),
             None => Ok(None),
         };

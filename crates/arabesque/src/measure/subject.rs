@@ -212,7 +212,8 @@ impl Intent {
             let shape = shape(input, &resources.read_as("--domain", input)?, result, &budget)?;
             return Ok((Domain::Region(Arc::new(shape)), "shape"));
         }
-        let page = Domain::Box(result.exemplar.window);
+        // The whole page, also where what is on it lies in a corner.
+        let page = Domain::Box(result.page.view);
         let Some(fill) = self.fill() else { return Ok((page, "page")) };
         // A recipe is believed as far as it can be: a shape that is gone is no reason not to measure.
         let asked = match &fill.domain {

@@ -1,6 +1,6 @@
 //! How many elements of each class there are, and whether they grow more or fewer from place to place.
 
-use arabesque_core::{Bounds, Domain, Vector};
+use arabesque_core::{Bounds, Domain};
 
 use crate::{
     natural::{Rule, Side},
@@ -23,32 +23,36 @@ struct Counts {
     measure: f64,
 }
 
-fn counts<const D: usize>(scene: &Scene<'_, D>, part: &Bounds<D>, edge: f64) -> Counts {
-    let mut counts = Counts { all: 0.0, of_class: vec![0.0; scene.classes()], measure: 0.0 };
-    let is_counted = |p: Vector<D>| part.contains(p) && scene.domain.signed_distance(p) >= edge;
-    for body in scene.bodies.iter().filter(|b| is_counted(b.centre)) {
-        counts.all += 1.0;
+fn counts<const D: usize>(scene: &Scene<'_, D>, part: &Bounds<D>) -> Counts {
+    let all = scene.domain.bounds();
+    let mut counts =
+        Counts { all: 0.0, of_class: vec![0.0; scene.classes()], measure: measure_of(&scene.domain, part) };
+    for body in &scene.bodies {
+        // Half of what the border cuts has its middle inside; where the middle of a part is that of the whole is not known.
+        let (place, weight) = if body.is_whole { (body.centre, 1.0) } else { (all.clamp(body.centre), 0.5) };
+        if !part.contains(place) || (body.is_whole && !scene.domain.contains(place)) {
+            continue;
+        }
+        counts.all += weight;
         if let Some(count) = counts.of_class.get_mut(body.class) {
-            *count += 1.0;
+            *count += weight;
         }
     }
-    counts.measure = measure_of(&scene.domain, part, edge);
     counts
 }
 
 /// Cells along each side with which the part of a shape in a box is measured.
 const CELLS: [usize; 2] = [160, 32];
 
-/// Area or volume of what lies in a part of a domain, at least `edge` from its border.
-fn measure_of<const D: usize>(domain: &Domain<D>, part: &Bounds<D>, edge: f64) -> f64 {
+/// Area or volume of what lies in a part of a domain.
+fn measure_of<const D: usize>(domain: &Domain<D>, part: &Bounds<D>) -> f64 {
     if let Domain::Box(all) = domain {
-        let inner = all.grown(-edge);
-        let common = Bounds::new(inner.min.zip(part.min, f64::max), inner.max.zip(part.max, f64::min));
+        let common = Bounds::new(all.min.zip(part.min, f64::max), all.max.zip(part.max, f64::min));
         return if common.is_empty() { 0.0 } else { common.measure() };
     }
     let cells = [CELLS[usize::from(D > 2)]; D];
     let all: usize = cells.iter().product();
-    let inside = (0..all).filter(|&k| domain.signed_distance(part.cell_centre(k, &cells)) >= edge).count();
+    let inside = (0..all).filter(|&k| domain.contains(part.cell_centre(k, &cells))).count();
     part.measure() * inside as f64 / all as f64
 }
 
@@ -65,23 +69,17 @@ fn variance(count: f64, fano: f64) -> f64 {
     (fano * count).max(BORDER * count.sqrt()).max(0.25)
 }
 
-/// Compares the numbers of elements. `edge` is how far from the border they are counted: what is cut there has lost its middle.
+/// Compares the numbers of elements.
 pub(crate) fn density<const D: usize>(
     exemplar: &Scene<'_, D>,
     result: &Scene<'_, D>,
 ) -> (Vec<Measure>, Vec<ClassDensity>) {
-    let edge = exemplar.bodies.iter().map(|b| b.radius).fold(0.0, f64::max).min(exemplar.margin).min(result.margin);
-    let (own, found) =
-        (counts(exemplar, &exemplar.domain.bounds(), edge), counts(result, &result.domain.bounds(), edge));
+    let (own, found) = (counts(exemplar, &exemplar.domain.bounds()), counts(result, &result.domain.bounds()));
     if own.all < 4.0 || own.measure <= 0.0 || found.measure <= 0.0 {
         return (Vec::new(), Vec::new());
     }
-    let quarters: Vec<Counts> = exemplar
-        .parts()
-        .iter()
-        .filter(|(_, share)| *share < 0.5)
-        .map(|(part, _)| counts(exemplar, part, edge))
-        .collect();
+    let quarters: Vec<Counts> =
+        exemplar.parts().iter().filter(|(_, share)| *share < 0.5).map(|(part, _)| counts(exemplar, part)).collect();
     let times = found.measure / own.measure;
     // Standard deviation of the ratio of two densities.
     let deviation = |count: f64, fano: f64| {
@@ -104,7 +102,7 @@ pub(crate) fn density<const D: usize>(
         let fano = fano(&quarters.iter().map(|q| q.of_class[k]).collect::<Vec<_>>());
         (fano, DEVIATIONS * deviation(own.of_class[k], fano))
     }));
-    measures.extend(drift(result, edge, of_all));
+    measures.extend(drift(result, of_all));
     let cell = exemplar.spacing.powi(D as i32);
     let classes = (0..exemplar.classes()).map(|k| ClassDensity {
         class: exemplar.content.classes[k].name.clone(),
@@ -144,7 +142,7 @@ fn of_classes<const D: usize>(
 }
 
 /// How much the halves of the result differ in density, the worst way across.
-fn drift<const D: usize>(result: &Scene<'_, D>, edge: f64, fano: f64) -> Option<Measure> {
+fn drift<const D: usize>(result: &Scene<'_, D>, fano: f64) -> Option<Measure> {
     let all = result.domain.bounds();
     let rule = Rule {
         name: "drift of density",
@@ -160,7 +158,7 @@ fn drift<const D: usize>(result: &Scene<'_, D>, edge: f64, fano: f64) -> Option<
             let mut half = all;
             half.min[axis] = all.min[axis] + start * all.size()[axis];
             half.max[axis] = half.min[axis] + 0.5 * all.size()[axis];
-            counts(result, &half, edge)
+            counts(result, &half)
         });
         let [a, b] = &halves;
         if a.all + b.all < 8.0 || a.measure <= 0.0 || b.measure <= 0.0 {

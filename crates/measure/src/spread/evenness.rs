@@ -86,6 +86,18 @@ impl<const D: usize> Field<D> {
         sorted
     }
 
+    /// Share of ink of all that lies in a part, up to the border: ink is seen there as well as elsewhere.
+    fn ink(&self, part: Option<&Bounds<D>>) -> f64 {
+        let (mut all, mut ink) = (0.0, 0.0);
+        for (k, _) in self.depths.iter().enumerate().filter(|(_, depth)| **depth >= 0.0) {
+            if part.is_none_or(|part| part.contains(self.raster.middle(k))) {
+                all += 1.0;
+                ink += f64::from(u8::from(self.raster.ink[k]));
+            }
+        }
+        ink / f64::max(all, 1.0)
+    }
+
     fn figures(&self, part: Option<&Bounds<D>>, spacing: f64) -> Option<Figures> {
         let cells = self.cells(part);
         let sorted = self.sorted(&cells, spacing);
@@ -98,7 +110,7 @@ impl<const D: usize> Field<D> {
         Some(Figures {
             quantiles: QUANTILES.map(|q| quantile(&sorted, q)),
             unevenness: variance.sqrt() / mean.max(1e-9),
-            ink: cells.iter().filter(|&&k| self.raster.ink[k]).count() as f64 / n,
+            ink: self.ink(part),
         })
     }
 }

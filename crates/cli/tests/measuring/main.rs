@@ -1,5 +1,6 @@
 //! `arabesque measure`: reports as text, JSON and drawing, of good results, spoiled ones, and of what cannot be measured.
 
+#[path = "../common/mod.rs"]
 mod common;
 
 use common::{Folder, example, stdout, svg};

@@ -1,5 +1,7 @@
 //! `arabesque measure`: reports as text, JSON and drawing, of good results, spoiled ones, and of what cannot be measured.
 
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking, their helpers too")]
+
 #[path = "../common/mod.rs"]
 mod common;
 

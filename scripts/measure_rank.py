@@ -3,8 +3,8 @@
 
     scripts/measure_rank.py --set FOLDER --judges FOLDER --out FOLDER [--program PATH] [--size 720x720] [name ...]
 
-Of every NAME_exemplar.svg of the set with its NAME_truth.svg, a larger drawing of the same pattern, eight pages are judged: the truth,
-what the program makes of the exemplar, five spoiled versions of the truth, and the exemplar pasted side by side with its seams:
+Of every NAME_exemplar.svg of the set with its NAME_truth.svg, a larger drawing of the same pattern, seven pages are judged: the truth,
+what the program makes of the exemplar, and five spoiled versions:
 
     holes    whatever lies in a few discs is gone            jitter   everything is shifted a little, each its own way
     overlap  one in eight is pushed onto its neighbour       turned   three in ten are turned

@@ -16,7 +16,7 @@
 //! | border | ink along it, elements that it cuts | `spread` |
 //!
 //! The functions are the usual ones of spatial statistics [Illian 2008]. Everything is near-linear in what is drawn and in the cells of
-//! the page, draws on a [`Budget`], and is the same for any number of threads. The result need not know of its exemplar; where it says
+//! the page, draws on a [`Budget`](arabesque_core::Budget), and is the same for any number of threads. The result need not know of its exemplar; where it says
 //! which elements are copies of which, that is believed if the outlines agree.
 //!
 //! Not measured: what lies over what, dashes and gradients, patterns that a field bends (turns and sizes can be left out), and what

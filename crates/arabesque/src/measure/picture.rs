@@ -5,7 +5,7 @@ use arabesque_io::svg::{MarkedPlace, MarkedSheet, PanelLine, write_marked};
 use arabesque_measure::{Family, Fault, Mark, Verdict};
 
 use super::{
-    MeasureReport,
+    report::MeasureReport,
     text::{range, short},
 };
 

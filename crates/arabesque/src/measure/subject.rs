@@ -10,7 +10,6 @@ use arabesque_io::{
     svg::{self, Drawing, LargeFills, Page, ReadOptions, Tiling},
 };
 
-use super::MeasureOptions;
 use crate::{
     exemplar::LoadedExemplar,
     recipe::{Carrier, Fill, Input, Job, Reading, carried_recipe, pixels_per_user},
@@ -204,11 +203,11 @@ impl Intent {
         &self,
         own: &Drawing,
         result: &Drawing,
-        options: &MeasureOptions,
+        asked: Option<&Input>,
         resources: &Resources,
     ) -> Result<(Domain<2>, &'static str)> {
         let budget = resources.budget();
-        if let Some(input) = &options.domain {
+        if let Some(input) = asked {
             let shape = shape(input, &resources.read_as("--domain", input)?, result, &budget)?;
             return Ok((Domain::Region(Arc::new(shape)), "shape"));
         }
@@ -216,12 +215,12 @@ impl Intent {
         let page = Domain::Box(result.page.view);
         let Some(fill) = self.fill() else { return Ok((page, "page")) };
         // A recipe is believed as far as it can be: a shape that is gone is no reason not to measure.
-        let asked = match &fill.domain {
+        let known = match &fill.domain {
             Some(input) => resources.read(input).and_then(|bytes| shape(input, &bytes, result, &budget)).ok(),
             None if fill.size.is_none() && fill.tile.is_none() => own.job.domain.clone(),
             None => None,
         };
-        Ok(asked.map_or((page, "page"), |shape| (Domain::Region(Arc::new(shape)), "shape")))
+        Ok(known.map_or((page, "page"), |shape| (Domain::Region(Arc::new(shape)), "shape")))
     }
 }
 

@@ -3,7 +3,7 @@
 use arabesque_core::rounded;
 use arabesque_measure::{Measure, Verdict};
 
-use super::MeasureReport;
+use super::report::MeasureReport;
 
 impl MeasureReport {
     /// What it is in one line.

@@ -46,7 +46,9 @@ pub(crate) fn tossed(seed: u64, side: f64) -> Vec<Thing> {
     let mut things: Vec<Thing> = Vec::new();
     let mut missed = 0;
     while missed < 3000 {
-        let at = Vector::xy(random.range(0.0, side), random.range(0.0, side));
+        // Beyond the border as well, where nothing would be in the way otherwise.
+        let (low, high) = (-2.0 * CORE, side + 2.0 * CORE);
+        let at = Vector::xy(random.range(low, high), random.range(low, high));
         if things.iter().any(|t| (t.at - at).norm() < CORE) {
             missed += 1;
             continue;
@@ -55,6 +57,7 @@ pub(crate) fn tossed(seed: u64, side: f64) -> Vec<Thing> {
         let class = usize::from(random.unit() < 0.4);
         things.push(Thing { class, at, turn: random.range(-0.12, 0.12) });
     }
+    things.retain(|t| (0..2).all(|k| (0.0..side).contains(&t.at[k])));
     things
 }
 

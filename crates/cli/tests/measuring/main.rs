@@ -1,7 +1,8 @@
 //! `arabesque measure`: reports as text, JSON and drawing, of good results, spoiled ones, and of what cannot be measured.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking, their helpers too")]
 
+#[path = "../common/mod.rs"]
 mod common;
 
 use common::{Folder, example, stdout, svg};

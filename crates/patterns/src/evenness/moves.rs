@@ -13,15 +13,21 @@ use crate::{
 /// A step must lower the price by this much to count.
 const WORTH: f64 = 1e-4;
 
+/// One element more or less must lower it by this much.
+const WORTH_ONE: f64 = 0.02;
+
 /// An element that pays less stays where it is.
 const QUIET: f64 = 8e-3;
 
-/// First step of an element that looks for a better place, in tolerated distances, by how much it is shortened,
-/// and how often.
-const STEPS: (f64, f64, u32) = (0.5, 0.4, 2);
+/// Steps of an element that looks for a better place, in tolerated distances: short ones first, so that it goes no farther than
+/// it must, and at the end what the long ones leave.
+const STEPS: [f64; 4] = [0.12, 0.3, 0.6, 0.15];
+
+/// How far it may go, in tolerated distances.
+const FAR: f64 = 1.0;
 
 /// Steps of one length.
-const TURNS: usize = 4;
+const TURNS: usize = 3;
 
 /// Elements around a place that give way.
 const AROUND: usize = 8;
@@ -65,14 +71,15 @@ where
             return Ok(0.0);
         }
         let unit = self.unit(body.pose.centre);
-        let first = STEPS.0 * unit;
+        let far = FAR * unit;
         let radius = self.page.inks.radius(&body.pose);
-        let scene = self.scene(Some(b), body.pose.centre, (radius, 2.0 * first), meter)?;
-        let start = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
-        if start < QUIET {
+        let scene = self.scene(Some(b), body.pose.centre, (radius, far), meter)?;
+        // Shares of ink alone are as they are in many places of the exemplar.
+        if self.price_of_space(&scene, Some(&body.pose), f64::INFINITY, meter)? < QUIET {
             return Ok(0.0);
         }
-        let (pose, price) = self.descend(&scene, body.pose, start, first, meter)?;
+        let start = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
+        let (pose, price) = self.descend(&scene, body.pose, start, far, meter)?;
         if start - price < WORTH {
             return Ok(0.0);
         }
@@ -86,14 +93,17 @@ where
         scene: &Scene<D>,
         mut pose: Pose<D>,
         mut price: f64,
-        first: f64,
+        far: f64,
         meter: &mut Meter<'_>,
     ) -> Result<(Pose<D>, f64)> {
         let turn = self.turn(&pose);
         let start = pose.centre;
         let mut leading = Vector::ZERO;
-        for n in 0..=STEPS.2 {
-            let step = first * STEPS.1.powi(n as i32);
+        for step in STEPS {
+            let step = step * far;
+            if price < WORTH {
+                break;
+            }
             let mut left = TURNS;
             loop {
                 // What helped last is tried first.
@@ -101,7 +111,7 @@ where
                 let mut better = None;
                 for way in tried {
                     let centre = pose.centre + way * step;
-                    if self.page.domain().offset(start, centre).norm() > 2.0 * first {
+                    if self.page.domain().offset(start, centre).norm() > far {
                         continue;
                     }
                     let moved = self.page.pose(pose.source, centre, &turn);
@@ -204,11 +214,11 @@ where
     /// Elements that could be put into a hole around `p`: their rating, the lower the better, by how much the price would
     /// rise, and where they would lie.
     fn rated(&self, p: Vector<D>, meter: &mut Meter<'_>) -> Result<Vec<(f64, f64, Pose<D>)>> {
-        let first = STEPS.0 * self.unit(p);
+        let far = FAR * self.unit(p);
         let candidates = self.likely(p, meter)?;
         let largest = candidates.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max);
         let largest = largest * self.page.request.fields.frame(p).element_scale;
-        let scene = self.scene(None, p, (largest, 2.0 * first), meter)?;
+        let scene = self.scene(None, p, (largest, far), meter)?;
         let before = self.price(&scene, None, f64::INFINITY, meter)?;
         let mut sorted = Vec::new();
         for source in candidates {
@@ -224,7 +234,7 @@ where
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
         let mut rated = Vec::new();
         for (start, pose) in sorted.into_iter().take(CANDIDATES.1) {
-            let (pose, price) = self.descend(&scene, pose, start, first, meter)?;
+            let (pose, price) = self.descend(&scene, pose, start, far, meter)?;
             if self.admits(&pose) {
                 let rise = price - before;
                 rated.push((rise + AGREEMENT * self.disagreement(&pose, None, meter)?, rise, pose));
@@ -261,7 +271,7 @@ where
                 // It is in the way of others: these may make room.
                 gain += self.give_way(self.page.body(b).pose.centre, meter)?;
             }
-            if gain > WORTH {
+            if gain > WORTH_ONE {
                 self.keep();
                 return Ok(true);
             }
@@ -288,9 +298,9 @@ where
         let class = self.library.class[body.pose.source];
         let members = self.library.members(class);
         let step = members.len().div_ceil(CANDIDATES.0).max(1);
-        let first = STEPS.0 * self.unit(body.pose.centre);
+        let far = FAR * self.unit(body.pose.centre);
         let largest = members.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max) * body.pose.scale;
-        let scene = self.scene(Some(b), body.pose.centre, (largest, 2.0 * first), meter)?;
+        let scene = self.scene(Some(b), body.pose.centre, (largest, far), meter)?;
         let now = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
         let mine = self.disagreement(&body.pose, Some(b), meter)?;
         let mut rated = Vec::new();
@@ -306,7 +316,7 @@ where
         }
         rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
         for (start, pose) in rated.into_iter().take(CANDIDATES.1) {
-            let (pose, price) = self.descend(&scene, pose, start, first, meter)?;
+            let (pose, price) = self.descend(&scene, pose, start, far, meter)?;
             let worse = self.disagreement(&pose, Some(b), meter)? - mine;
             if now - price > WORTH + AGREEMENT * worse.max(0.0) && self.admits(&pose) {
                 self.change(b, pose, meter)?;
@@ -332,7 +342,7 @@ where
             - self.price(&scene, None, f64::INFINITY, meter)?;
         self.remove(b, meter)?;
         gain += self.give_way(body.pose.centre, meter)?;
-        if gain > WORTH {
+        if gain > WORTH_ONE {
             self.keep();
             return Ok(true);
         }

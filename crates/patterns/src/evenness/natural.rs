@@ -30,7 +30,13 @@ const NARROWEST: f64 = 0.01;
 const COMMON: f64 = 0.03;
 
 /// Up to so many kinds there is an entry for every two of them.
-const TABLE: usize = 512;
+const TABLE: usize = 128;
+
+/// Directions that are told apart in the plane.
+const SECTORS: usize = 8;
+
+/// Share of the gaps in all directions that are narrower than what counts as the narrowest in one that is hardly seen.
+const ANYWHERE: f64 = 0.1;
 
 /// So many pairs tell how near two kinds come.
 const MANY: usize = 8;
@@ -43,7 +49,7 @@ const PRICE: (u64, u64) = (10, 1500);
 pub(crate) struct Natural {
     /// Distance from ink that most places keep below.
     pub(crate) tolerated: f64,
-    /// Narrowest gap between elements of two kinds, the lower number first; where they are seen beside each other.
+    /// Narrowest gap between elements of two kinds, by direction.
     narrowest: Vec<f32>,
     /// Number of kinds; 0 where there are too many for a table.
     kinds: usize,
@@ -74,33 +80,88 @@ impl Natural {
         }
         distances.sort_by(f64::total_cmp);
         let quantile = |q: f64| distances[((distances.len() - 1) as f64 * q) as usize];
-        let gaps = shown.gaps(budget)?;
-        let mut all: Vec<f64> = gaps.values().flatten().copied().collect();
-        all.sort_by(f64::total_cmp);
         let tolerated = quantile(TOLERATED);
-        let low = |sorted: &[f64], share: f64| sorted.get((sorted.len() as f64 * share) as usize).copied();
+        let gaps = shown.gaps(budget)?;
+        let mut all: Vec<f64> = gaps.iter().map(|seen| seen.gap).collect();
+        all.sort_by(f64::total_cmp);
         let otherwise = low(&all, COMMON).unwrap_or(0.0).min(tolerated);
-        // A few pairs are hardly ever the nearest that there could be.
-        let of_kinds = |gaps: &Vec<f64>| {
-            let least = low(gaps, NARROWEST)?;
-            Some(if gaps.len() < MANY { least.min(otherwise) } else { least.min(tolerated) })
-        };
         let kinds = if library.classes() <= TABLE { library.classes() } else { 0 };
-        let mut narrowest = vec![otherwise as f32; kinds * kinds];
-        for (&(a, b), gaps) in gaps.iter().filter(|_| kinds > 0) {
-            let (a, b) = (a as usize, b as usize);
-            if let Some(gap) = of_kinds(gaps) {
-                (narrowest[a * kinds + b], narrowest[b * kinds + a]) = (gap as f32, gap as f32);
-            }
-        }
+        let narrowest = narrowest(&gaps, kinds, otherwise, tolerated);
         let widest = narrowest.iter().map(|&gap| f64::from(gap)).fold(otherwise, f64::max);
         Ok(Some(Self { tolerated, narrowest, kinds, otherwise, widest }))
     }
 
-    /// Narrowest gap between elements of two kinds.
-    pub(crate) fn gap(&self, a: u32, b: u32) -> f64 {
-        self.narrowest.get(a as usize * self.kinds + b as usize).map_or(self.otherwise, |&gap| f64::from(gap))
+    /// Narrowest gap between elements of two kinds, the second at `offset` from the first in exemplar directions.
+    #[inline]
+    pub(crate) fn gap<const D: usize>(&self, a: u32, b: u32, offset: Vector<D>) -> f64 {
+        let place = (a as usize * self.kinds + b as usize) * SECTORS + sector(offset);
+        self.narrowest.get(place).map_or(self.otherwise, |&gap| f64::from(gap))
     }
+}
+
+/// Two elements that stand beside each other.
+struct Seen<const D: usize> {
+    kinds: [u32; 2],
+    /// From the first to the second.
+    offset: Vector<D>,
+    gap: f64,
+}
+
+/// The direction of an offset, as one of [`SECTORS`]; in space there is but one.
+#[inline]
+fn sector<const D: usize>(offset: Vector<D>) -> usize {
+    if D != 2 {
+        return 0;
+    }
+    // Eight sectors by signs and by which coordinate is larger, in the order in which they follow each other around.
+    let (x, y) = (offset.0[0], offset.0[1]);
+    match (x >= 0.0, y >= 0.0, x.abs() >= y.abs()) {
+        (true, true, true) => 0,
+        (true, true, false) => 1,
+        (false, true, false) => 2,
+        (false, true, true) => 3,
+        (false, false, true) => 4,
+        (false, false, false) => 5,
+        (true, false, false) => 6,
+        (true, false, true) => 7,
+    }
+}
+
+/// The value below which a share of some lies, ascending.
+fn low(sorted: &[f64], share: f64) -> Option<f64> {
+    sorted.get((sorted.len() as f64 * share) as usize).copied()
+}
+
+/// For every two kinds and every sector, the narrowest gap.
+///
+/// Long elements that touch with their tips lie farther apart side by side. So gaps are told apart by direction; where too few
+/// are seen in one and in those beside it, those in all directions tell, and of these not the narrowest.
+fn narrowest<const D: usize>(gaps: &[Seen<D>], kinds: usize, otherwise: f64, most: f64) -> Vec<f32> {
+    let mut table = vec![otherwise as f32; kinds * kinds * SECTORS];
+    let mut seen = BTreeMap::<[u32; 2], Vec<(usize, f64)>>::new();
+    for Seen { kinds: [a, b], offset, gap } in gaps.iter().filter(|_| kinds > 0) {
+        seen.entry([*a, *b]).or_default().push((sector(*offset), *gap));
+        seen.entry([*b, *a]).or_default().push((sector(-*offset), *gap));
+    }
+    for ([a, b], mut pairs) in seen {
+        pairs.sort_by(|x, y| x.1.total_cmp(&y.1));
+        let all: Vec<f64> = pairs.iter().map(|pair| pair.1).collect();
+        for s in 0..SECTORS {
+            let is_beside =
+                |other: usize| matches!((other + SECTORS - s) % SECTORS, 0 | 1) || (s + SECTORS - other) % SECTORS == 1;
+            let beside: Vec<f64> = pairs.iter().filter(|pair| D != 2 || is_beside(pair.0)).map(|pair| pair.1).collect();
+            let gap = if beside.len() >= MANY {
+                low(&beside, NARROWEST)
+            } else if all.len() >= 2 * MANY {
+                low(&all, ANYWHERE)
+            } else {
+                low(&all, 0.0).map(|least| least.min(otherwise))
+            };
+            let place = (a as usize * kinds + b as usize) * SECTORS + s;
+            table[place] = gap.unwrap_or(otherwise).min(most) as f32;
+        }
+    }
+    table
 }
 
 /// The exemplar as it is seen.
@@ -162,8 +223,8 @@ impl<'a, const D: usize> Shown<'a, D> {
         Ok(found.into_iter().flatten().collect())
     }
 
-    /// Gaps between neighbouring elements by their kinds, ascending.
-    fn gaps(&self, budget: &Budget) -> Result<BTreeMap<(u32, u32), Vec<f64>>> {
+    /// Gaps between neighbouring elements.
+    fn gaps(&self, budget: &Budget) -> Result<Vec<Seen<D>>> {
         let enough = self.library.spacing;
         let of = |a: &Pose<D>| {
             let mut found = Vec::new();
@@ -173,8 +234,8 @@ impl<'a, const D: usize> Shown<'a, D> {
                 if b.source > a.source {
                     let gap = self.inks.gap(a, b, offset, enough);
                     if gap <= enough {
-                        let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
-                        found.push(((x.min(y), x.max(y)), gap));
+                        let kinds = [a, b].map(|pose| self.library.class[pose.source]);
+                        found.push(Seen { kinds, offset, gap });
                     }
                 }
             });
@@ -182,9 +243,6 @@ impl<'a, const D: usize> Shown<'a, D> {
             Ok(found)
         };
         let found: Vec<Vec<_>> = self.poses.par_iter().map(of).collect::<Result<_>>()?;
-        let mut gaps = BTreeMap::<_, Vec<f64>>::new();
-        found.into_iter().flatten().for_each(|(kinds, gap)| gaps.entry(kinds).or_default().push(gap));
-        gaps.values_mut().for_each(|list| list.sort_by(f64::total_cmp));
-        Ok(gaps)
+        Ok(found.into_iter().flatten().collect())
     }
 }

@@ -17,6 +17,9 @@ const CELLS: (f64, f64, usize) = (5.0, 3.0, 1 << 24);
 /// Lists of elements by place: so many mean spacings across, and most of them.
 const LISTS: (f64, usize) = (1.5, 1 << 22);
 
+/// What lies beyond the border counts as ink at this distance from it, in tolerated ones: there may be some, or none.
+const BORDER: f64 = 0.5;
+
 /// No element.
 pub(crate) const NOBODY: u32 = u32::MAX;
 
@@ -148,8 +151,10 @@ where
     let reach = measures.reach as f32;
     let depth = extent.room(p);
     let scale = extent.request().fields.frame(p).spacing_scale;
-    let tolerated = if depth > 0.0 { (measures.tolerated * scale) as f32 } else { f32::INFINITY };
-    Cell { near: [NOBODY; 2], distance: [reach; 2], still: (depth as f32).clamp(0.0, reach), tolerated }
+    let local = measures.tolerated * scale;
+    let tolerated = if depth > 0.0 { local as f32 } else { f32::INFINITY };
+    let still = if depth > 0.0 { (depth + BORDER * local) as f32 } else { 0.0 };
+    Cell { near: [NOBODY; 2], distance: [reach; 2], still: still.min(reach), tolerated }
 }
 
 impl<const D: usize> Page<'_, D> {
@@ -169,6 +174,11 @@ impl<const D: usize> Page<'_, D> {
         }
         let frame = self.request.fields.frame(centre);
         Pose { source, centre, rotation: frame.rotation.compose(turn), scale: frame.element_scale }
+    }
+
+    /// An offset at `p` in exemplar directions.
+    pub(crate) fn unturned(&self, p: Vector<D>, offset: Vector<D>) -> Vector<D> {
+        if self.is_neutral { offset } else { self.request.fields.frame(p).rotation.transpose().apply(offset) }
     }
 
     /// By how much gaps are wider at `p` than in the exemplar.

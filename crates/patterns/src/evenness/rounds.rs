@@ -44,12 +44,14 @@ where
     let mut rounds = Rounds { work, tell, handled: 0 };
     for round in 1..=ROUNDS as u32 {
         rounds.work.now = round + 1;
-        rounds.relax(&mut meter)?;
-        let moves =
-            rounds.clumps(round, &mut meter)? + rounds.holes(round, &mut meter)? + rounds.shares(round, &mut meter)?;
+        // What would draw in the elements around a hole leaves fewer of them than there should be: holes come first.
+        let mut moves = rounds.holes(round, &mut meter)?;
+        moves += rounds.clumps(round, &mut meter)?;
+        moves += rounds.shares(round, &mut meter)?;
         if moves == 0 {
-            return Ok(());
+            break;
         }
+        rounds.relax(&mut meter)?;
     }
     rounds.relax(&mut meter)
 }
@@ -106,10 +108,14 @@ where
                 continue;
             }
             let p = self.work.page.body(b).pose.centre;
-            let mut helped = self.work.give_way(p, meter)? > 0.0;
-            self.work.keep();
-            if self.work.worst(b, meter)? > NEAR {
-                helped |= self.work.exchange(p, 1, meter)? || self.work.thin(b, meter)?;
+            let work = &mut *self.work;
+            let mut helped = work.is_surplus(b) && work.thin(b, meter)?;
+            if !helped {
+                helped = work.give_way(p, meter)? > 0.0;
+                work.keep();
+            }
+            if work.worst(b, meter)? > NEAR {
+                helped |= work.exchange(p, 1, meter)? || work.thin(b, meter)?;
             }
             moves += usize::from(helped);
             self.handled()?;

@@ -9,7 +9,7 @@ use arabesque_core::{Budget, Lattice, Meter, Numbered, Result, Vector};
 use crate::{border::Extent, dimension::Dimension, exemplar::library::Library};
 
 /// Radius of the kernel, in spacings of the ink.
-const RADIUS: f64 = 2.4;
+const RADIUS: f64 = 1.8;
 
 /// Cells to a radius of the kernel, and most cells of a page.
 const CELLS: (f64, usize) = (2.5, 1 << 20);
@@ -18,7 +18,7 @@ const CELLS: (f64, usize) = (2.5, 1 << 20);
 const INSIDE: f64 = 0.55;
 
 /// Deviations that cost nothing.
-const NATURAL: f64 = 1.4;
+const NATURAL: f64 = 1.5;
 
 /// Price of a place that is off by one deviation more.
 const PRICE: f64 = 0.04;

@@ -162,6 +162,21 @@ impl<'a, const D: usize> Work<'a, D> {
         limit: f64,
         meter: &mut Meter<'_>,
     ) -> Result<f64> {
+        let sum = self.price_of_space(scene, pose, limit, meter)?;
+        Ok(match &self.shares {
+            Some(shares) if sum <= limit => sum + shares.price(&scene.shares, pose.map(ink_of)),
+            _ => sum,
+        })
+    }
+
+    /// The same without the shares of ink.
+    pub(crate) fn price_of_space(
+        &self,
+        scene: &Scene<D>,
+        pose: Option<&Pose<D>>,
+        limit: f64,
+        meter: &mut Meter<'_>,
+    ) -> Result<f64> {
         let mut sum = 0.0;
         if let Some(pose) = pose {
             for &o in &scene.neighbours {
@@ -176,10 +191,7 @@ impl<'a, const D: usize> Work<'a, D> {
             let own = pose.map_or(f64::INFINITY, |pose| self.page.inks.distance(pose, held.place - pose.centre));
             sum += Self::price_at(own.min(held.without), held.tolerated) * held.weight;
         }
-        match &self.shares {
-            Some(shares) if sum <= limit => Ok(sum + shares.price(&scene.shares, pose.map(ink_of))),
-            _ => Ok(sum),
-        }
+        Ok(sum)
     }
 
     /// Price of two elements that come too near each other.
@@ -192,14 +204,20 @@ impl<'a, const D: usize> Work<'a, D> {
     pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
         let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
         let scale = self.page.spacing_scale(a.centre);
-        let least = self.natural.gap(x, y) * scale;
         let offset = self.page.domain().offset(a.centre, b.centre);
+        let least = self.natural.gap(x, y, self.page.unturned(a.centre, offset)) * scale;
         if offset.norm() - self.page.inks.radius(a) - self.page.inks.radius(b) >= least {
             return Ok(0.0);
         }
         meter.spend(PAIR)?;
         let gap = self.page.inks.gap(a, b, offset, least);
         Ok(((least - gap) / (self.natural.tolerated * scale)).max(0.0))
+    }
+
+    /// Whether there are more of the class of an element than there should be.
+    pub(crate) fn is_surplus(&self, b: u32) -> bool {
+        let class = self.library.class[self.page.body(b).pose.source];
+        self.counts[class] > self.targets[class] + 0.5
     }
 
     /// The most that is missing of a gap around an element.

@@ -87,7 +87,7 @@ fn evened_by<const D: usize>(
     exemplar: &Arc<Exemplar<D>>,
     items: &[Item<D>],
     side: f64,
-    look: &mut dyn FnMut(&[(Item<D>, Matrix<D>)]),
+    look: Look<'_, D>,
 ) -> Vec<Item<D>>
 where
     Vector<D>: Dimension<D>,

@@ -45,7 +45,7 @@ fn inspect_counts_curves_by_style() {
     let folder = folder();
     let text = stdout(&folder.ok("inspect net.svg -o net.png"));
     assert!(text.contains("curves: 10") && !text.contains("elements:"), "{text}");
-    assert!(text.contains("style warp: 5 curves (0 closed)") && text.contains("length 500.00, width 1.5"), "{text}");
+    assert!(text.contains("style warp: 5 curves (0 closed)") && text.contains("length 500, width 1.5"), "{text}");
     let value: serde_json::Value = serde_json::from_str(&stdout(&folder.ok("inspect net.svg --json"))).unwrap();
     assert_eq!((&value["curves"], &value["styles"][1]["name"]), (&10.into(), &"weft".into()));
     let picture = folder.read("net.png");

@@ -143,13 +143,13 @@ fn print(report: &Report) -> Result<(), Failure> {
         let diameter =
             if class.diameter > 0.0 { format!(", diameter {}", rounded(class.diameter)) } else { String::new() };
         let s = if class.elements == 1 { "" } else { "s" };
-        writeln!(out, "  class {}: {} element{s}{diameter}", class.name, class.elements)?;
+        writeln!(out, "  {}: {} element{s}{diameter}", called("class", &class.name), class.elements)?;
     }
     for style in &report.styles {
         writeln!(
             out,
-            "  style {}: {} curve{} ({} closed), {} end{} inside the frame, length {}, width {}",
-            style.name,
+            "  {}: {} curve{} ({} closed), {} end{} inside the frame, length {}, width {}",
+            called("style", &style.name),
             style.curves,
             if style.curves == 1 { "" } else { "s" },
             style.closed,
@@ -164,4 +164,9 @@ fn print(report: &Report) -> Result<(), Failure> {
     }
     out.flush()?;
     Ok(())
+}
+
+/// A name with the word for what it names, which nameless ones have already.
+fn called(word: &str, name: &str) -> String {
+    if name.starts_with(word) { name.to_owned() } else { format!("{word} {name}") }
 }

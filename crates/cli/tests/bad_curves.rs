@@ -111,10 +111,28 @@ fn coincident_points_and_overlaps_change_nothing() {
     let repeated = rows(|y| format!("M0 {y}L0 {y}L50 {y}L50 {y}L50 {y}L100 {y}L100 {y}"));
     let doubled_back = rows(|y| format!("M0 {y}H60H20H100"));
     let minced = rows(|y| (1..=4000).fold(format!("M0 {y}"), |d, k| d + &format!("L{} {y}", f64::from(k) * 0.025)));
-    for (name, body) in [("coincident points", repeated), ("doubled back", doubled_back), ("tiny segments", minced)] {
+    for (name, body) in [("coincident points", repeated), ("tiny segments", minced)] {
         let (told, paths) = filled(&(columns() + &body), "");
         assert!(!told.contains("warning"), "{name}: {told}");
         assert_net(name, &paths);
+    }
+    let (told, paths) = filled(&(columns() + &doubled_back), "");
+    assert!(!told.contains("warning"), "{told}");
+    assert_covered(&paths);
+}
+
+/// Whether the rows of the net 20 apart go from side to side, in whatever pieces they are drawn.
+fn assert_covered(paths: &[String]) {
+    let pieces: Vec<[f64; 4]> = paths
+        .iter()
+        .flat_map(|data| {
+            let places = numbers(data);
+            places.windows(4).step_by(2).map(|p| [p[0], p[1], p[2], p[3]]).collect::<Vec<_>>()
+        })
+        .collect();
+    for (row, x) in (0..5).flat_map(|row| (1..140).map(move |x| (f64::from(row) * 20.0 + 10.0, f64::from(x)))) {
+        let covers = |p: &[f64; 4]| p[1] == row && p[3] == row && p[0].min(p[2]) <= x && x <= p[0].max(p[2]);
+        assert!(pieces.iter().any(covers), "nothing at {x} {row}: {paths:#?}");
     }
 }
 
@@ -276,7 +294,7 @@ fn regions_that_touch_nothing_are_named() {
         (3, "--redo 200,20,80,60", "net.svg: region 200,20,80,60: nothing of the drawing lies in or around the region"),
         (3, "--redo #void", "net.svg: region #void: nothing of the drawing lies in or around the region"),
         (3, "--redo #other", "nothing visible has the id \"other\"; use one of its ids, such as void"),
-        (4, "--redo 12,12,6,6", "net.svg: region 12,12,6,6: the domain"),
+        (4, "--redo 12,12,6,6 --set repeat=off", "net.svg: region 12,12,6,6: the domain"),
         (3, "--redo 0,0,100,100", "leaves too little of the drawing to be the example"),
         (3, "--from 0,0,50,50 --to 500,0,50,50", "net.svg: region 500,0,50,50: the region lies off the page"),
         (3, "--from 500,0,50,50 --to 0,0,50,50", "net.svg: region 500,0,50,50: the region to copy from lies off"),

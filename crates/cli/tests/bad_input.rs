@@ -99,7 +99,8 @@ fn domains_that_cannot_be_filled() {
     for line in ["fill leaves.svg --size 2x2 -o a.svg", "fill leaves.svg --size 1e-300x1e-300 -o a.svg"] {
         assert!(folder.fails(4, line).contains("smaller than one element"), "{line}");
     }
-    assert!(folder.fails(4, "fill leaves.svg --tile 1e-4x1e8 -o a.svg").contains("wide"));
+    assert!(folder.fails(4, "fill leaves.svg --tile 1e-4x1e8 -o a.svg").contains("smaller than the cell"));
+    assert!(folder.fails(4, "fill leaves.svg --tile 1e-4x1e8 --set repeat=off -o a.svg").contains("wide"));
     assert!(folder.fails(3, "fill leaves.svg --size 1e8x1e8 -o a.svg").contains("limit"));
     folder.write("all.svg", svg("80", "80", "0 0 80 80", "<rect x=\"-10\" y=\"-10\" width=\"200\" height=\"200\"/>"));
     assert!(folder.fails(4, "fill leaves.svg --size 80x80 --avoid all.svg -o a.svg").contains("whole domain"));

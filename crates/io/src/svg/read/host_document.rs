@@ -270,8 +270,11 @@ mod tests {
     #[test]
     fn what_a_group_would_move_goes_to_the_end() {
         let line = "<path d='M0 40H100' stroke='red' stroke-width='3' fill='none'/>";
-        let rest = rest(&format!("<g transform='translate(0 10)'>{line}</g>{}", line.replace("40", "5"))).unwrap();
-        assert_eq!((rest.head.matches("<path").count(), rest.moved.matches("<path").count()), (1, 2));
+        let [high, low] = ["5", "75"].map(|y| line.replace("40", y));
+        let layer =
+            "<g xmlns:i='http://www.inkscape.org/namespaces/inkscape' i:groupmode='layer' transform='translate(0 10)'>";
+        let rest = rest(&format!("{layer}{line}{low}</g>{high}")).unwrap();
+        assert_eq!((rest.head.matches("<path").count(), rest.moved.matches("<path").count()), (2, 2));
         // What stays can have something drawn before or after it, unless a group moves it.
         let texts: Vec<&str> = rest.anchors.iter().map(|a| &rest.head[a.range.clone()]).collect();
         assert!(texts.len() == 1 && texts[0].starts_with("<path d='M0 5H100'"), "{texts:?}");

@@ -169,7 +169,7 @@ fn number(out: &mut String, at: Vector<2>, colour: &str, number: usize) {
 /// A line of the panel as lines that fit, the dot at the first.
 fn wrapped(line: &PanelLine) -> Vec<(Option<&PanelLine>, String)> {
     let mut lines: Vec<String> = vec![String::new()];
-    for word in line.text.split(' ') {
+    for word in line.text.split_whitespace() {
         let last = lines.len() - 1;
         if !lines[last].is_empty() && lines[last].chars().count() + word.chars().count() >= LETTERS {
             lines.push(word.to_owned());

@@ -117,7 +117,7 @@ where
 
     fn shares<'s>(
         &'s self,
-        state: &State<'_, D>,
+        state: &State<'s, D>,
         bodies: &[Body<D>],
         moves: Moves,
         budget: &Budget,

@@ -14,7 +14,7 @@ use crate::{
 const WORTH: f64 = 1e-4;
 
 /// One element more or less must lower it by this much.
-const WORTH_ONE: f64 = 0.02;
+const WORTH_ONE: f64 = 0.04;
 
 /// An element that pays less stays where it is.
 const QUIET: f64 = 8e-3;

@@ -21,7 +21,7 @@ const NEXT: usize = 10;
 const HOLE: f64 = 1.05;
 
 /// Shares of ink are worked on that are off by so many deviations more than what is natural.
-const OFF: f64 = 0.5;
+const OFF: f64 = 0.3;
 
 /// Elements are too near each other when so much is missing, in tolerated distances.
 const NEAR: f64 = 0.02;
@@ -165,7 +165,7 @@ where
             }
             if !helped && excess > 0.0 {
                 for b in work.group(p, 5) {
-                    helped = helped || work.thin(b, meter)?;
+                    helped = helped || (work.is_surplus(b) && work.thin(b, meter)?);
                 }
             }
             moves += usize::from(helped);

@@ -4,7 +4,7 @@
 //! that dots between leaves make it no narrower. A place costs something when its share is off by more than it often is in
 //! the exemplar.
 
-use arabesque_core::{Budget, Lattice, Meter, Numbered, Result, Vector};
+use arabesque_core::{Budget, Domain, Lattice, Meter, Numbered, Result, Vector};
 
 use crate::{border::Extent, dimension::Dimension, exemplar::library::Library};
 
@@ -15,13 +15,13 @@ const RADIUS: f64 = 1.8;
 const CELLS: (f64, usize) = (2.5, 1 << 20);
 
 /// Places whose kernel lies inside by less than this share tell nothing.
-const INSIDE: f64 = 0.55;
+const INSIDE: f64 = 0.75;
 
 /// Deviations that cost nothing.
-const NATURAL: f64 = 1.5;
+const NATURAL: f64 = 1.8;
 
 /// Price of a place that is off by one deviation more.
-const PRICE: f64 = 0.04;
+const PRICE: f64 = 0.03;
 
 /// Nanoseconds for an element and a cell.
 const WORK: u64 = 4;
@@ -103,11 +103,14 @@ struct Place {
     radius: f64,
     /// From ink to deviations; 0 where it tells nothing.
     scale: f64,
+    /// What is usual, in deviations.
+    usual: f64,
 }
 
 /// The share of ink over a page.
 pub(crate) struct Shares<'a, const D: usize> {
     spread: &'a Spread,
+    domain: &'a Domain<D>,
     lattice: Lattice<D>,
     places: Vec<Place>,
     /// Radius of the widest kernel.
@@ -125,7 +128,7 @@ where
     Vector<D>: Dimension<D>,
 {
     /// An empty page.
-    pub(crate) fn new(spread: &'a Spread, extent: &Extent<'_, D>, budget: &Budget) -> Result<Self> {
+    pub(crate) fn new(spread: &'a Spread, extent: &Extent<'a, D>, budget: &Budget) -> Result<Self> {
         let request = extent.request();
         let bounds = request.domain.bounds();
         let step = spread.radius * extent.smallest_spacing_scale / CELLS.0;
@@ -149,19 +152,27 @@ where
             meter.spend(WORK * looked)?;
             let usual = spread.mean * (frame.element_scale / frame.spacing_scale).powi(D as i32);
             let tells = is_inside[c] && inside > INSIDE;
-            let scale = if tells { 1.0 / (usual * inside * spread.deviation) } else { 0.0 };
-            places.push(Place { ink: 0.0, radius, scale });
+            // Of a kernel that is cut off, the share depends on where the cut happens to be.
+            let trust = inside.min(1.0).powi(4);
+            let scale = if tells { trust / (usual * inside * spread.deviation) } else { 0.0 };
+            let offset = trust / spread.deviation;
+            places.push(Place { ink: 0.0, radius, scale, usual: offset });
         }
         let widest = spread.radius * extent.largest_spacing_scale;
         let price = PRICE * (spread.radius / RADIUS * extent.smallest_spacing_scale).powi(-(D as i32)) * measure;
-        Ok(Self { spread, lattice, places, widest, price })
+        Ok(Self { spread, domain: &request.domain, lattice, places, widest, price })
     }
 }
 
 impl<const D: usize> Shares<'_, D> {
+    /// Ink of an element; only what lies inside counts, as only places inside do.
+    fn mass(&self, (source, scale): (u32, f64), centre: Vector<D>) -> f64 {
+        if self.domain.contains(centre) { self.spread.mass[source] * scale.powi(D as i32) } else { 0.0 }
+    }
+
     /// Adds an element, or takes one away with `sign` -1.
     pub(crate) fn count(&mut self, (source, scale): (u32, f64), centre: Vector<D>, sign: f64) {
-        let mass = sign * self.spread.mass[source] * scale.powi(D as i32);
+        let mass = sign * self.mass((source, scale), centre);
         let (places, lattice) = (&mut self.places, &self.lattice);
         lattice.around(centre, self.widest, |c, at| {
             let place = &mut places[c];
@@ -185,7 +196,7 @@ impl<const D: usize> Shares<'_, D> {
             }
             let p = self.lattice.centre_at(at);
             if let Some(((source, scale), own)) = without {
-                let mass = self.spread.mass[source] * scale.powi(D as i32);
+                let mass = self.mass((source, scale), own);
                 place.ink -= mass * kernel::<D>((p - own).norm2(), place.radius);
             }
             found.push((p, place));
@@ -196,9 +207,8 @@ impl<const D: usize> Shares<'_, D> {
 
     /// Price of these places with an element among them.
     pub(crate) fn price(&self, around: &Around<D>, element: Option<((u32, f64), Vector<D>)>) -> f64 {
-        let (mass, centre) = element.map_or((0.0, Vector::ZERO), |((source, scale), centre)| {
-            (self.spread.mass[source] * scale.powi(D as i32), centre)
-        });
+        let (mass, centre) = element
+            .map_or((0.0, Vector::ZERO), |((source, scale), centre)| (self.mass((source, scale), centre), centre));
         let mut sum = 0.0;
         for (p, place) in &around.0 {
             let ink = place.ink + mass * kernel::<D>((*p - centre).norm2(), place.radius);
@@ -218,7 +228,7 @@ impl<const D: usize> Shares<'_, D> {
         if place.scale <= 0.0 {
             return 0.0;
         }
-        let off = ink * place.scale - 1.0 / self.spread.deviation;
+        let off = ink * place.scale - place.usual;
         (off.abs() - NATURAL).max(0.0)
     }
 
@@ -226,7 +236,7 @@ impl<const D: usize> Shares<'_, D> {
     pub(crate) fn off(&self) -> Vec<(f64, Vector<D>)> {
         let off = |(c, place): (usize, &Place)| {
             let excess = self.excess(place.ink, place);
-            let is_thin = place.ink * place.scale < 1.0 / self.spread.deviation;
+            let is_thin = place.ink * place.scale < place.usual;
             (excess > 0.0).then(|| (if is_thin { -excess } else { excess }, self.lattice.centre(c)))
         };
         let mut found: Vec<_> = self.places.iter().enumerate().filter_map(off).collect();

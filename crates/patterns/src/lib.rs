@@ -15,12 +15,13 @@
 //! | assign attributes | `optimise`: `attributes` | [Ma 2011 eq. 5] |
 //! | assign existence | `optimise`: `existence`, `targets` | [Tu 2020 §4.3.4, appendix A] |
 //! | assign edges and tangents, draw strokes | `curves` | [Tu 2020 §4.3.4, §4.4.2] |
+//! | even out holes and clumps | `evenness` | after [Roveri 2015 §4] |
 //! | place | `finish` | [Ma 2011 §3.1], [Schaefer 2006] |
 //!
 //! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly.
 //!
 //! Everything knows only what stands above it in this list: `exemplar` (worked out once), `output` (what is made, in
-//! the state it is in), then the steps of `layout`, `optimise`, `curves` and `finish`, which do not know one another,
+//! the state it is in), then the steps of `layout`, `optimise`, `curves`, `evenness` and `finish`, which do not know one another,
 //! and `run`, which calls them.
 //!
 //! | symbol | identifier |
@@ -36,7 +37,7 @@
 //! Where it departs from the papers, each departure measured to be better and switchable by [`Params`]: patches are
 //! laid out in register with what is there and prefer not to go on copying; missing elements cost as much as surplus
 //! ones; numbers of elements are kept near those of the exemplar; holes larger than any in the exemplar are laid out
-//! anew; a start in disorder keeps its largest part in order and is grown anew around it; strokes that cross or run
+//! anew; the space between outlines is compared as well, and evened out; a start in disorder keeps its largest part in order and is grown anew around it; strokes that cross or run
 //! side by side as the exemplar's never do are taken apart; overlaps are mended on the real outlines.
 //!
 //! Not handled: interleaved physics; anything outside two and three dimensions.

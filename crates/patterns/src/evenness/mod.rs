@@ -97,6 +97,7 @@ where
         let bodies: Vec<_> = numbers.iter().map(|&i| body(state, i)).collect();
         let shares = self.shares(state, &bodies, moves, &budget)?;
         let page = self.page(state, bodies, &budget)?;
+        let targets = wanted(state.library, page.room(self.natural.tolerated), targets);
         let known = (&self.natural, state.library);
         let mut work = Work::new((page, shares), known, state.extent, (counts(state), targets), moves);
         let ended = rounds::run(&mut work, &budget, &mut |bodies| tell(&items(state, &numbers, bodies)));
@@ -206,13 +207,22 @@ where
     if masses.iter().any(|m| *m > 0.0) { masses } else { Numbered::filled(1.0, count) }
 }
 
-/// Living items of each class, as they are counted against the targets.
+/// Living elements of each class whose centre lies inside.
 fn counts<const D: usize>(state: &State<'_, D>) -> Numbered<f64> {
     let mut counts = Numbered::filled(0.0, state.library.classes());
     for live in state.items().iter().filter(|live| live.alive) {
-        if live.item.frozen.is_none() || state.domain().contains(live.item.position) {
+        if state.domain().contains(live.item.position) {
             counts[state.library.class[live.item.source]] += 1.0;
         }
     }
     counts
+}
+
+/// Elements of each class that should have their centre inside: as many as the exemplar has for the room that there is. No more than
+/// `most`, which knows how many keep to the rule of the border.
+fn wanted<const D: usize>(library: &Library<D>, room: f64, most: &Numbered<f64>) -> Numbered<f64> {
+    let shown =
+        |class: u32| library.members(class).iter().filter(|&&e| library.view.contains(library.centre[e])).count();
+    let wanted = |class: u32| (shown(class) as f64 * room / library.view.measure()).min(most[class]);
+    (0..library.classes() as u32).map(wanted).collect()
 }

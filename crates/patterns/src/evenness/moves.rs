@@ -49,7 +49,7 @@ const SAME: f64 = 0.03;
 const AGREEMENT: f64 = 0.15;
 
 /// Numbers of elements of a class stay within this share of what they should be.
-const COUNT: f64 = 0.02;
+const COUNT: f64 = 0.01;
 
 impl<const D: usize> Work<'_, D>
 where

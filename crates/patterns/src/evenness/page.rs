@@ -176,6 +176,13 @@ impl<const D: usize> Page<'_, D> {
         Pose { source, centre, rotation: frame.rotation.compose(turn), scale: frame.element_scale }
     }
 
+    /// How much of the exemplar would fill the domain, where `tolerated` is the distance from ink that is tolerated there.
+    pub(crate) fn room(&self, tolerated: f64) -> f64 {
+        let measure: f64 = self.lattice.cell().0.into_iter().product();
+        let inside = self.cells.iter().filter(|cell| cell.tolerated.is_finite());
+        inside.map(|cell| measure * (tolerated / f64::from(cell.tolerated)).powi(D as i32)).sum()
+    }
+
     /// An offset at `p` in exemplar directions.
     pub(crate) fn unturned(&self, p: Vector<D>, offset: Vector<D>) -> Vector<D> {
         if self.is_neutral { offset } else { self.request.fields.frame(p).rotation.transpose().apply(offset) }

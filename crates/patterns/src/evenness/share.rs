@@ -18,10 +18,10 @@ const CELLS: (f64, usize) = (2.5, 1 << 20);
 const INSIDE: f64 = 0.75;
 
 /// Deviations that cost nothing.
-const NATURAL: f64 = 1.8;
+const NATURAL: f64 = 1.7;
 
 /// Price of a place that is off by one deviation more.
-const PRICE: f64 = 0.03;
+const PRICE: f64 = 0.04;
 
 /// Nanoseconds for an element and a cell.
 const WORK: u64 = 4;

@@ -42,7 +42,7 @@ pub(crate) struct Work<'a, const D: usize> {
     pub(crate) extent: &'a Extent<'a, D>,
     /// Elements of each class that are there, and that should be.
     pub(crate) counts: Numbered<f64>,
-    pub(crate) targets: &'a Numbered<f64>,
+    pub(crate) targets: Numbered<f64>,
     pub(crate) moves: Moves,
     steps: Vec<Undo<D>>,
     /// When elements last changed, by the part of the page; and now.
@@ -97,7 +97,7 @@ impl<'a, const D: usize> Work<'a, D> {
         (page, shares): (Page<'a, D>, Option<Shares<'a, D>>),
         (natural, library): (&'a Natural, &'a Library<D>),
         extent: &'a Extent<'a, D>,
-        (counts, targets): (Numbered<f64>, &'a Numbered<f64>),
+        (counts, targets): (Numbered<f64>, Numbered<f64>),
         moves: Moves,
     ) -> Self {
         let changed = vec![1; page.parts()];
@@ -285,7 +285,9 @@ impl<'a, const D: usize> Work<'a, D> {
     }
 
     fn count(&mut self, pose: &Pose<D>, by: f64) {
-        self.counts[self.library.class[pose.source]] += by;
+        if self.page.domain().contains(pose.centre) {
+            self.counts[self.library.class[pose.source]] += by;
+        }
         if let Some(shares) = &mut self.shares {
             let (ink, centre) = ink_of(pose);
             shares.count(ink, centre, by);

@@ -14,9 +14,9 @@ use crate::{
     border::Extent,
     dimension::Dimension,
     evenness::{
-        Evenness, Moves, counts,
+        Evenness, counts,
         page::{Body, Measures, Page},
-        work::Work,
+        work::{Moves, Work},
     },
     exemplar::level_exemplar::{LevelExemplar, level_exemplars},
     optimise::targets::class_targets,

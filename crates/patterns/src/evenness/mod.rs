@@ -45,6 +45,9 @@ use crate::{
 /// Distances are told apart up to so many tolerated ones.
 const REACH: f64 = 2.5;
 
+/// Distances to the nearest neighbour that differ by less than this share are all the same.
+const REGULAR: f64 = 0.02;
+
 /// The exemplar, prepared for evening out.
 #[derive(Clone, Debug)]
 pub(crate) struct Evenness<const D: usize> {
@@ -57,7 +60,8 @@ impl<const D: usize> Evenness<D>
 where
     Vector<D>: Dimension<D>,
 {
-    /// Measures an exemplar, whose first `count` elements are no curve samples. `None` where too little is seen of it.
+    /// Measures an exemplar, whose first `count` elements are no curve samples. `None` where too little is seen of it, and where its
+    /// elements stand like those of a lattice: there neighbourhoods say everything, and nothing may give way.
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
@@ -67,7 +71,7 @@ where
         count: usize,
         budget: &Budget,
     ) -> Result<Option<Self>> {
-        if count < 2 {
+        if count < 2 || is_regular(library.nearest.get(..count).unwrap_or_default()) {
             return Ok(None);
         }
         let inks = Arc::new(Inks::new(exemplar, library, count, library.spacing, budget)?);
@@ -158,6 +162,12 @@ impl<const D: usize> Evened<D> {
         }
         state.reindex();
     }
+}
+
+/// Whether all elements are as far from their nearest neighbour.
+fn is_regular(nearest: &[f64]) -> bool {
+    let mean = nearest.iter().sum::<f64>() / nearest.len() as f64;
+    nearest.iter().all(|d| (d - mean).abs() <= REGULAR * mean)
 }
 
 fn new_item<const D: usize>(body: &Body<D>) -> Item<D> {

@@ -11,8 +11,8 @@ use arabesque::{Job, OutputOptions, Recipe, Resources, Unobserved, recipe_in};
 const WRITTEN: &[(&str, &str)] = &[
     ("fill.svg", "a1765ecb1b0314c2"),
     ("tile.png", "882cbe263a5d7cb2"),
-    ("redo.svg", "5adf206adb64bcc4"),
-    ("copy.svg", "896a3e32e882d1f3"),
+    ("redo.svg", "ab9786d32452fc7e"),
+    ("copy.svg", "cffbeab4e203bb21"),
     ("space.csv", "8bb97305a8e24b53"),
     ("size.json", "b0c9c14facf9ee82"),
     ("ribbon.svg", "199e8ef39136a227"),

@@ -84,7 +84,9 @@ where
             Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
             None => None,
         };
-        let evenness = match levels.last().filter(|_| params.even == Switch::On && params.deform == Deform::Rigid) {
+        // What lies between strokes lies where they want it, which their neighbourhoods say.
+        let is_wanted = params.even == Switch::On && params.deform == Deform::Rigid && skeleton.is_none();
+        let evenness = match levels.last().filter(|_| is_wanted) {
             Some(s) => Evenness::new(&s.exemplar, &s.library, s.level.base as usize, budget)?,
             None => None,
         };

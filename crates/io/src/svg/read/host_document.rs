@@ -24,7 +24,7 @@ use crate::{
         understand::{
             fragment::fragment,
             frame::is_frame_mark,
-            item::{Item, Selection},
+            item::{Item, Kind, Selection},
             outlined_lines::{take_areas, take_backgrounds, trace},
             parts::bands::follow_bands,
             select::select,
@@ -77,6 +77,7 @@ impl Document<'_> {
         found.items.retain(|item| !is_frame_mark(item));
         if self.options.method != Method::Elements {
             self.take_lines(source, &painter, &mut found, &page.view)?;
+            refuse_cut_bands(source, &found.items, area, &page.view)?;
         }
         let sorter = Sorter {
             painter: &painter,
@@ -124,6 +125,37 @@ impl Document<'_> {
         }
         trace(source, &mut found.items, page)
     }
+}
+
+/// How near to a side of the page something reaches it, as a share of the page.
+const NEAR: f64 = 0.02;
+
+/// Refuses a region that cuts something that runs through the page and is neither a line nor an area: as an element it would go, or
+/// stay, as a whole.
+fn refuse_cut_bands(source: &Source<'_>, items: &[Item], region: &Outline<2>, page: &Bounds<2>) -> Result<()> {
+    let (size, around) = (page.size(), region.bounds());
+    let runs = |outline: &Bounds<2>, k: usize| {
+        let near = NEAR * size[k];
+        outline.min[k] <= page.min[k] + near && outline.max[k] >= page.max[k] - near
+    };
+    for item in items.iter().filter(|item| matches!(item.kind, Kind::Element | Kind::Large)) {
+        let extent = item.outline.bounds();
+        source.budget.spend(PER_ITEM)?;
+        if runs(&extent, 0) != runs(&extent, 1)
+            && extent.intersects(&around)
+            && item.outline.try_intersection(region, source.budget)?.area() > 0.0
+        {
+            return Err(Error::Unsupported {
+                what: format!(
+                    "{}: filling a region that cuts {}, which runs through the page and is no line of one width",
+                    source.name,
+                    item.name(source)
+                ),
+                advice: "draw such bands as strokes, or fill the whole page again".into(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Work for looking at one item.
@@ -278,6 +310,19 @@ mod tests {
         // What stays can have something drawn before or after it, unless a group moves it.
         let texts: Vec<&str> = rest.anchors.iter().map(|a| &rest.head[a.range.clone()]).collect();
         assert!(texts.len() == 1 && texts[0].starts_with("<path d='M0 5H100'"), "{texts:?}");
+    }
+
+    #[test]
+    fn a_band_that_is_neither_line_nor_area_is_not_lost() {
+        let band = |y: i32| {
+            format!("<rect x='-5' y='{y}' width='110' height='8' fill='#fa0' stroke='black' stroke-width='1'/>")
+        };
+        let body: String = (0..5).map(|k| band(4 + 20 * k)).collect();
+        let error = rest(&body).err().unwrap().to_string();
+        assert!(error.contains("a region that cuts <rect> in line 1, which runs through the page"), "{error}");
+        // Beside the region they stay as they are.
+        let body: String = [4, 24, 66, 86].map(band).concat();
+        assert_eq!(rest(&body).unwrap().head.matches("<rect").count(), 4);
     }
 
     #[test]

@@ -301,8 +301,15 @@ fn a_time_limit_is_told() {
     let message = folder.fails(4, "fill points.csv --size 8x8 --time-limit 0.000001s -o a.csv");
     assert!(message.contains("the time was up"), "{message}");
     assert!(!folder.names().contains(&"a.csv".to_owned()));
-    // Too long for none: an hour's work on any machine, unless the points were continued by their repeat.
-    let line = "fill points.csv --size 25x25 --iterations 1000 --set repeat=off --time-limit 6s -o a.csv";
+    // Too short again, with something to show: points without any order, whose neighbourhoods never agree.
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / (1_u64 << 24) as f64
+    };
+    let dots: String = (0..400).map(|_| format!("{},{}\n", random(), random())).collect();
+    folder.write("dots.csv", format!("x,y\n{dots}"));
+    let line = "fill dots.csv --size 12x12 --iterations 1000 --time-limit 6s -o a.csv";
     let output = folder.ok(line);
     assert!(stderr(&output).contains("stopped early (time limit)"), "{}", stderr(&output));
     assert!(folder.text("a.csv").lines().count() > 2);

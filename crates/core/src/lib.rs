@@ -3,6 +3,7 @@
 //! | word | type |
 //! |---|---|
 //! | exemplar | [`Exemplar`]: the small example, as [`Element`]s with [`Outline`]s in [`Class`]es, and [`Curve`]s along [`Path`]s |
+//! | geometry | [`PointSet`]: points with attributes; [`TriangleMesh`] |
 //! | domain | [`Domain`]: box, torus, or any [`Region`] such as a [`Shape`] |
 //! | fields | [`Fields`]: orientation, scale and density over the domain |
 //! | request | [`Request`]: domain, border, fields, frozen parts, seed |
@@ -16,6 +17,7 @@ mod curve;
 mod error;
 mod exemplar;
 mod field;
+mod geometry;
 mod image;
 mod index;
 mod numerics;
@@ -35,6 +37,7 @@ pub use curve::{
 pub use error::{Error, Result};
 pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, Role, View};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
+pub use geometry::{MeshPart, PointSet, TriangleMesh};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
 pub use numerics::{

@@ -84,6 +84,14 @@ impl Vector<2> {
     }
 }
 
+impl Vector<3> {
+    /// Cross product: perpendicular to both, as long as the area between them.
+    pub fn cross(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+}
+
 impl<const D: usize> Default for Vector<D> {
     fn default() -> Self {
         Self::ZERO

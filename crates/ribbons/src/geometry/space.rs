@@ -32,7 +32,7 @@ fn downs(tangents: &[Vector<3>], closed: bool) -> Vec<Vector<3>> {
     }
     let (Some(&first), Some(&last), true) = (carried.first(), carried.last(), closed) else { return carried };
     let axis = tangents[0].unit_if_longer(LEAST).unwrap_or(Vector([1.0, 0.0, 0.0]));
-    let left = cross(last, first).dot(axis).atan2(last.dot(first));
+    let left = last.cross(first).dot(axis).atan2(last.dot(first));
     let n = carried.len() as f64 - 1.0;
     let turned = carried.iter().zip(tangents).enumerate().map(|(k, (&d, &t))| match t.unit_if_longer(LEAST) {
         Some(t) => turn(d, t, left * k as f64 / n),
@@ -47,17 +47,13 @@ fn downs(tangents: &[Vector<3>], closed: bool) -> Vec<Vector<3>> {
 
 /// Across the ribbon and level with the ground (z is up); for a curve that begins upright, along x.
 fn first_down(tangent: Vector<3>) -> Vector<3> {
-    let level = cross(Vector([0.0, 0.0, 1.0]), tangent) * -1.0;
+    let level = Vector([0.0, 0.0, 1.0]).cross(tangent) * -1.0;
     level.unit_if_longer(LEAST).unwrap_or(Vector([1.0, 0.0, 0.0]))
-}
-
-fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
-    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
 /// `v`, which is square to the unit vector `axis`, turned about it.
 fn turn(v: Vector<3>, axis: Vector<3>, radians: f64) -> Vector<3> {
-    v * radians.cos() + cross(axis, v) * radians.sin()
+    v * radians.cos() + axis.cross(v) * radians.sin()
 }
 
 /// The quadrilateral between two edges, laid flat: two triangles that keep the lengths of their sides.

@@ -1,0 +1,1 @@
+//! Repetitive structures as sums of Gaussians [Roveri 2015].

@@ -2,21 +2,17 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{
-    ExemplarTile, Format, Input, Limits, Method, Reading, Report, Resources, Stopper, core::rounded, inspect, io::file,
-};
+use arabesque::{Format, Input, Report, core::rounded, inspect, io::file};
 use clap::Args;
 
-use super::fill::choice;
+use super::telling::{ReadingOptions, TellOptions};
 use crate::{
     failure::Failure,
-    guard::{Guard, WriteOptions},
-    limits::LimitOptions,
+    guard::Guard,
     process::{
-        sentinel::{self, Orders, Phase},
+        sentinel::{self, Phase},
         standard,
     },
-    produce::TalkOptions,
     say::{self, Level},
     summary,
 };
@@ -29,64 +25,34 @@ pub(crate) struct Inspect {
     /// Draw it as well, SVG or PNG: outlines in the colours of their classes, curves in those of their styles, the frame, a cell of the repeat
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<String>,
-    /// What the exemplar is made of
-    #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
-    method: Method,
-    /// It is one period of the pattern: what an edge of it cuts goes on at the opposite edge
-    #[arg(long, value_name = "WHETHER", num_args = 0..=1, require_equals = true, default_missing_value = "yes",
-        default_value = ExemplarTile::default().name(), value_parser = choice::<ExemplarTile>())]
-    exemplar_tile: ExemplarTile,
     #[command(flatten)]
-    write: WriteOptions,
+    reading: ReadingOptions,
     #[command(flatten)]
-    limit: LimitOptions,
-    #[command(flatten)]
-    talk: TalkOptions,
+    tell: TellOptions,
 }
 
 impl Inspect {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
-        let result = self.inspect();
-        if let Err(failure) = &result
-            && self.talk.json
-        {
-            summary::print_failure(failure);
-        }
-        result
-    }
-
-    fn orders(&self, limits: Limits) -> Orders {
-        Orders {
-            time_limit: None,
-            limits,
-            json: self.talk.json,
-            piped: self.output.as_deref().is_some_and(file::is_standard_output),
-            quiet: self.talk.level() == Level::Quiet,
-        }
+        self.tell.end(self.inspect())
     }
 
     fn inspect(&self) -> Result<ExitCode, Failure> {
-        let (limits, stopper) = (self.limit.limits()?, Stopper::default());
-        let guard = Guard::new(self.write).with_input("exemplar", &self.file);
+        let piped = self.output.as_deref().is_some_and(file::is_standard_output);
+        let guard = Guard::new(self.tell.write).with_input("exemplar", &self.file);
         let target = self.output.as_deref().map(|path| target(path, &guard)).transpose()?;
-        sentinel::watch(self.orders(limits), stopper.clone())?;
-        let resources = Resources { limits, stopper, ..Resources::default() };
-        let reading = Reading { method: self.method, exemplar_tile: self.exemplar_tile, ..Reading::default() };
-        let report = inspect(&Input::file(&self.file), reading, &resources)?;
+        let resources = self.tell.resources(piped)?;
+        let report = inspect(&Input::file(&self.file), self.reading.reading(), &resources)?;
         if let Some((target, format)) = target {
             let picture = report.picture(format, &resources.budget())?;
             sentinel::enter(Phase::Writing);
-            let copy = target.write(&picture).map_err(Failure::writing)?;
-            if let Some(copy) = copy.filter(|_| self.talk.level() > Level::Quiet) {
-                say::note(&format!("what was there before is kept as {}", copy.display()));
-            }
+            self.tell.put(target, &picture)?;
         }
-        if self.talk.json {
+        if self.tell.talk.json {
             summary::print(&report)?;
-        } else if !self.output.as_deref().is_some_and(file::is_standard_output) {
+        } else if !piped {
             print(&report)?;
         }
-        if self.talk.level() > Level::Quiet {
+        if self.tell.talk.level() > Level::Quiet {
             report.warnings.iter().for_each(|w| say::note(&format!("warning: {}; {}", w.message, w.advice)));
         }
         Ok(ExitCode::SUCCESS)

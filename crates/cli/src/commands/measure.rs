@@ -2,23 +2,19 @@
 
 use std::{io::Write, process::ExitCode};
 
-use arabesque::{
-    ExemplarTile, Format, Input, Limits, MeasureOptions, Measurements, Method, Reading, Resources, Stopper, in_pool,
-    io::file, measure,
-};
+use arabesque::{Format, Input, MeasureOptions, Measurements, in_pool, io::file, measure};
 use clap::Args;
 
-use super::fill::choice;
+use super::telling::{ReadingOptions, TellOptions};
 use crate::{
     failure::Failure,
-    guard::{Guard, WriteOptions},
-    limits::LimitOptions,
+    guard::Guard,
     process::{
-        sentinel::{self, Orders, Phase},
+        sentinel::{self, Phase},
         standard,
     },
-    produce::{TalkOptions, variation},
-    say::{self, Level},
+    produce::variation,
+    say::Level,
     summary,
 };
 
@@ -46,53 +42,28 @@ pub(crate) struct Measure {
     /// Leave sizes out, because the pattern was scaled on purpose
     #[arg(long)]
     any_size: bool,
-    /// What the exemplar is made of
-    #[arg(long, value_name = "METHOD", default_value = Method::default().name(), value_parser = choice::<Method>())]
-    method: Method,
-    /// The exemplar is one period of the pattern: what an edge of it cuts goes on at the opposite edge
-    #[arg(long, value_name = "WHETHER", num_args = 0..=1, require_equals = true, default_missing_value = "yes",
-        default_value = ExemplarTile::default().name(), value_parser = choice::<ExemplarTile>())]
-    exemplar_tile: ExemplarTile,
+    #[command(flatten)]
+    reading: ReadingOptions,
     /// Number of threads; the report does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     #[command(flatten)]
-    write: WriteOptions,
-    #[command(flatten)]
-    limit: LimitOptions,
-    #[command(flatten)]
-    talk: TalkOptions,
+    tell: TellOptions,
 }
 
 impl Measure {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
-        let result = self.measure();
-        if let Err(failure) = &result
-            && self.talk.json
-        {
-            summary::print_failure(failure);
-        }
-        result
+        self.tell.end(self.measure())
     }
 
     fn is_piped(&self) -> bool {
         self.output.as_deref().is_some_and(file::is_standard_output)
     }
 
-    fn orders(&self, limits: Limits) -> Orders {
-        Orders {
-            time_limit: None,
-            limits,
-            json: self.talk.json,
-            piped: self.is_piped(),
-            quiet: self.talk.level() == Level::Quiet,
-        }
-    }
-
     /// Where pictures go, one for each result.
     fn targets(&self) -> Result<Vec<file::Target>, Failure> {
         let Some(path) = &self.output else { return Ok(Vec::new()) };
-        if self.is_piped() && self.talk.json {
+        if self.is_piped() && self.tell.talk.json {
             return Err(Failure::usage("--json and -o - both write to standard output; give a file for one of them"));
         }
         if self.is_piped() && self.results.len() > 1 {
@@ -104,7 +75,7 @@ impl Measure {
         let read = self.results.iter().map(|path| ("result", path.as_str()));
         let shape = self.domain.as_deref().map(Input::shape);
         let all = std::iter::once(("exemplar", self.exemplar.as_str())).chain(read);
-        let guard = all.fold(Guard::new(self.write), |guard, (role, path)| guard.with_input(role, path));
+        let guard = all.fold(Guard::new(self.tell.write), |guard, (role, path)| guard.with_input(role, path));
         let guard = shape.iter().fold(guard, |guard, shape| guard.with_input("--domain", &shape.path));
         let paths: Vec<String> = match self.results.len() {
             1 => vec![path.clone()],
@@ -114,16 +85,14 @@ impl Measure {
     }
 
     fn measure(&self) -> Result<ExitCode, Failure> {
-        let (limits, stopper) = (self.limit.limits()?, Stopper::default());
         let streams = self.results.iter().chain([&self.exemplar]).filter(|path| file::is_standard_input(path)).count();
         if streams > 1 {
             return Err(Failure::usage("standard input can be read once; give files for the others"));
         }
         let targets = self.targets()?;
-        sentinel::watch(self.orders(limits), stopper.clone())?;
-        let resources = Resources { limits, stopper, ..Resources::default() };
+        let resources = self.tell.resources(self.is_piped())?;
         let options = MeasureOptions {
-            reading: Reading { method: self.method, exemplar_tile: self.exemplar_tile, ..Reading::default() },
+            reading: self.reading.reading(),
             domain: self.domain.as_deref().map(Input::shape),
             any_direction: self.any_direction,
             any_size: self.any_size,
@@ -134,15 +103,12 @@ impl Measure {
             told.reports.iter().take(targets.len()).map(|report| report.picture()).collect::<Result<_, _>>()?;
         sentinel::enter(Phase::Writing);
         for (target, picture) in targets.into_iter().zip(pictures) {
-            let copy = target.write(&picture).map_err(Failure::writing)?;
-            if let Some(copy) = copy.filter(|_| self.talk.level() > Level::Quiet) {
-                say::note(&format!("what was there before is kept as {}", copy.display()));
-            }
+            self.tell.put(target, &picture)?;
         }
-        if self.talk.json {
+        if self.tell.talk.json {
             summary::print(&told)?;
         } else if !self.is_piped() {
-            print(&told, self.talk.level() == Level::Verbose)?;
+            print(&told, self.tell.talk.level() == Level::Verbose)?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -7,3 +7,4 @@ pub(crate) mod man;
 pub(crate) mod measure;
 pub(crate) mod ribbon;
 pub(crate) mod run;
+pub(crate) mod telling;

@@ -62,19 +62,10 @@ impl LoadedExemplar {
 
 /// Reads a drawing as what can be continued best, and how it repeats, where that is found out on the way.
 fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
-    let mut drawing = svg::read_exemplar(text, &options)?;
-    let mut known = None;
-    if options.tiling == svg::Tiling::Auto && drawing.exemplar.period.is_some() {
-        // A page that repeats by itself is no period, even if what its edges cut fits together by chance; strokes
-        // fit too easily to be taken for one without being asked.
-        let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
-        if let Ok(page) = svg::read_exemplar(text, &as_page) {
-            let found = regular(&page.exemplar, budget)?;
-            if found.is_some() || !page.exemplar.curves.is_empty() {
-                (drawing, known) = (page, found);
-            }
-        }
-    }
+    let (drawing, mut known) = match options.tiling {
+        svg::Tiling::Auto => page_or_period(text, &options, budget)?,
+        _ => (svg::read_exemplar(text, &options)?, None),
+    };
     let is_dashed = drawing.strokes.iter().flatten().any(|stroke| !stroke.dashes.is_empty());
     if known.is_none() && (!drawing.exemplar.areas.is_empty() || is_dashed && options.large_fills == LargeFills::Areas)
     {
@@ -105,6 +96,51 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
     // Without a repeat, lines are all that can be made of areas.
     let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
     Ok((svg::read_exemplar(text, &options)?, None))
+}
+
+/// A page whose repeat cannot be told and that shows no more elements than this is taken for one period.
+const FEW: usize = 6;
+/// A page that shows more than this is not read again.
+const SMALL: usize = 1000;
+
+/// Reads a drawing of which nobody says whether it is a page or one period of a pattern, with its repeat where that was looked for.
+fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
+    let read = |tiling| svg::read_exemplar(text, &ReadOptions { tiling, ..options.clone() });
+    let (page, period) = match read(svg::Tiling::Auto) {
+        Ok(drawing) if drawing.exemplar.period.is_some() => (read(svg::Tiling::Page), Some(drawing)),
+        page => (page, None),
+    };
+    let found = match &page {
+        Ok(page) if period.is_some() || shown(page) <= SMALL => regular(&page.exemplar, budget)?,
+        _ => None,
+    };
+    // A page that repeats by itself is no period, even if what its edges cut fits together by chance.
+    if found.is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
+        return page.map(|page| (page, found));
+    }
+    // Strokes fit too easily to be taken for a period where they show enough as they are.
+    let is_net = matches!(&page, Ok(page) if !page.exemplar.curves.is_empty());
+    if let Some(period) = period.filter(|_| !is_net) {
+        return Ok((period, None));
+    }
+    // Areas need a repeat, and a handful of elements shows no arrangement.
+    let is_enough = |Exemplar { elements, curves, areas, .. }: &Exemplar<2>| {
+        areas.is_empty() && elements.len() + curves.len() > FEW
+    };
+    let tiling = match &page {
+        Ok(page) if is_enough(&page.exemplar) => svg::Tiling::Likely,
+        _ => svg::Tiling::Possible,
+    };
+    match read(tiling) {
+        Ok(period) if period.exemplar.period.is_some() => Ok((period, None)),
+        _ => page.map(|page| (page, None)),
+    }
+}
+
+/// How many things a drawing shows.
+fn shown(drawing: &Drawing) -> usize {
+    let Exemplar { elements, curves, areas, .. } = &*drawing.exemplar;
+    elements.len() + curves.len() + areas.len()
 }
 
 /// By the extension, or else by the first statement that is not a comment.

@@ -21,6 +21,10 @@ pub enum Tiling {
     /// One period where a `<pattern>` fills it, or where what its opposite edges cut fits together beyond doubt.
     #[default]
     Auto,
+    /// One period where most of what the edges cut goes on at the opposite ones, and the rest ends there.
+    Likely,
+    /// One period where nothing that an edge cuts is drawn beyond it without going on at the opposite one.
+    Possible,
     /// One period: what an edge cuts goes on at the opposite one.
     Period,
     /// A page; a `<pattern>` that fills it is a background.

@@ -2,10 +2,10 @@
 
 use std::cell::OnceCell;
 
-use arabesque_core::{Budget, Exemplar, Result};
+use arabesque_core::{Budget, Exemplar, Result, Vector};
 
 use crate::repeat::{
-    description::{Extent, Repeat},
+    description::{Explains, Extent, Repeat},
     lattice::Lattice,
     lines::Lines,
     marks::{Anchor, Kinds, Mark, Marks},
@@ -16,6 +16,9 @@ use crate::repeat::{
     support::LineIndex,
     unknown::drawn,
 };
+
+/// How far a period may lie from a lattice within it, as a share of its sides: coordinates are rounded.
+const ROUNDED: f64 = 1e-3;
 
 /// What looks alike, exactly.
 const BY_LOOKS: Mode = Mode { kinds: Kinds::Looks, anchor: Anchor::Centre, tolerance: EXACT, least: 3, seen: FEW };
@@ -87,6 +90,9 @@ pub(crate) fn find_for<T>(
     let mut doubtful: Option<Repeat> = None;
     let (lines, index, stacking) = (&lines, &index, stacking.as_ref());
     let finder = Finder { exemplar, lines, index, stacking, budget, rows: OnceCell::new() };
+    if let Some(period) = exemplar.period {
+        return finder.within_period(period, make);
+    }
     for way in WAYS {
         // Lines either go over into themselves or they do not.
         if !way.is_exact() && !lines.is_empty() || way.is_exact() && doubtful.is_some() {
@@ -147,6 +153,26 @@ impl Finder<'_> {
             let _ = self.rows.set(near(self.exemplar, self.budget)?);
         }
         Ok(self.rows.get().and_then(Option::as_ref))
+    }
+
+    /// What one of the repeats gives that a drawing of one period has: the smaller one that looks tell of, or the period itself.
+    fn within_period<T>(
+        &self,
+        [a, b]: [Vector<2>; 2],
+        mut make: impl FnMut(&Repeat) -> Result<Option<T>>,
+    ) -> Result<Option<T>> {
+        let Some(lattice) = Lattice::new(a, b) else { return Ok(None) };
+        let slack = ROUNDED * (a.norm() + b.norm());
+        let holds = |repeat: &Repeat| [a, b].into_iter().all(|v| repeat.lattice.nearest(v).1.norm() <= slack);
+        if let Some(Found { repeat, is_by_hand: false }) = self.by_offsets(BY_LOOKS)?
+            && repeat.extent == Extent::Plane
+            && holds(&repeat)
+            && let Some(made) = make(&repeat)?
+        {
+            return Ok(Some(made));
+        }
+        let (explains, extent, anchor) = (Explains::Everything, Extent::Plane, Anchor::Centre);
+        make(&Repeat { lattice, explains, extent, anchor, jitter: 0.0, share: 1.0 })
     }
 
     fn found(&self, way: Way) -> Result<Option<Found>> {

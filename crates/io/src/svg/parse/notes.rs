@@ -138,7 +138,7 @@ impl Note {
             Self::Transform => ("transform ignored", "use the transform attribute with plain numbers"),
             Self::Override => ("unknown data-arabesque value ignored", "use element, curve or ignore"),
             Self::Period => (
-                "the page is taken for one period of a pattern, for what its opposite edges cut fits together",
+                "the page is taken for one period of a pattern: its opposite edges fit together, and it shows no repeat of its own",
                 "use --exemplar-tile=no to have it read as a page",
             ),
             Self::Corner => (

@@ -23,7 +23,7 @@ pub(crate) struct Misfit {
 pub(crate) enum Ending {
     /// Nothing: whatever an edge cuts goes on.
     Nothing,
-    /// Shapes of straight lines, such as the squares of a chessboard, and what meets something else there.
+    /// What is not drawn beyond the edge: shapes that end there, next to something else or to nothing.
     Whole,
 }
 
@@ -56,13 +56,28 @@ pub(crate) fn misfit(
     })
 }
 
-/// Whether a shape ends at an edge: it is made of straight lines, and nothing like it is cut at about the same place of the opposite edge.
+/// Stretches whose ends differ by less, as a share of the shorter one, were meant to meet.
+const NEARLY: f64 = 0.25;
+
+/// Whether a shape ends at an edge: nothing of it is drawn beyond, and nothing like it lies nearly at the same stretch of the opposite edge.
 fn ends_there(pieces: &[Piece], units: &[Unit], piece: &Piece, (side, range, cell): (usize, [f64; 2], &Cell)) -> bool {
     let look = units[piece.unit].look;
-    let is_straight = piece.chains.iter().flat_map(|chain| &chain.segments).all(|s| matches!(s, PathSeg::Line(_)));
+    let frame = cell.frame.inflate(cell.near(), cell.near());
     let alike = pieces.iter().filter(|other| units[other.unit].look == look).flat_map(|other| &other.gaps);
-    let overlaps = |gap: &Gap| gap.range[0].max(range[0]) + cell.apart() < gap.range[1].min(range[1]);
-    is_straight && !{ alike }.any(|gap| gap.side == side && overlaps(gap))
+    let is_missed = |gap: &Gap| {
+        let least = NEARLY * (gap.range[1] - gap.range[0]).min(range[1] - range[0]);
+        gap.side == side && (0..2).all(|k| (gap.range[k] - range[k]).abs() <= least)
+    };
+    frame.union(piece.extent) == frame && (is_upright(piece) || !{ alike }.any(is_missed))
+}
+
+/// Whether a piece has sides along the edges alone: it ends wherever it likes.
+pub(crate) fn is_upright(piece: &Piece) -> bool {
+    let is_along = |segment: &PathSeg| match segment {
+        PathSeg::Line(line) => (line.p1.x - line.p0.x).abs().min((line.p1.y - line.p0.y).abs()) <= 1e-6 * line.length(),
+        _ => false,
+    };
+    piece.chains.iter().flat_map(|chain| &chain.segments).all(is_along)
 }
 
 /// Whether gaps of a look, or any, cover a stretch of an edge together.
@@ -89,7 +104,7 @@ fn is_covered(
 /// Whether a place lies on a stroke of some look.
 fn is_on_line(pieces: &[Piece], units: &[Unit], cell: &Cell, (look, at): (usize, Point)) -> bool {
     let alike = pieces.iter().filter(|piece| units[piece.unit].look == look);
-    let near = |segment: &kurbo::PathSeg| {
+    let near = |segment: &PathSeg| {
         segment.bounding_box().inflate(cell.apart(), cell.apart()).contains(at)
             && kurbo::ParamCurveNearest::nearest(segment, at, 0.1 * cell.near()).distance_sq <= cell.apart().powi(2)
     };

@@ -1,12 +1,14 @@
 //! Periods that the author does not speak of: pages whose opposite edges cut what fits together.
 
+use std::collections::BTreeSet;
+
 use kurbo::{PathSeg, Rect};
 
 use crate::svg::swatch::{
     cell::{Cell, SIDES, opposite},
-    fit::{Ending, misfit},
+    fit::{Ending, is_upright, misfit},
     links::Links,
-    pieces::{Chain, Piece},
+    pieces::{Chain, GapEnd, Piece},
     units::{Unit, Units},
 };
 
@@ -22,11 +24,108 @@ pub(crate) fn is_period(units: &Units, pieces: &[Piece], links: &Links, cell: &C
     {
         return false;
     }
-    let clipped = units.all.iter().any(|unit| unit.node.viewport_clip.is_some());
-    if clipped || pieces.iter().any(|piece| ends_as_a_whole(piece, &units.all, pieces, cell)) {
+    if is_clipped(units) || pieces.iter().any(|piece| ends_as_a_whole(piece, &units.all, pieces, cell)) {
         return false;
     }
     (0..2).all(|axis| units.doubled[axis] > 0 || goes_on(pieces, links, cell, axis))
+}
+
+/// Whether something had to be clipped, because it could not be cut.
+fn is_clipped(units: &Units) -> bool {
+    units.all.iter().any(|unit| unit.node.viewport_clip.is_some())
+}
+
+/// Pieces beyond which a page is not taken for a period by most of what its edges cut.
+const MOST_PIECES: usize = 400;
+/// With more whole things than this, a page shows enough as it is unless its edges leave no doubt.
+const ENOUGH: usize = 12;
+/// Share of what the edges cut along an axis that goes on: of a page that may be a period, and of one that can be nothing else.
+const HALF: f64 = 0.5;
+const CLEAR: f64 = 0.7;
+/// So many that go on are no chance.
+const SEVERAL: usize = 3;
+
+/// Whether a page is likely to be one period: along an axis most of what its edges cut goes on at the opposite one, not only as straight
+/// lines do along it.
+pub(crate) fn is_likely(units: &Units, pieces: &[Piece], links: &Links, cell: &Cell) -> bool {
+    if is_clipped(units) || units.all.len() > MOST || pieces.len() > MOST_PIECES || !is_drawn_to_fit(links, cell) {
+        return false;
+    }
+    if ends_as_drawn(units, pieces, cell) {
+        return true;
+    }
+    let whole = units.all.iter().filter(|unit| !unit.is_cut).count()
+        + pieces.iter().filter(|piece| sides(piece, cell).is_empty()).count();
+    (0..2).any(|axis| {
+        let [on, all] = counts(pieces, links, cell, axis);
+        let share = on as f64 / all.max(1) as f64;
+        let is_clear = on >= SEVERAL && share >= CLEAR;
+        let is_enough = if whole >= ENOUGH { is_clear } else { on > 0 && share >= HALF };
+        is_enough && goes_on(pieces, links, cell, axis)
+    })
+}
+
+/// Whether what lies at the edges was put there: all sides are along the edges, and nothing reaches beyond these; or things lie flush with
+/// one edge across each axis, and not with the other, and are whole as others are.
+fn ends_as_drawn(units: &Units, pieces: &[Piece], cell: &Cell) -> bool {
+    let frame = cell.frame.inflate(cell.near(), cell.near());
+    let at = |side: usize| {
+        pieces.iter().filter(move |piece| self::sides(piece, cell).contains(&side)).collect::<Vec<&Piece>>()
+    };
+    let flush = SIDES.map(at);
+    if pieces.iter().any(|piece| !piece.is_filled || frame.union(piece.extent) != frame) {
+        return false;
+    }
+    let all_upright = units.all.iter().all(|unit| unit.is_cut) && pieces.iter().all(is_upright);
+    let gaps = |side: usize| pieces.iter().flat_map(|piece| &piece.gaps).filter(|gap| gap.side == side).count();
+    if all_upright && SIDES.into_iter().all(|side| gaps(side) >= 2) {
+        return true;
+    }
+    (0..2).all(|axis| {
+        let (here, there) = (&flush[2 * axis], &flush[2 * axis + 1]);
+        let one = if there.is_empty() { here } else { there };
+        (here.is_empty() || there.is_empty())
+            && one.len() >= 2
+            && one.iter().all(|piece| ends_as_a_whole(piece, &units.all, pieces, cell))
+    })
+}
+
+/// Whether strokes that go on do so exactly: by hand, lines at about the same places come to opposite edges of any page.
+fn is_drawn_to_fit(links: &Links, cell: &Cell) -> bool {
+    links.ends.is_empty() || links.loose.is_empty() && links.off <= cell.near()
+}
+
+/// Whether most of what there is lies where something else does.
+fn is_heaped(units: &Units, cell: &Cell) -> bool {
+    let key = |unit: &Unit| {
+        [unit.extent.x0, unit.extent.y0, unit.extent.x1, unit.extent.y1].map(|v| (v / cell.apart()).round() as i64)
+    };
+    let places: BTreeSet<_> = units.all.iter().map(key).collect();
+    2 * places.len() < units.all.len()
+}
+
+/// Whether a page that shows too little to be continued may be one period: nothing is drawn beyond its edges that does not go on.
+pub(crate) fn is_possible(units: &Units, links: &Links, cell: &Cell) -> bool {
+    !units.all.is_empty() && !is_clipped(units) && is_drawn_to_fit(links, cell) && !is_heaped(units, cell)
+}
+
+/// How much of what the edges across an axis cut goes on, and how much they cut.
+fn counts(pieces: &[Piece], links: &Links, cell: &Cell, axis: usize) -> [usize; 2] {
+    let (mut on, mut all) = (0, 0);
+    for (p, piece) in pieces.iter().enumerate().filter(|(_, piece)| !piece.covers) {
+        for (gap, link) in piece.gaps.iter().zip(&links.gaps[p]).filter(|(gap, _)| gap.side / 2 == axis) {
+            // What reaches from corner to corner lies behind it all.
+            if gap.ends != [GapEnd::Corner; 2] {
+                (on, all) = (on + usize::from(link.is_some()), all + 1);
+            }
+        }
+    }
+    let is_across = |&[p, chain, which]: &[usize; 3]| {
+        let at = pieces[p].chains[chain].end(which);
+        SIDES.into_iter().any(|side| side / 2 == axis && cell.is_on(side, at))
+    };
+    let ends = links.ends.keys().filter(|end| is_across(end)).count();
+    [on + ends, all + ends + links.loose.iter().filter(|end| is_across(end)).count()]
 }
 
 /// Whether something that an edge cuts tells of a period along an axis.

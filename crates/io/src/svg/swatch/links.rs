@@ -26,6 +26,8 @@ pub(crate) struct Links {
     pub(crate) ends: BTreeMap<End, (End, [i64; 2])>,
     /// Ends of strokes at an edge that nothing goes on at.
     pub(crate) loose: Vec<End>,
+    /// How far ends that go on are apart, at most.
+    pub(crate) off: f64,
 }
 
 /// Finds the partners.
@@ -92,7 +94,7 @@ fn link_ends(links: &mut Links, pieces: &[Piece], units: &[Unit], cell: &Cell, b
         }
     }
     ends.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.x.total_cmp(&b.1.x)).then(a.3.cmp(&b.3)));
-    let mut pairs: Vec<(f64, End, End, [i64; 2])> = Vec::new();
+    let mut pairs: Vec<(f64, f64, [End; 2], [i64; 2])> = Vec::new();
     for &(look, at, way, end) in &ends {
         let sides = SIDES.into_iter().filter(|side| cell.is_on(*side, at));
         let mut tiles: Vec<[i64; 2]> = sides.map(beyond).collect();
@@ -108,14 +110,15 @@ fn link_ends(links: &mut Links, pieces: &[Piece], units: &[Unit], cell: &Cell, b
                 let (off, turn) = ((other.1 - want).hypot(), -way.dot(other.2));
                 if other.3 != end && off <= cell.apart() {
                     let bend = if turn >= STRAIGHT { 1.0 - turn } else { 10.0 };
-                    pairs.push((bend + off / cell.apart(), end, other.3, tile));
+                    pairs.push((bend + off / cell.apart(), off, [end, other.3], tile));
                 }
             }
         }
     }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
-    for (_, end, other, tile) in pairs {
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.2, a.3).cmp(&(b.2, b.3))));
+    for (_, off, [end, other], tile) in pairs {
         if !links.ends.contains_key(&end) && !links.ends.contains_key(&other) {
+            links.off = links.off.max(off);
             links.ends.insert(end, (other, tile));
             links.ends.insert(other, (end, tile.map(|t| -t)));
         }

@@ -18,7 +18,7 @@ use crate::svg::{
     swatch::{
         cell::{Cell, name, opposite},
         fit::{Ending, Misfit, misfit},
-        found::{MOST, is_period},
+        found::{MOST, is_likely, is_period, is_possible},
         links::{Links, links},
         pattern::{Painted, painted},
         pieces::{Piece, pieces},
@@ -52,7 +52,7 @@ pub(crate) fn periods(
         let no_size = || Error::input(source.name, "one period without a size", advice);
         return if tiling == Tiling::Period { Err(no_size()) } else { Ok(None) };
     };
-    if tiling == Tiling::Auto && roots.iter().map(|(_, node)| count(node)).sum::<usize>() > 10 * MOST {
+    if tiling != Tiling::Period && roots.iter().map(|(_, node)| count(node)).sum::<usize>() > 10 * MOST {
         return Ok(None);
     }
     of_page(source, base, roots, (frame, tiling))
@@ -74,13 +74,21 @@ fn of_page(
     let mut found = units(roots, &cell, source.budget)?;
     found.all.retain(|unit| !is_frame_mark(&unit.node.meta));
     let (pieces, links) = taken_apart(source, &found, &cell)?;
-    if tiling == Tiling::Auto {
-        if !is_period(&found, &pieces, &links, &cell) {
-            return Ok(None);
-        }
+    let off = misfit(&pieces, &found.all, &links, (&cell, Ending::Whole));
+    let is_taken = match tiling {
+        Tiling::Page => false,
+        Tiling::Auto => is_period(&found, &pieces, &links, &cell),
+        Tiling::Likely => off.is_none() && is_likely(&found, &pieces, &links, &cell),
+        Tiling::Possible => off.is_none() && is_possible(&found, &links, &cell),
+        Tiling::Period => true,
+    };
+    if !is_taken {
+        return Ok(None);
+    }
+    if tiling != Tiling::Period {
         source.notes.add(Note::Period, String::new);
     }
-    if let Some(off) = misfit(&pieces, &found.all, &links, (&cell, Ending::Whole)) {
+    if let Some(off) = off {
         return Err(does_not_fit(source, &off, &found.all[off.unit]));
     }
     let period = Period { cell, units: &found.all, pieces: &pieces, links: &links };

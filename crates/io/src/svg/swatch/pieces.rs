@@ -87,18 +87,29 @@ pub(crate) fn pieces(number: usize, unit: &Unit, cell: &Cell) -> Vec<Piece> {
         .collect()
 }
 
+/// Parts along an edge no longer than this, in terms of what is near to it, are no cut: lines, and arcs, which leave it slowly.
+const SLIVER: f64 = 0.5;
+const ARC: f64 = 5.0;
+
 /// The parts of a subpath in the cell. What runs along an edge is a cut where the subpath is filled, else a part of it.
 fn chains(subpath: &BezPath, cell: &Cell, is_filled: bool, is_closed: bool) -> Vec<Chain> {
     let mut parts: Vec<(PathSeg, bool)> = Vec::new();
     for segment in subpath.segments() {
         for part in split(segment, cell) {
-            if part.arclen_is_tiny() {
+            if part.is_point(1e-3 * cell.near()) {
                 continue;
             }
             let middle = part.eval(0.5);
             let on_edge =
                 SIDES.into_iter().any(|s| [part.start(), middle, part.end()].iter().all(|p| cell.is_on(s, *p)));
-            let is_kept = if on_edge { !is_filled && is_within(cell, middle) } else { cell.frame.contains(middle) };
+            // An arc that touches the edge is split there, and a sliver of it lies on the edge.
+            let slack = if matches!(part, PathSeg::Line(_)) { SLIVER } else { ARC };
+            let is_sliver = (part.end() - part.start()).hypot() <= slack * cell.near();
+            let is_kept = match (on_edge, is_sliver) {
+                (true, false) => !is_filled && is_within(cell, middle),
+                (true, true) => is_within(cell, middle),
+                (false, _) => cell.frame.contains(middle),
+            };
             parts.push((part, is_kept));
         }
     }
@@ -133,12 +144,13 @@ fn is_within(cell: &Cell, at: Point) -> bool {
 }
 
 trait Tiny {
-    fn arclen_is_tiny(&self) -> bool;
+    /// Whether it has no length to speak of.
+    fn is_point(&self, near: f64) -> bool;
 }
 
 impl Tiny for PathSeg {
-    fn arclen_is_tiny(&self) -> bool {
-        self.start() == self.end() && self.eval(0.5) == self.start()
+    fn is_point(&self, near: f64) -> bool {
+        [1.0, 0.5].into_iter().all(|t| (self.eval(t) - self.start()).hypot() <= near)
     }
 }
 
@@ -180,10 +192,20 @@ fn gaps(subpath: &BezPath, chains: &[Chain], cell: &Cell) -> Vec<Gap> {
             }
         }
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Of chains that meet at one place of the edge, the one that leads back comes first: it bounds what lies before.
+        let lean = |end: GapEnd| match end {
+            GapEnd::Chain(k, which) => -along(side, chains[k].way_out(which).to_point()),
+            GapEnd::Corner => 0.0,
+        };
+        for together in stops.chunk_by_mut(|a, b| b.0 - a.0 <= cell.near()) {
+            together.sort_by(|a, b| lean(a.1).total_cmp(&lean(b.1)));
+        }
         for pair in stops.windows(2) {
             let (from, to) = (pair[0].0, pair[1].0);
-            let inside = cell.on(side, 0.5 * (from + to)) + inward[side] * cell.near().min(0.25 * (to - from));
-            if to - from > cell.near() && subpath.winding(inside) != 0 {
+            let depth = inward[side] * cell.near().min(0.02 * (to - from));
+            // All along: an arc that touches the edge at one place is not cut by it.
+            let is_inside = |share: f64| subpath.winding(cell.on(side, from + share * (to - from)) + depth) != 0;
+            if to - from > cell.near() && [0.2, 0.5, 0.8].into_iter().all(is_inside) {
                 gaps.push(Gap { side, range: [from, to], ends: [pair[0].1, pair[1].1] });
             }
         }

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use arabesque_core::{Budget, Limits, Role};
+use arabesque_core::{Budget, Limits, Role, Vector};
 
 use crate::svg::{
     drawing::Drawing,
-    options::{ReadOptions, Tiling},
+    options::{LargeFills, ReadOptions, Tiling},
     read::exemplar::read_exemplar,
 };
 
@@ -14,7 +14,7 @@ fn read(size: [u32; 2], body: &str, tiling: Tiling) -> arabesque_core::Result<Dr
     let [w, h] = size;
     let text =
         format!("<svg xmlns='http://www.w3.org/2000/svg' width='{w}' height='{h}' viewBox='0 0 {w} {h}'>{body}</svg>");
-    read_exemplar(&text, &ReadOptions { tiling, ..ReadOptions::new("t.svg") })
+    read_exemplar(&text, &ReadOptions { tiling, large_fills: LargeFills::Areas, ..ReadOptions::new("t.svg") })
 }
 
 fn period(size: [u32; 2], body: &str) -> Drawing {
@@ -203,4 +203,66 @@ fn large_periods_meet_a_limit() {
     let options = ReadOptions { tiling: Tiling::Period, budget, ..ReadOptions::new("l.svg") };
     let told = read_exemplar(&text, &options).unwrap_err().to_string();
     assert!(told.contains("copies of what one period holds"), "{told}");
+}
+
+/// What a page is taken for without being asked, when its edges say most, and when it shows too little.
+fn is_taken(size: [u32; 2], body: &str) -> [bool; 2] {
+    [Tiling::Likely, Tiling::Possible]
+        .map(|tiling| read(size, body, tiling).is_ok_and(|drawing| drawing.exemplar.period.is_some()))
+}
+
+#[test]
+fn swatches_whose_edges_say_most_are_taken_for_periods() {
+    // A slanted bar, and a wedge that ends at the upper edge.
+    let bar = "<path d='M0 10L10 0h6L0 16zM40 10L10 40h6L40 16zM22 0h6l-3 6z'/>";
+    assert_eq!(is_taken([40, 40], bar), [true; 2]);
+    // A weave of bars that end at the edges.
+    let weave = "<path d='M0 2h18v4H0zM0 10h18v4H0zM22 0h4v18h-4zM30 0h4v18h-4zM2 20h4v20H2zM10 20h4v20h-4zM20 22h20v4H20zM20 30h20v4H20z'/>";
+    assert!(is_taken([40, 40], weave)[0]);
+    // Bricks with gaps, flush with the upper and the left edge.
+    let brick = |k: usize| format!("<rect x='{}' y='{}' width='12' height='6'/>", k % 5 * 14, k / 5 * 8);
+    let bricks: String = (0..25).filter(|k| k * k % 7 != 2).map(brick).collect();
+    assert!(is_taken([70, 40], &bricks)[0]);
+    let away = bricks.replace("x='0'", "x='1.5'");
+    assert!(!is_taken([70, 40], &away)[0]);
+}
+
+#[test]
+fn one_thing_alone_is_a_period_and_a_heap_is_none() {
+    assert_eq!(is_taken([24, 24], "<path d='M8 4l4 2-4 2-2 4-2-4-4-2 4-2 2-4z'/>"), [false, true]);
+    assert_eq!(is_taken([24, 24], "<circle cx='30' cy='12' r='9'/>"), [false, false]);
+    let heap = "<circle cx='12' cy='12' r='9'/>".repeat(9);
+    assert_eq!(is_taken([24, 24], &heap), [false, false]);
+}
+
+#[test]
+fn strokes_by_hand_come_to_both_edges_of_any_page() {
+    let line =
+        |at: f64, off: f64| format!("<path d='M0 {at}Q50 {} 100 {}' fill='none' stroke='red'/>", at + 9.0, at + off);
+    let drawn = |off: f64| (1..5).map(|k| line(20.0 * f64::from(k), off)).collect::<String>();
+    assert_eq!(is_taken([100, 100], &drawn(0.0)), [true; 2]);
+    assert_eq!(is_taken([100, 100], &drawn(0.8)), [false; 2]);
+}
+
+#[test]
+fn an_area_that_narrows_to_a_point_at_an_edge_keeps_its_holes() {
+    // Round windows that touch the upper and lower edge in one point, each in two halves.
+    let body = "<path fill-rule='evenodd' d='M0 0h40v20H0zM20 0a10 10 0 0 1 0 20a10 10 0 0 1 0-20z'/>";
+    let drawing = period([40, 20], body);
+    let is_filled = |x: f64, y: f64| drawing.exemplar.areas.iter().any(|area| area.outline.contains(Vector::xy(x, y)));
+    for (i, j) in [(1, 1), (2, 2), (3, 4)].map(|(i, j)| (f64::from(i), f64::from(j))) {
+        assert!(is_filled(40.0 * i + 1.0, 20.0 * j + 1.0) && is_filled(40.0 * i + 3.0, 20.0 * j + 10.0), "{i} {j}");
+        assert!(!is_filled(40.0 * i + 20.0, 20.0 * j + 10.0) && !is_filled(40.0 * i + 20.0, 20.0 * j + 1.0), "{i} {j}");
+    }
+}
+
+#[test]
+fn what_ends_at_an_edge_may_but_halves_have_to_meet() {
+    let arch = "<path d='M10 40a10 10 0 0 1 20 0z'/><circle cx='20' cy='15' r='6'/>";
+    assert!(has_areas(&period([40, 40], arch), &[50.0 * PI, 36.0 * PI]));
+    let off = "<path d='M10 40a10 10 0 0 1 20 0z'/><path d='M12 0a10 10 0 0 0 20 0z'/><circle cx='20' cy='15' r='2'/>";
+    let told = read([40, 40], off, Tiling::Period).unwrap_err().to_string();
+    assert!(told.contains("does not go on at the"), "{told}");
+    let beams = "<path d='M0 0h24v4H0zM6 12h4v10h24v-4h6v6H16v16H4V30h2z'/>";
+    assert!(read([40, 40], beams, Tiling::Period).is_ok());
 }

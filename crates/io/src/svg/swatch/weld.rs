@@ -151,7 +151,14 @@ impl Welder<'_> {
         }
         let covers = self.pieces.iter().filter(|piece| piece.covers);
         let mut all: Vec<_> = covers.map(|piece| Welded { unit: piece.unit, path: self.everything() }).collect();
-        all.extend(order.into_iter().filter_map(|group| found.remove(&group)));
+        let cover_of: BTreeMap<usize, usize> = all.iter().enumerate().map(|(k, cover)| (cover.unit, k)).collect();
+        for welded in order.into_iter().filter_map(|group| found.remove(&group)) {
+            // What lies in an outline that covers the cell are its holes.
+            match cover_of.get(&welded.unit) {
+                Some(&cover) => all[cover].path.extend(welded.path),
+                None => all.push(welded),
+            }
+        }
         Ok(all)
     }
 

@@ -213,9 +213,10 @@ fn thinned(points: &[Vector<2>], apart: f64) -> Vec<Vector<2>> {
             kept.push(p);
         }
     }
-    if let (Some(&end), true) = (points.last(), kept.len() > 1) {
-        kept.pop();
-        kept.push(end);
+    match (points.last(), kept.len()) {
+        (Some(&end), n @ 2..) => kept[n - 1] = end,
+        (Some(&end), 1) if points.len() > 1 => kept.push(end),
+        _ => {}
     }
     kept
 }
@@ -262,6 +263,13 @@ mod tests {
         assert!((found.width - 6.0).abs() < 0.6, "{}", found.width);
         assert!(found.points.iter().all(|p| (p[1] - 23.0).abs() < 1.0), "{:?}", found.points);
         assert!(found.points[0][0] < -5.0 || found.points[0][0] > 105.0);
+    }
+
+    #[test]
+    fn a_thinned_line_keeps_both_ends() {
+        let line = [0.0, 0.1, 0.2].map(|x| Vector::xy(x, 0.0));
+        assert_eq!(thinned(&line, 5.0), [line[0], line[2]]);
+        assert_eq!(thinned(&line[..1], 5.0).len(), 1);
     }
 
     #[test]

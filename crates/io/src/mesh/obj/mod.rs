@@ -3,7 +3,9 @@
 mod lexer;
 pub mod polylines;
 pub mod strips;
+pub mod triangles;
 pub mod write;
 
 pub use polylines::{Net, junctions, read_curves, read_lines};
+pub use triangles::read_mesh;
 pub use write::{Sheet, recipe_of, write_curves};

@@ -1,0 +1,11 @@
+//! Points with attributes and triangles, whatever file they come from.
+
+pub(crate) mod attributes;
+pub(crate) mod columns;
+mod found;
+mod polygon;
+mod read;
+
+pub(crate) use columns::Columns;
+pub use found::{Cloud, Geometry};
+pub(crate) use polygon::Polygons;

@@ -1,0 +1,1 @@
+//! Files of points and meshes of any kind, told apart by their content.

@@ -5,6 +5,7 @@
 //! values into bytes.
 
 pub mod file;
+pub mod geometry;
 pub mod json;
 pub mod mesh;
 pub mod raster;

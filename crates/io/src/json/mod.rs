@@ -1,6 +1,7 @@
 //! JSON: results with everything that is known of them, one document for each job.
 
 pub mod fill;
+pub mod geometry;
 pub mod ribbon;
 mod warning;
 

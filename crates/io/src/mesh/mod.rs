@@ -1,5 +1,7 @@
-//! Things in space: curves and textured strips, as OBJ and GLB.
+//! Things in space: curves, points, meshes and textured strips, in and out.
 
 pub mod gltf;
 pub mod obj;
+pub mod ply;
+pub mod stl;
 pub mod strip;

@@ -8,7 +8,11 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Bounds, Budget, Decimals, Error, Exemplar, Placement, Result, Vector};
 
-use crate::text::short::{list, short};
+pub use crate::table::records::recipe_of;
+use crate::{
+    table::records::{recipe_comments, records},
+    text::short::{list, short},
+};
 
 /// Points of a file, by dimension.
 #[derive(Clone, Debug)]
@@ -25,9 +29,6 @@ const ALIASES: [(&str, &[&str]); 4] = [
     ("z", &["z", "pz", "pos_z", "posz", "position_z", "z_pos", "height", "elevation"]),
     ("class", &["class", "label", "type", "kind", "category", "cls", "species", "group", "id", "name"]),
 ];
-
-/// Work for each byte.
-const PER_BYTE: u64 = 10;
 
 /// The class of every point of a file without a class column.
 const ONLY_CLASS: &str = "point";
@@ -177,10 +178,6 @@ impl<'a> Table<'a> {
     }
 }
 
-fn is_data(line: &str) -> bool {
-    !line.is_empty() && !line.starts_with('#')
-}
-
 fn is_known(field: &str) -> bool {
     ALIASES.iter().any(|(_, aliases)| aliases.contains(&field))
 }
@@ -200,87 +197,6 @@ fn made_up_header(name: &str, line: usize, first: &[String]) -> Result<Vec<Strin
         }
     };
     Ok(names.iter().map(|&n| n.to_owned()).collect())
-}
-
-/// What separates fields: the first of comma, semicolon and tab that occurs, else white space.
-fn separator_of(line: &str) -> Option<char> {
-    [',', ';', '\t'].into_iter().find(|c| line.contains(*c))
-}
-
-/// The fields of every line that holds data, with its number. A line that ends inside quotes goes on in the lines after
-/// it, until one of these closes them. No more than `most` are read.
-///
-/// The crate `csv` is not used for this: it tells the line of a record only as the line after the last record, comments
-/// included, and a quote after a blank is not a quote to it.
-fn records(name: &str, text: &str, budget: &Budget, most: usize) -> Result<Vec<(usize, Vec<String>)>> {
-    budget.spend(PER_BYTE * text.len() as u64)?;
-    let count = text.lines().count();
-    budget.within(&format!("{name}: lines"), count, ("nodes", budget.limits().nodes))?;
-    let lines: Vec<&str> = text.lines().collect();
-    let first = lines.iter().map(|line| line.trim()).find(|line| is_data(line));
-    let separator = first.and_then(separator_of);
-    let mut records = Vec::new();
-    let mut at = 0;
-    while let Some(line) = lines.get(at).filter(|_| records.len() < most) {
-        at += 1;
-        if !is_data(line.trim()) {
-            continue;
-        }
-        let number = at;
-        let Some((fields, more)) = fields(line, &lines[at..], separator) else {
-            let problem = "a quote that nothing closes, expected one more on this line or after it";
-            return Err(Error::input(format!("{name}: line {number}"), problem, "close the quote, or remove it"));
-        };
-        at += more;
-        records.push((number, fields));
-    }
-    Ok(records)
-}
-
-/// The trimmed fields of a line, and how many of the lines `after` it belong to it; `None` where it ends inside quotes
-/// that none of them closes.
-fn fields(line: &str, after: &[&str], separator: Option<char>) -> Option<(Vec<String>, usize)> {
-    let Some(separator) = separator else {
-        return Some((line.split_whitespace().map(str::to_owned).collect(), 0));
-    };
-    let mut whole = Splitter { separator, ..Splitter::default() };
-    whole.feed(line.trim());
-    let mut more = 0;
-    while whole.quoted && more < after.len() {
-        whole.feed("\n");
-        whole.feed(after[more]);
-        more += 1;
-    }
-    (!whole.quoted).then(|| (whole.finish(), more))
-}
-
-/// Cuts text into fields; double quotes protect separators, and a doubled quote inside them is a quote.
-#[derive(Default)]
-struct Splitter {
-    separator: char,
-    fields: Vec<String>,
-    field: String,
-    /// Whether the text so far ends inside quotes.
-    quoted: bool,
-}
-
-impl Splitter {
-    fn feed(&mut self, text: &str) {
-        let mut rest = text.chars().peekable();
-        while let Some(c) = rest.next() {
-            match c {
-                '"' if self.quoted && rest.peek() == Some(&'"') => self.field.extend(rest.next()),
-                '"' if self.quoted || self.field.trim().is_empty() => self.quoted = !self.quoted,
-                c if c == self.separator && !self.quoted => self.fields.push(std::mem::take(&mut self.field)),
-                c => self.field.push(c),
-            }
-        }
-    }
-
-    fn finish(mut self) -> Vec<String> {
-        self.fields.push(self.field);
-        self.fields.iter().map(|f| f.trim().to_owned()).collect()
-    }
 }
 
 /// Writes placements as `x,y,class` (`x,y,z,class` in space), one per line, with six significant digits of `extent`.
@@ -303,31 +219,6 @@ pub fn write_points<const D: usize>(
         out.push('\n');
     }
     out + &recipe.map(recipe_comments).unwrap_or_default()
-}
-
-/// A recipe as comment lines, for [`recipe_of`] to find.
-pub(crate) fn recipe_comments(recipe: &str) -> String {
-    let lines: String = recipe.lines().map(|line| format!("# {line}\n")).collect();
-    format!("{RECIPE_MARK}\n{lines}")
-}
-
-/// The comment line that a recipe follows.
-pub(crate) const RECIPE_MARK: &str = "# arabesque recipe:";
-
-/// The recipe in the comments of a file that [`write_points`] wrote. A name of a class that looks like one is none.
-pub fn recipe_of(text: &str) -> Option<String> {
-    let mut lines = text.lines();
-    // Names with quotes are quoted and their quotes doubled, so that every other one opens.
-    let mut quoted = false;
-    lines.find(|line| {
-        if !quoted && line.starts_with('#') {
-            return *line == RECIPE_MARK;
-        }
-        quoted ^= line.matches('"').count() % 2 == 1;
-        false
-    })?;
-    let lines = lines.map_while(|line| line.strip_prefix("# ").or_else(|| line.strip_prefix('#')));
-    Some(lines.map(|line| format!("{line}\n")).collect())
 }
 
 fn quoted(name: &str) -> String {

@@ -1,3 +1,6 @@
-//! Tables of points with classes, as CSV.
+//! Tables: points with classes or with attributes.
 
 pub mod csv;
+pub mod points;
+pub(crate) mod records;
+pub mod xyz;

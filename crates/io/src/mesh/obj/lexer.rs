@@ -4,13 +4,13 @@
 
 use arabesque_core::{Budget, Error, Result, Vector};
 
-use crate::{table::csv, text::short::short};
+use crate::{table::records, text::short::short};
 
 /// Lines without comments, joined where a backslash continues them, with the number of their first line. Box comments
 /// stay.
 pub(crate) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, String)> {
     // The recipe of a result has a box of its own.
-    let mut own = text.lines().take_while(|line| *line != csv::RECIPE_MARK).enumerate();
+    let mut own = text.lines().take_while(|line| *line != records::RECIPE_MARK).enumerate();
     std::iter::from_fn(move || {
         let (first, raw) = own.next()?;
         let (content, mut more) = content_of(raw);

@@ -1,9 +1,13 @@
-//! OBJ: networks of curves as polylines, in and out, and ribbons as textured strips.
+//! OBJ: networks of curves as polylines, points and meshes, in and out, and ribbons as textured strips out.
 
 mod lexer;
 pub mod polylines;
+pub mod solid;
 pub mod strips;
+pub mod triangles;
 pub mod write;
 
 pub use polylines::{Net, junctions, read_curves, read_lines};
+pub use solid::{write_cloud, write_mesh};
+pub use triangles::read_mesh;
 pub use write::{Sheet, recipe_of, write_curves};

@@ -2,7 +2,7 @@
 
 use arabesque_core::{Budget, Decimals, Result};
 
-use crate::{mesh::strip::Part, table::csv};
+use crate::{mesh::strip::Part, table::records};
 
 /// Comment that files of strips start with.
 pub const TITLE: &str = "# ribbons as textured strips";
@@ -41,7 +41,7 @@ pub fn write_strips(parts: &[Part], extent: f64, recipe: Option<&str>, budget: &
         }
         before += part.strip.positions.len();
     }
-    Ok(out + &recipe.map(csv::recipe_comments).unwrap_or_default())
+    Ok(out + &recipe.map(records::recipe_comments).unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -59,6 +59,6 @@ mod tests {
         assert!(text.contains("# picture of exemplar-2: b.png\n"));
         assert!(text.contains("usemtl exemplar-2\nf 5/5 7/7 6/6\nf 6/6 7/7 8/8\n"));
         assert!(text.contains("vt 0 1\n"));
-        assert_eq!(csv::recipe_of(&text).unwrap(), "seed = 3\n");
+        assert_eq!(records::recipe_of(&text).unwrap(), "seed = 3\n");
     }
 }

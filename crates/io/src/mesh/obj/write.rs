@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, Vector};
 
-use crate::table::csv;
+use crate::table::records;
 
 /// What [`write_curves`] says beside the curves.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ pub fn write_curves(exemplar: &Exemplar<3>, curves: &[Drawn<3>], sheet: &Sheet<'
         }
     }
     let frame = format!("# box {} {}\n", vertices.text(sheet.frame.min), vertices.text(sheet.frame.max));
-    let recipe = sheet.recipe.map(csv::recipe_comments).unwrap_or_default();
+    let recipe = sheet.recipe.map(records::recipe_comments).unwrap_or_default();
     format!("# curves as polylines\n{frame}{}{lines}{recipe}", vertices.listed)
 }
 
@@ -70,5 +70,5 @@ impl Vertices {
 
 /// The recipe in the comments of a file that [`write_curves`] wrote.
 pub fn recipe_of(text: &str) -> Option<String> {
-    csv::recipe_of(text)
+    records::recipe_of(text)
 }

@@ -1,75 +1,22 @@
 //! GLB: textured strips with their pictures inside.
 
-use arabesque_core::{Budget, Error, Result};
+use arabesque_core::{Budget, Result};
 use serde_json::{Value, json};
 
+use super::{
+    buffer::Buffer,
+    container::{asset, container},
+};
 use crate::mesh::strip::Part;
 
-const MAGIC: &[u8; 4] = b"glTF";
-const VERSION: u32 = 2;
-const JSON_CHUNK: &[u8; 4] = b"JSON";
-const BINARY_CHUNK: &[u8; 4] = b"BIN\0";
-/// Component types, targets and sampler modes of the format.
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const LINEAR: u32 = 9729;
 const CLAMP_TO_EDGE: u32 = 33071;
-/// Where in `asset` the recipe stands.
-const RECIPE: &str = "arabesque recipe";
 
 /// Work of one corner.
 const CORNER: u64 = 200;
 /// Bytes of one corner, in the file and on the way there, and of one triangle.
 const CORNER_BYTES: usize = 3 * (12 + 8);
 const TRIANGLE_BYTES: usize = 3 * 12;
-
-/// The binary chunk while it grows.
-#[derive(Default)]
-struct Buffer {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
-
-impl Buffer {
-    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
-        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
-        if let Some(target) = target {
-            view["target"] = target.into();
-        }
-        self.bytes.extend_from_slice(bytes);
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.views.push(view);
-        self.views.len() - 1
-    }
-
-    fn vectors<const N: usize>(&mut self, values: &[[f32; N]], bounded: bool) -> usize {
-        let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-        let view = self.view(&bytes, Some(ARRAY_BUFFER));
-        let kind = format!("VEC{N}");
-        let mut accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": values.len(), "type": kind });
-        if bounded {
-            let extreme = |start: f32, pick: fn(f32, f32) -> f32| -> Vec<f32> {
-                (0..N).map(|k| values.iter().map(|v| v[k]).fold(start, pick)).collect()
-            };
-            accessor["min"] = extreme(f32::INFINITY, f32::min).into();
-            accessor["max"] = extreme(f32::NEG_INFINITY, f32::max).into();
-        }
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
-
-    fn indices(&mut self, triangles: &[[u32; 3]]) -> usize {
-        let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
-        let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
-        let count = 3 * triangles.len();
-        let accessor = json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" });
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
-}
 
 /// Everything in the document that there is one of for each part.
 #[derive(Default)]
@@ -110,7 +57,7 @@ impl Content {
 /// picture's top is at texture coordinate 0, as the format has it. Parts without triangles are left out.
 ///
 /// # Errors
-/// [`Error::Limit`] beyond 4 GiB or when the work or the memory is used up, [`Error::Stopped`] when somebody asked to stop.
+/// [`arabesque_core::Error::Limit`] beyond 4 GiB or when the work or the memory is used up, [`arabesque_core::Error::Stopped`] when somebody asked to stop.
 pub fn write_glb(parts: &[Part], recipe: Option<&str>, budget: &Budget) -> Result<Vec<u8>> {
     let bytes = parts.iter().map(|part| {
         let strip = &part.strip;
@@ -123,15 +70,11 @@ pub fn write_glb(parts: &[Part], recipe: Option<&str>, budget: &Budget) -> Resul
         content.add(part);
     }
     let Content { buffer, primitives, materials, textures, images } = content;
-    let mut asset = json!({ "version": "2.0", "generator": concat!("arabesque ", env!("CARGO_PKG_VERSION")) });
-    if let Some(recipe) = recipe {
-        asset["extras"] = json!({ RECIPE: recipe });
-    }
     let sampler = json!({
         "magFilter": LINEAR, "minFilter": LINEAR, "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,
     });
     let document = json!({
-        "asset": asset,
+        "asset": asset(recipe),
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
@@ -145,51 +88,16 @@ pub fn write_glb(parts: &[Part], recipe: Option<&str>, budget: &Budget) -> Resul
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
-    container(&document, &buffer.bytes)
-}
-
-fn container(document: &Value, binary: &[u8]) -> Result<Vec<u8>> {
-    let mut text = document.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let total = 12 + 8 + text.len() + 8 + binary.len();
-    let size = |n: usize| {
-        u32::try_from(n).map_err(|_| Error::Limit {
-            what: "size of the GLB file".into(),
-            found: format!("{n} bytes"),
-            limit: format!("{} bytes", u32::MAX),
-            advice: "use fewer or longer pieces (--step)".into(),
-        })
-    };
-    let mut bytes = Vec::with_capacity(total);
-    bytes.extend_from_slice(MAGIC);
-    for number in [VERSION, size(total)?, size(text.len())?] {
-        bytes.extend_from_slice(&number.to_le_bytes());
-    }
-    bytes.extend_from_slice(JSON_CHUNK);
-    bytes.extend_from_slice(&text);
-    bytes.extend_from_slice(&size(binary.len())?.to_le_bytes());
-    bytes.extend_from_slice(BINARY_CHUNK);
-    bytes.extend_from_slice(binary);
-    Ok(bytes)
-}
-
-/// Whether the bytes start as a GLB file does.
-pub fn is_glb(bytes: &[u8]) -> bool {
-    bytes.starts_with(MAGIC)
-}
-
-/// The recipe in a file that [`write_glb`] wrote.
-pub fn recipe_of(bytes: &[u8]) -> Option<String> {
-    let length = u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize;
-    let text = bytes.get(20..20_usize.checked_add(length)?)?;
-    let document: Value = serde_json::from_slice(text).ok()?;
-    Some(document.get("asset")?.get("extras")?.get(RECIPE)?.as_str()?.to_owned())
+    container(&document, &buffer.bytes, "use fewer or longer pieces (--step)")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::strip::Strip;
+    use crate::mesh::{
+        gltf::container::{JSON_CHUNK, is_glb, recipe_of},
+        strip::Strip,
+    };
 
     fn part() -> Part {
         let mut strip = Strip::default();

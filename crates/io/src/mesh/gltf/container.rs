@@ -1,0 +1,101 @@
+//! The two chunks of a GLB file: a document in JSON, and bytes.
+
+use arabesque_core::{Error, Result};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+const MAGIC: &[u8; 4] = b"glTF";
+const VERSION: u32 = 2;
+pub(super) const JSON_CHUNK: &[u8; 4] = b"JSON";
+const BINARY_CHUNK: &[u8; 4] = b"BIN\0";
+/// Where in `asset` the recipe stands.
+const RECIPE: &str = "arabesque recipe";
+
+/// The `asset` of a document, with the recipe.
+pub(super) fn asset(recipe: Option<&str>) -> Value {
+    let mut asset = json!({ "version": "2.0", "generator": concat!("arabesque ", env!("CARGO_PKG_VERSION")) });
+    if let Some(recipe) = recipe {
+        asset["extras"] = json!({ RECIPE: recipe });
+    }
+    asset
+}
+
+/// A file of a document and its binary chunk; `advice` says how to get a smaller one.
+pub(super) fn container(document: &impl Serialize, binary: &[u8], advice: &str) -> Result<Vec<u8>> {
+    let mut text = serde_json::to_vec(document).map_err(|e| Error::input("GLB file", e.to_string(), advice))?;
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + text.len() + 8 + binary.len();
+    let size = |n: usize| {
+        u32::try_from(n).map_err(|_| Error::Limit {
+            what: "size of the GLB file".into(),
+            found: format!("{n} bytes"),
+            limit: format!("{} bytes", u32::MAX),
+            advice: advice.into(),
+        })
+    };
+    let mut bytes = Vec::with_capacity(total);
+    bytes.extend_from_slice(MAGIC);
+    for number in [VERSION, size(total)?, size(text.len())?] {
+        bytes.extend_from_slice(&number.to_le_bytes());
+    }
+    bytes.extend_from_slice(JSON_CHUNK);
+    bytes.extend_from_slice(&text);
+    bytes.extend_from_slice(&size(binary.len())?.to_le_bytes());
+    bytes.extend_from_slice(BINARY_CHUNK);
+    bytes.extend_from_slice(binary);
+    Ok(bytes)
+}
+
+/// Whether the bytes start as a GLB file does.
+pub fn is_glb(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
+/// The document and the binary chunk of a file.
+///
+/// # Errors
+/// [`Error::Input`] when the file is not what its header says.
+pub(super) fn chunks<'a>(name: &str, bytes: &'a [u8]) -> Result<(&'a [u8], &'a [u8])> {
+    let number = |at: usize| -> Option<usize> {
+        let word = bytes.get(at..at.checked_add(4)?)?;
+        Some(u32::from_le_bytes(word.try_into().ok()?) as usize)
+    };
+    let fail = |problem: String| Err(Error::input(name, problem, "write the file again; it is no GLB, or was cut off"));
+    if !is_glb(bytes) {
+        return fail("a file that does not begin with glTF".into());
+    }
+    match number(4) {
+        Some(2) => {}
+        Some(version) => return fail(format!("version {version} of GLB where 2 was expected")),
+        None => return fail("a file that ends in its header".into()),
+    }
+    if let Some(length) = number(8).filter(|length| *length > bytes.len()) {
+        return fail(format!("{} bytes where its header says {length}", bytes.len()));
+    }
+    let mut found: [Option<&[u8]>; 2] = [None; 2];
+    let mut at = 12;
+    while let Some(length) = number(at) {
+        let Some(chunk) = at.checked_add(8).and_then(|from| bytes.get(from..from.checked_add(length)?)) else {
+            return fail(format!("a chunk of {length} bytes at byte {at}, where the file ends before"));
+        };
+        let kind = &bytes[at + 4..at + 8];
+        let place = [JSON_CHUNK, BINARY_CHUNK].iter().position(|known| known.as_slice() == kind);
+        // Other chunks are to be passed over.
+        if let Some(place) = place {
+            found[place].get_or_insert(chunk);
+        }
+        at += 8 + length.next_multiple_of(4);
+    }
+    match found {
+        [Some(document), binary] => Ok((document, binary.unwrap_or_default())),
+        _ => fail("no JSON chunk".into()),
+    }
+}
+
+/// The recipe in a file that this library wrote.
+pub fn recipe_of(bytes: &[u8]) -> Option<String> {
+    let length = u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize;
+    let text = bytes.get(20..20_usize.checked_add(length)?)?;
+    let document: Value = serde_json::from_slice(text).ok()?;
+    Some(document.get("asset")?.get("extras")?.get(RECIPE)?.as_str()?.to_owned())
+}

@@ -1,0 +1,263 @@
+//! The primitives of one mesh of a GLB file: its triangles and its points.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Error, PointSet, Result, TriangleMesh, Vector, Warning};
+
+use super::{accessor::Binary, colour::srgb, document::Primitive};
+use crate::geometry::{Polygons, attributes::Attribute};
+
+/// Modes of the format.
+const POINTS: u32 = 0;
+const TRIANGLES: u32 = 4;
+const STRIP: u32 = 5;
+const FAN: u32 = 6;
+
+/// What one mesh of a file holds, in coordinates of its own.
+#[derive(Debug, Default)]
+pub(super) struct Parts {
+    pub(super) name: String,
+    pub(super) mesh: TriangleMesh,
+    /// Points; their colours are light.
+    pub(super) points: PointSet<3>,
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// The attributes of the vertices of one primitive.
+struct Vertices {
+    positions: Vec<Vector<3>>,
+    normals: Option<Vec<Vector<3>>>,
+    /// Light, not shares of what a screen is given.
+    colours: Option<Vec<[f64; 3]>>,
+}
+
+impl Parts {
+    /// Reads the primitives of a mesh. Those that share their vertices go on doing so.
+    pub(super) fn read(binary: &Binary<'_>, number: usize) -> Result<Self> {
+        let Some(record) = binary.document.meshes.get(number) else { return Ok(Self::default()) };
+        let mut reader = Reader {
+            binary,
+            place: format!("{}: mesh {number}", binary.name),
+            parts: Self { name: record.name.clone().unwrap_or_default(), ..Self::default() },
+            first_of: BTreeMap::new(),
+            coloured: false,
+            smooth: true,
+        };
+        for primitive in &record.primitives {
+            reader.primitive(primitive)?;
+        }
+        reader.finish()
+    }
+}
+
+struct Reader<'a> {
+    binary: &'a Binary<'a>,
+    place: String,
+    parts: Parts,
+    /// Where the vertices of attributes begin, so that they are read once.
+    first_of: BTreeMap<(Vec<usize>, Option<usize>), (u32, usize)>,
+    coloured: bool,
+    smooth: bool,
+}
+
+impl Reader<'_> {
+    fn fail<T>(&self, problem: String) -> Result<T> {
+        Err(Error::input(self.place.clone(), problem, "write the file again; it is damaged"))
+    }
+
+    fn primitive(&mut self, primitive: &Primitive) -> Result<()> {
+        match primitive.mode.unwrap_or(TRIANGLES) {
+            POINTS => self.points(primitive),
+            TRIANGLES | STRIP | FAN => self.triangles(primitive),
+            mode => {
+                let message = format!("{}: lines (mode {mode}) are left out", self.place);
+                self.parts.warnings.push(Warning::new(message, "draw what is wanted as triangles or points"));
+                Ok(())
+            }
+        }
+    }
+
+    fn vertices(&mut self, primitive: &Primitive) -> Result<Vertices> {
+        let Some(&position) = primitive.attributes.get("POSITION") else {
+            return self.fail("a primitive without POSITION".into());
+        };
+        let positions = vectors(&self.binary.numbers(position, 3)?);
+        let limits = self.binary.budget.limits();
+        if let Some(bad) = positions.iter().flat_map(|p| p.0).find(|c| {
+            // The sign of the place is of no matter here.
+            Attribute::Position(0).checked(*c, String::new, limits).is_err()
+        }) {
+            return self.fail(format!("{bad} where a coordinate between -{0} and {0} was expected", limits.coordinate));
+        }
+        let normals = primitive.attributes.get("NORMAL").map(|&n| self.binary.numbers(n, 3)).transpose()?;
+        let normals = normals.map(|numbers| vectors(&numbers));
+        let colours = self.colours(primitive, positions.len())?;
+        let lengths = [normals.as_ref().map(Vec::len), colours.as_ref().map(Vec::len)];
+        if lengths.into_iter().flatten().any(|length| length != positions.len()) {
+            return self.fail("a primitive whose attributes have different numbers of vertices".into());
+        }
+        if normals.iter().flatten().any(|n| !n.is_finite()) {
+            return self.fail("a normal that is not finite".into());
+        }
+        Ok(Vertices { positions, normals, colours })
+    }
+
+    fn colours(&self, primitive: &Primitive, count: usize) -> Result<Option<Vec<[f64; 3]>>> {
+        let material = primitive.material.and_then(|m| self.binary.document.materials.get(m));
+        let factor = material.and_then(|m| m.pbr_metallic_roughness.as_ref()?.base_color_factor);
+        let factor: Option<[f64; 3]> = factor.map(|[r, g, b, _]| [r, g, b]);
+        let Some(&accessor) = primitive.attributes.get("COLOR_0") else {
+            return Ok(factor.map(|colour| vec![colour; count]));
+        };
+        let width = match self.binary.document.accessors.get(accessor) {
+            Some(record) if record.kind == "VEC4" => 4,
+            _ => 3,
+        };
+        let numbers = self.binary.numbers(accessor, width)?;
+        let factor = factor.unwrap_or([1.0; 3]);
+        if numbers.iter().any(|v| !v.is_finite()) {
+            return self.fail("a colour that is not finite".into());
+        }
+        Ok(Some(numbers.chunks_exact(width).map(|c| std::array::from_fn(|k| c[k] * factor[k])).collect()))
+    }
+
+    fn triangles(&mut self, primitive: &Primitive) -> Result<()> {
+        let (first, count) = self.shared_vertices(primitive)?;
+        let indices = match primitive.indices {
+            Some(accessor) => self.binary.indices(accessor)?,
+            None => (0..count as u32).collect(),
+        };
+        if let Some(bad) = indices.iter().find(|i| **i as usize >= count) {
+            return self.fail(format!("vertex {bad} where there are {count}"));
+        }
+        let corners: Vec<u32> = indices.iter().map(|i| first + i).collect();
+        let mode = primitive.mode.unwrap_or(TRIANGLES);
+        let mut faces = Polygons::default();
+        match mode {
+            TRIANGLES => corners.chunks_exact(3).for_each(|t| faces.push(0, t.iter().copied())),
+            STRIP => corners.windows(3).enumerate().for_each(|(k, t)| {
+                faces.push(0, if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] });
+            }),
+            _ => corners.windows(2).skip(1).for_each(|t| faces.push(0, [corners[0], t[0], t[1]])),
+        }
+        let cut = faces.triangles((&self.place, "primitive"), &self.parts.mesh.positions, self.binary.budget)?;
+        // Strips are turned by faces without area.
+        if mode == TRIANGLES {
+            self.parts.warnings.extend(cut.warnings);
+        }
+        self.parts.mesh.triangles.extend(cut.triangles);
+        Ok(())
+    }
+
+    /// The first vertex of a primitive in the mesh, and how many there are; what other primitives have read is shared.
+    fn shared_vertices(&mut self, primitive: &Primitive) -> Result<(u32, usize)> {
+        let key = (primitive.attributes.values().copied().collect::<Vec<_>>(), primitive.material);
+        if let Some(known) = self.first_of.get(&key) {
+            return Ok(*known);
+        }
+        let vertices = self.vertices(primitive)?;
+        let mesh = &mut self.parts.mesh;
+        let (first, count) = (mesh.positions.len(), vertices.positions.len());
+        let limit = ("nodes", self.binary.budget.limits().nodes);
+        self.binary.budget.within(&format!("{}: vertices", self.place), first + count, limit)?;
+        mesh.positions.extend(vertices.positions);
+        self.coloured |= vertices.colours.is_some();
+        self.smooth &= vertices.normals.is_some();
+        let normals = vertices.normals.unwrap_or_else(|| vec![Vector::ZERO; count]);
+        mesh.normals.get_or_insert_default().extend(normals.into_iter().map(Vector::unit_or_zero));
+        let colours = vertices.colours.unwrap_or_else(|| vec![[1.0; 3]; count]);
+        mesh.colours.get_or_insert_default().extend(colours.into_iter().map(|c| c.map(srgb)));
+        let found = (first as u32, count);
+        self.first_of.insert(key, found);
+        Ok(found)
+    }
+
+    fn points(&mut self, primitive: &Primitive) -> Result<()> {
+        let Vertices { positions, normals, colours } = self.vertices(primitive)?;
+        let mut set = PointSet { positions, normals, colours, ..PointSet::default() };
+        set.radii = self.scalars(primitive, "_RADIUS", Attribute::Radius, set.len())?;
+        let whole = |list: Vec<f64>| list.into_iter().map(|v| v as i32).collect();
+        set.groups = self.scalars(primitive, "_GROUP", Attribute::Group, set.len())?.map(whole);
+        set.elements = self.scalars(primitive, "_ELEMENT", Attribute::Element, set.len())?.map(whole);
+        if let Some(accessor) = primitive.indices {
+            let indices = self.binary.indices(accessor)?;
+            if let Some(bad) = indices.iter().find(|i| **i as usize >= set.len()) {
+                return self.fail(format!("vertex {bad} where there are {}", set.len()));
+            }
+            set = set.selected(&indices.iter().map(|i| *i as usize).collect::<Vec<_>>());
+        }
+        if self.parts.points.is_empty() {
+            self.parts.points = set;
+            return Ok(());
+        }
+        self.append_points(set)
+    }
+
+    /// More points; attributes that not all of them have are left out.
+    fn append_points(&mut self, set: PointSet<3>) -> Result<()> {
+        fn joined<T>(all: &mut Option<Vec<T>>, more: Option<Vec<T>>) -> bool {
+            match (all.as_mut(), more) {
+                (Some(all), Some(more)) => {
+                    all.extend(more);
+                    true
+                }
+                (None, None) => true,
+                _ => {
+                    *all = None;
+                    false
+                }
+            }
+        }
+        let all = &mut self.parts.points;
+        all.positions.extend(set.positions);
+        let complete = [
+            joined(&mut all.normals, set.normals),
+            joined(&mut all.colours, set.colours),
+            joined(&mut all.radii, set.radii),
+            joined(&mut all.groups, set.groups),
+            joined(&mut all.elements, set.elements),
+        ];
+        if complete.contains(&false) {
+            let message = format!("{}: attributes of some points alone are left out", self.place);
+            self.parts.warnings.push(Warning::new(message, "give all points of a mesh the same attributes"));
+        }
+        Ok(())
+    }
+
+    fn scalars(
+        &self,
+        primitive: &Primitive,
+        name: &str,
+        attribute: Attribute,
+        count: usize,
+    ) -> Result<Option<Vec<f64>>> {
+        let Some(&accessor) = primitive.attributes.get(name) else { return Ok(None) };
+        let numbers = self.binary.numbers(accessor, 1)?;
+        if numbers.len() != count {
+            return self.fail(format!("{} values of {name} for {count} points", numbers.len()));
+        }
+        for value in &numbers {
+            let checked = attribute.checked(*value, || value.to_string(), self.binary.budget.limits());
+            if let Err((problem, _)) = checked {
+                return self.fail(format!("{name}: {problem}"));
+            }
+        }
+        Ok(Some(numbers))
+    }
+
+    fn finish(mut self) -> Result<Parts> {
+        let mesh = &mut self.parts.mesh;
+        if !self.coloured {
+            mesh.colours = None;
+        }
+        let complete = self.smooth && mesh.normals.iter().flatten().all(|n| *n != Vector::ZERO);
+        if !complete {
+            mesh.normals = None;
+        }
+        Ok(self.parts)
+    }
+}
+
+fn vectors(numbers: &[f64]) -> Vec<Vector<3>> {
+    numbers.chunks_exact(3).map(|c| Vector([c[0], c[1], c[2]])).collect()
+}

@@ -1,0 +1,179 @@
+//! GLB in: the meshes and points of the scene that the file shows first.
+//!
+//! Read: triangles (also as strips and fans) with `POSITION`, `NORMAL` and `COLOR_0`, or the colour of their material; points with the
+//! same and with `_RADIUS`, `_GROUP` and `_ELEMENT`; quantised numbers; instances of `EXT_mesh_gpu_instancing`. Colours are linear in
+//! the format and sRGB here.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Budget, Error, PointSet, Result, Similarity, TriangleMesh, Vector, Warning};
+
+use super::{
+    accessor::Binary,
+    colour::srgb,
+    container::chunks,
+    document::read_document,
+    nodes::{Affine, Placed, placed},
+    primitives::Parts,
+    scene::{Scene, SceneMesh, SceneNode},
+};
+use crate::geometry::{Cloud, Columns, attributes::Attribute};
+
+/// Reads a scene.
+///
+/// # Errors
+/// [`Error::Input`] with the number of the node, mesh or accessor for whatever leads nowhere or holds no numbers within the limits;
+/// [`Error::Unsupported`] for compressed meshes and for data outside of the file; [`Error::Limit`] for too many nodes or vertices or
+/// when the work or the memory is used up.
+pub fn read_scene(name: &str, bytes: &[u8], budget: &Budget) -> Result<Scene> {
+    let budget = budget.stage("reading a GLB file");
+    let (text, binary) = chunks(name, bytes)?;
+    let document = read_document(name, text, &budget)?;
+    let binary = Binary { name, document: &document, bytes: binary, budget: &budget };
+    let mut reader = Reader {
+        binary,
+        meshes: BTreeMap::new(),
+        baked: BTreeMap::new(),
+        points: Columns::default(),
+        scene: Scene::default(),
+    };
+    let places = placed(&binary)?;
+    reader.check_size(&places)?;
+    for place in &places {
+        reader.place(place)?;
+    }
+    reader.warn_of_motion();
+    let Reader { points, mut scene, .. } = reader;
+    if !points.values[0].is_empty() {
+        let geometry = points.into_geometry(name, &budget)?;
+        scene.zero_normals = geometry.zero_normals;
+        scene.warnings.extend(geometry.warnings);
+        if let Cloud::Space(points) = geometry.points {
+            scene.points = points;
+        }
+    }
+    if scene.nodes.is_empty() && scene.points.is_empty() {
+        return Err(Error::input(name, "no mesh and no points in its scene", "give a file with meshes or points"));
+    }
+    Ok(scene)
+}
+
+struct Reader<'a> {
+    binary: Binary<'a>,
+    /// What is read of the meshes of the file, by number: read once, however many nodes show it.
+    meshes: BTreeMap<usize, Parts>,
+    /// Numbers of the meshes of the scene, by mesh of the file and the bits of what was done to it.
+    baked: BTreeMap<(usize, Option<[u64; 9]>), usize>,
+    points: Columns,
+    scene: Scene,
+}
+
+impl Reader<'_> {
+    /// Refuses scenes that are too large in all, before anything is put together.
+    fn check_size(&mut self, places: &[Placed<'_>]) -> Result<()> {
+        let mut total = 0_usize;
+        for place in places {
+            let parts = match self.meshes.get(&place.mesh) {
+                Some(parts) => parts,
+                None => {
+                    let parts = Parts::read(&self.binary, place.mesh)?;
+                    self.scene.warnings.extend(parts.warnings.iter().cloned());
+                    self.meshes.entry(place.mesh).or_insert(parts)
+                }
+            };
+            total = total.saturating_add(parts.mesh.positions.len()).saturating_add(parts.points.len());
+        }
+        let limit = ("nodes", self.binary.budget.limits().nodes);
+        self.binary.budget.within(&format!("{}: vertices in all places", self.binary.name), total, limit)
+    }
+
+    fn place(&mut self, placed: &Placed<'_>) -> Result<()> {
+        let Some(parts) = self.meshes.get(&placed.mesh) else { return Ok(()) };
+        let name = self.binary.name;
+        let most = self.binary.budget.limits().coordinate;
+        let fits = |p: Vector<3>| p.0.iter().all(|c| c.abs() <= most);
+        let positions = parts.mesh.positions.iter().chain(&parts.points.positions);
+        if let Some(p) = positions.map(|p| placed.place.apply(*p)).find(|p| !fits(*p)) {
+            let place = format!("{name}: node {}", crate::text::short::short(placed.name));
+            let problem = format!("a vertex at {:?} where coordinates between -{most} and {most} were expected", p.0);
+            return Err(Error::input(place, problem, "scale the mesh down, or move it nearer to the origin"));
+        }
+        add_points(&mut self.points, &parts.points, &placed.place);
+        if parts.mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        let similarity = placed.place.similarity();
+        let bits = similarity.is_none().then(|| {
+            let entries: [f64; 9] = std::array::from_fn(|k| placed.place.linear.0[k / 3][k % 3]);
+            entries.map(f64::to_bits)
+        });
+        let known = self.baked.get(&(placed.mesh, bits)).copied();
+        let mesh = known.unwrap_or_else(|| {
+            let mesh = if similarity.is_none() { baked(&parts.mesh, &placed.place) } else { parts.mesh.clone() };
+            self.scene.meshes.push(SceneMesh { name: parts.name.clone(), mesh });
+            self.baked.insert((placed.mesh, bits), self.scene.meshes.len() - 1);
+            self.scene.meshes.len() - 1
+        });
+        let transform = similarity.unwrap_or_else(|| Similarity::shift(placed.place.shift));
+        self.scene.nodes.push(SceneNode { name: placed.name.to_owned(), mesh, transform });
+        Ok(())
+    }
+
+    fn warn_of_motion(&mut self) {
+        let document = self.binary.document;
+        let skins = document.nodes.iter().filter(|node| node.skin.is_some()).count();
+        let shapes = document.meshes.iter().flat_map(|m| &m.primitives).filter(|p| !p.targets.is_empty()).count();
+        if skins + shapes > 0 {
+            let message =
+                format!("{}: meshes are read as they rest; skins and shape keys are passed over", self.binary.name);
+            self.scene.warnings.push(Warning::new(message, "apply them before the file is saved"));
+        }
+    }
+}
+
+/// A mesh after the part of a transform that no similarity has: stretched, or turned inside out.
+fn baked(mesh: &TriangleMesh, place: &Affine) -> TriangleMesh {
+    let inside_out = place.determinant() < 0.0;
+    let [a, b, c] = place.linear.0.map(Vector);
+    // Rows of the transposed inverse, but for a factor that does not turn them.
+    let sign = if inside_out { -1.0 } else { 1.0 };
+    let rows = [b.cross(c), c.cross(a), a.cross(b)].map(|row| row * sign);
+    let normal = |n: &Vector<3>| Vector(rows.map(|row| row.dot(*n))).unit_or_zero();
+    let turned = |t: &[u32; 3]| if inside_out { [t[0], t[2], t[1]] } else { *t };
+    TriangleMesh {
+        positions: mesh.positions.iter().map(|p| place.linear.apply(*p)).collect(),
+        triangles: mesh.triangles.iter().map(turned).collect(),
+        normals: mesh.normals.as_ref().map(|normals| normals.iter().map(normal).collect()),
+        ..mesh.clone()
+    }
+}
+
+/// Adds points in their place; those without an attribute that others have get what says the least.
+fn add_points(all: &mut Columns, points: &PointSet<3>, place: &Affine) {
+    let before = all.values[0].len();
+    let scale = place.determinant().abs().cbrt();
+    let mut extend = |attribute: Attribute, values: Option<Vec<f64>>, otherwise: f64| {
+        let list = &mut all.values[attribute.index()];
+        let Some(values) = values else {
+            if !list.is_empty() {
+                list.resize(before + points.len(), otherwise);
+            }
+            return;
+        };
+        list.resize(before, otherwise);
+        list.extend(values);
+    };
+    let positions: Vec<Vector<3>> = points.positions.iter().map(|p| place.apply(*p)).collect();
+    let normals: Option<Vec<_>> = points.normals.as_ref().map(|n| n.iter().map(|n| place.linear.apply(*n)).collect());
+    let whole = |list: &Option<Vec<i32>>| list.as_ref().map(|list| list.iter().map(|v| f64::from(*v)).collect());
+    for k in 0..3 {
+        extend(Attribute::Position(k), Some(positions.iter().map(|p| p[k]).collect()), 0.0);
+        extend(Attribute::Normal(k), normals.as_ref().map(|n| n.iter().map(|n| n[k]).collect()), 0.0);
+        let colours = points.colours.as_ref();
+        extend(Attribute::Colour(k), colours.map(|c| c.iter().map(|c| srgb(c[k])).collect()), 1.0);
+    }
+    extend(Attribute::Radius, points.radii.as_ref().map(|r| r.iter().map(|r| r * scale).collect()), 1.0);
+    extend(Attribute::Group, whole(&points.groups), 0.0);
+    extend(Attribute::Element, whole(&points.elements), f64::from(PointSet::<3>::CONTINUOUS));
+    all.full = Some(1.0);
+}

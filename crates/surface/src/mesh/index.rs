@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use super::{
     topology::{NONE, Topology},
-    tree::Tree,
     triangle,
     winding::Winding,
 };
+use crate::tree::Tree;
 
 /// Work units of a node or triangle that a query looks at.
 const LOOK: u64 = 12;

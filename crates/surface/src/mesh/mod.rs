@@ -4,7 +4,6 @@ mod crossings;
 mod index;
 mod report;
 mod topology;
-mod tree;
 mod triangle;
 mod winding;
 

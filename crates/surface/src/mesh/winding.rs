@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 
 use arabesque_core::Vector;
 
-use super::{topology::Topology, tree::Tree, triangle};
+use super::{topology::Topology, triangle};
+use crate::tree::{Node, Tree};
 
 /// A node's dipole stands for it beyond so many of its radii.
 const FAR: f64 = 3.0;
@@ -43,7 +44,7 @@ impl Winding {
                 (a.0 + b.0, a.1 + b.1, a.2 + b.2)
             };
         }
-        let dipole = |(node, (weight, place, area)): (&super::tree::Node, (f64, Vector<3>, Vector<3>))| {
+        let dipole = |(node, (weight, place, area)): (&Node, (f64, Vector<3>, Vector<3>))| {
             let centre = if weight > 0.0 { place * (1.0 / weight) } else { node.bounds.centre() };
             let corner = (node.bounds.max - centre).zip(centre - node.bounds.min, f64::max);
             Dipole { centre, area, far2: FAR * FAR * corner.norm2() }

@@ -95,6 +95,42 @@ impl Tree {
         (found, looked)
     }
 
+    /// The `count` nearest items to `p`, nearest first; fewer where there are fewer. `distance2` gives the squared distance of an item, or nothing for what
+    /// does not count. They replace what is in `found`; the answer is what was looked at.
+    pub(crate) fn nearest_many(
+        &self,
+        p: Vector<3>,
+        count: usize,
+        found: &mut Vec<(f64, u32)>,
+        mut distance2: impl FnMut(u32) -> Option<f64>,
+    ) -> u64 {
+        let (mut looked, mut stack) = (0, vec![(gap2(&self.nodes[0].bounds, p), 0_u32)]);
+        found.clear();
+        while let Some((gap, at)) = stack.pop() {
+            if found.len() == count && found.last().is_none_or(|last| gap > last.0) {
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            looked += 1 + u64::from(node.count);
+            if node.count == 0 {
+                let near = [at + 1, node.second].map(|child| (gap2(&self.nodes[child as usize].bounds, p), child));
+                let [first, second] = if near[0].0 <= near[1].0 { near } else { [near[1], near[0]] };
+                stack.extend([second, first]);
+                continue;
+            }
+            for &item in self.items(node) {
+                let Some(d2) = distance2(item) else { continue };
+                if found.len() == count && found.last().is_some_and(|last| (d2, item) >= *last) {
+                    continue;
+                }
+                let place = found.partition_point(|other| *other < (d2, item));
+                found.insert(place, (d2, item));
+                found.truncate(count);
+            }
+        }
+        looked
+    }
+
     /// Calls `visit` for every item whose node's box meets `bounds`: at least those whose own boxes do. It may end the walk by answering false.
     /// Returns what was looked at.
     pub(crate) fn meeting(&self, bounds: &Bounds<3>, mut visit: impl FnMut(u32) -> bool) -> u64 {
@@ -139,6 +175,11 @@ mod tests {
             let nearest = (0..300).min_by(|&a, &b| d2(a).total_cmp(&d2(b))).unwrap();
             assert_eq!(tree.nearest(p, f64::INFINITY, |i| Some(d2(i))).0, Some((nearest, d2(nearest))));
             assert_eq!(tree.nearest(p, d2(nearest) * 0.9, |i| Some(d2(i))).0, None);
+            let mut many = Vec::new();
+            tree.nearest_many(p, 7, &mut many, |i| (i % 2 == 0).then(|| d2(i)));
+            let mut all: Vec<_> = (0..300).step_by(2).map(|i| (d2(i), i)).collect();
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            assert_eq!(many, all[..7]);
             let ball = Bounds::new(p, p).grown(0.2);
             let mut met = Vec::new();
             tree.meeting(&ball, |i| {

@@ -1,6 +1,7 @@
 //! Surfaces of points and triangles.
 
 mod cloud;
+mod dipoles;
 mod directions;
 mod implicit;
 mod isosurface;

@@ -7,8 +7,14 @@ use arabesque_core::{DisjointSets, Vector};
 
 use super::neighbours::Neighbours;
 
-/// Least cosine between the normals of two points that are linked: sharp edges are, the two sides of a touch are not.
+/// Least cosine between the normals of two points that are linked: across sharp edges they are, the two sides of a touch are not.
 const TURN: f64 = -0.3;
+/// Least cosine of those that are linked without a closer look, and everywhere where the surface is hollow between them, as it is where two strands touch.
+const PLAIN: f64 = 0.3;
+/// How much the normals may lean towards one another there.
+const HOLLOW: f64 = 0.5;
+/// A point that far above the plane of another is beyond an edge between them, in spacings.
+const BEYOND: f64 = 0.2;
 /// How steeply one point may lie above the other, against the mean of their normals: a share of the way between them.
 const RISE: f64 = 0.5;
 /// Sheets of fewer points belong to the one they are nearest to.
@@ -17,10 +23,24 @@ const LEAST: usize = 24;
 /// The points of each sheet, in rising order.
 pub(crate) fn sheets(points: &[Vector<3>], normals: &[Vector<3>], neighbours: &Neighbours) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(points.len());
+    // Whether the sheet of `i` goes on above that of `j`, as it does where strands pass through one another and at no edge.
+    let passes = |i: usize, j: usize| {
+        let own = neighbours.of(i).iter().map(|&k| k as usize).filter(|&k| normals[k].dot(normals[i]) > 0.5);
+        own.into_iter().any(|k| (points[k] - points[j]).dot(normals[j]) > BEYOND * neighbours.spacing[j])
+    };
     for i in 0..points.len() {
         for &j in neighbours.of(i) {
             let j = j as usize;
-            if are_linked(points[j] - points[i], normals[i], normals[j]) {
+            let way = points[j] - points[i];
+            let (middle, length) = ((normals[i] + normals[j]).unit_or_zero(), way.norm());
+            let (turn, opening) = (normals[i].dot(normals[j]), (normals[j] - normals[i]).dot(way));
+            let is_linked = middle.dot(way).abs() <= RISE * length
+                && if turn > PLAIN {
+                    opening > -HOLLOW * length
+                } else {
+                    turn > TURN && opening > 0.0 && !passes(i, j) && !passes(j, i)
+                };
+            if is_linked {
                 sets.join(i, j);
             }
         }
@@ -42,10 +62,4 @@ pub(crate) fn sheets(points: &[Vector<3>], normals: &[Vector<3>], neighbours: &N
         }
     }
     sets.groups()
-}
-
-/// Whether a surface may lead from a point to another by a way that is as long as the straight one, about.
-fn are_linked(way: Vector<3>, from: Vector<3>, to: Vector<3>) -> bool {
-    let middle = (from + to).unit_or_zero();
-    from.dot(to) > TURN && middle.dot(way).abs() <= RISE * way.norm()
 }

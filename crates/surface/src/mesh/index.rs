@@ -6,9 +6,8 @@ use rayon::prelude::*;
 use super::{
     topology::{NONE, Topology},
     triangle,
-    winding::Winding,
 };
-use crate::tree::Tree;
+use crate::{dipoles::Dipoles, tree::Tree};
 
 /// Work units of a node or triangle that a query looks at.
 const LOOK: u64 = 12;
@@ -36,7 +35,7 @@ pub struct MeshIndex {
     /// Normals at the vertices of the topology, weighted by the angles of the triangles around them.
     pub(crate) normals: Vec<Vector<3>>,
     tree: Tree,
-    winding: Winding,
+    dipoles: Dipoles,
     bounds: Bounds<3>,
     _held: Held,
 }
@@ -56,9 +55,10 @@ impl MeshIndex {
         let boxes: Vec<_> =
             (0..topology.triangles.len() as u32).into_par_iter().map(|t| Bounds::around(topology.corners(t))).collect();
         let tree = Tree::new(&boxes);
-        let winding = Winding::new(&topology, &tree);
+        let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
+        let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
         let normals = vertex_normals(&topology);
-        Ok(Self { bounds: tree.nodes[0].bounds, topology, normals, tree, winding, _held: held })
+        Ok(Self { bounds: tree.nodes[0].bounds, topology, normals, tree, dipoles, _held: held })
     }
 
     /// The smallest box around the triangles.
@@ -136,7 +136,7 @@ impl MeshIndex {
     /// How often the surface winds around `p`: 1 inside of a closed surface, 0 outside, -1 inside of one that is turned inside out. To
     /// about 0.03; nearer to the surface it is exact.
     pub fn winding(&self, p: Vector<3>) -> f64 {
-        self.winding.at(&self.topology, &self.tree, p).0
+        self.winding_counted(p).0
     }
 
     /// Distance to the mesh on the side that `closest`, the nearest point to `p`, faces: positive above the surface, along its normals, and negative below. For open sheets.
@@ -165,8 +165,7 @@ impl MeshIndex {
         self.all(points, budget, |p| {
             let (found, looked) = self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)));
             let distance = found.map_or(f64::INFINITY, |(_, d2)| d2.sqrt());
-            let (winding, more) =
-                if self.bounds.contains(p) { self.winding.at(&self.topology, &self.tree, p) } else { (0.0, 0) };
+            let (winding, more) = if self.bounds.contains(p) { self.winding_counted(p) } else { (0.0, 0) };
             (if winding.abs() > 0.5 { distance } else { -distance }, looked + more)
         })
     }
@@ -177,8 +176,7 @@ impl MeshIndex {
     /// As [`Budget::spend`].
     pub fn inside_all(&self, points: &[Vector<3>], budget: &Budget) -> Result<Vec<bool>> {
         self.all(points, budget, |p| {
-            let (winding, looked) =
-                if self.bounds.contains(p) { self.winding.at(&self.topology, &self.tree, p) } else { (0.0, 1) };
+            let (winding, looked) = if self.bounds.contains(p) { self.winding_counted(p) } else { (0.0, 1) };
             (winding.abs() > 0.5, looked)
         })
     }
@@ -206,6 +204,10 @@ impl MeshIndex {
             })
             .collect();
         Ok(chunks?.into_iter().flatten().collect())
+    }
+
+    fn winding_counted(&self, p: Vector<3>) -> (f64, u64) {
+        self.dipoles.winding(&self.tree, p, |t| triangle::solid_angle(&self.topology.corners(t), p))
     }
 
     fn distance2(&self, t: u32, p: Vector<3>) -> f64 {

@@ -5,7 +5,6 @@ mod index;
 mod report;
 mod topology;
 mod triangle;
-mod winding;
 
 pub use index::{Closest, MeshIndex};
 pub use report::{Found, MeshReport};

@@ -4,7 +4,7 @@ use arabesque_core::{Budget, Error, PointSet, Result, Vector};
 
 use super::report::Notes;
 use crate::{
-    cloud::{Neighbours, contradictions, estimated, mended, sheets, turned},
+    cloud::{Neighbours, buried, contradictions, estimated, mended, sheets, turned},
     implicit::{Balls, Field, Kernel, Oriented, border_offset, metaballs, rimls},
     isosurface::{Patch, beyond_border, crumbs, cut, march, pinches},
     mesh::MeshIndex,
@@ -154,16 +154,19 @@ impl Job<'_> {
         }
         notes.outliers += left_out.len();
         let sheets = sheets(&points.positions, &normals, &neighbours);
-        let sheets = sheets.into_iter().map(|mut sheet| {
+        let bare = |mut sheet: Vec<usize>| -> Result<Vec<usize>> {
             sheet.retain(|i| left_out.binary_search(i).is_err());
-            sheet
-        });
+            let hidden = buried(&points.positions, &normals, &spacing, &sheet, self.budget)?;
+            sheet.retain(|i| hidden.binary_search(i).is_err());
+            Ok(sheet)
+        };
+        let sheets: Result<Vec<_>> = sheets.into_iter().map(bare).collect();
         Ok(Cloud {
             positions: points.positions.clone(),
             normals,
             colours: points.colours.clone(),
             spacing,
-            sheets: sheets.filter(|sheet| !sheet.is_empty()).collect(),
+            sheets: sheets?.into_iter().filter(|sheet| !sheet.is_empty()).collect(),
         })
     }
 

@@ -1,0 +1,206 @@
+//! Robust implicit moving least squares [Oztireli 2009].
+//!
+//! At a place `x` each point `p` with normal `n` says that the surface is `f_p = n · (x - p)` below it. Moving least squares take the mean of what the
+//! points around say, with weights `φ = (1 - |x - p|² / h²)⁴`. The robust kind repeats that a few times, and takes less of points that say something else than the
+//! rest, by `exp(-((f_p - f) / (σ_r h))²)`, and whose normal differs from the gradient, by `exp(-(|n - ∇f| / σ_n)²)`: so edges stay sharp.
+//!
+//! Departures: the rounds start from what the nearest point says (in units of its `h`), not from the plain mean, so that the other side of a thin sheet or a near-by part never
+//! gets a say; each point has its own `h`, a multiple of the spacing around it. The rounds are done at nodes within two cells of the surface only; what is farther away is taken from the
+//! nearest point, since nothing but its sign matters there.
+
+use arabesque_core::{Budget, Result, Vector};
+
+use super::blocks::{BLOCK, Blocks, Field, Node, SIDE, reached};
+
+/// Nodes nearer to the surface are done with care, in cells.
+const CARE: f32 = 2.0;
+
+/// Points with normals, as a surface is made of them.
+pub(crate) struct Oriented<'a> {
+    pub(crate) positions: &'a [Vector<3>],
+    pub(crate) normals: &'a [Vector<3>],
+    pub(crate) colours: Option<&'a [[f64; 3]]>,
+    /// Radius in which each point matters.
+    pub(crate) radii: &'a [f64],
+}
+
+/// How points are weighed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kernel {
+    pub(crate) rounds: usize,
+    /// σ_r, in radii.
+    pub(crate) residual: f32,
+    /// σ_n.
+    pub(crate) sharpness: f32,
+    /// Distance from the middle of the points around to a place on their border, in radii: there an open surface ends.
+    pub(crate) border: f32,
+}
+
+/// A point as a block sees it: in cells from the first node.
+#[derive(Clone, Copy)]
+struct Sample {
+    at: [f32; 3],
+    normal: [f32; 3],
+    radius: f32,
+    /// One over the squared radius.
+    inverse2: f32,
+}
+
+/// The field of points with normals, with nodes at distances of `cell`.
+pub(crate) fn rimls(points: &Oriented<'_>, kernel: Kernel, cell: f64, budget: &Budget) -> Result<Field> {
+    let blocks = Blocks::new(points.positions, points.radii, cell, budget)?;
+    let evaluate = |blocks: &Blocks, block: usize, nodes: &mut [Node], colours: &mut [[f32; 3]]| {
+        let corner = blocks.corner(block);
+        let numbers = blocks.balls(block);
+        let samples: Vec<Sample> = numbers
+            .iter()
+            .map(|&i| {
+                let i = i as usize;
+                let radius = (points.radii[i] / cell) as f32;
+                let at = ((points.positions[i] - corner) * (1.0 / cell)).0.map(|c| c as f32);
+                Sample { at, normal: points.normals[i].0.map(|c| c as f32), radius, inverse2: 1.0 / (radius * radius) }
+            })
+            .collect();
+        let nearest = nearest_samples(&samples);
+        budget.spend(BLOCK as u64 + samples.len() as u64 * 200)?;
+        let (mut near, mut meter) = (Vec::new(), budget.meter());
+        for (k, node) in nodes.iter_mut().enumerate() {
+            let Some(first) = nearest[k] else { continue };
+            let at = [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(|c| c as f32);
+            let first = &samples[first as usize];
+            let value = dot(first.normal, minus(at, first.at));
+            *node = Node { value, gradient: first.normal, beyond: f32::INFINITY };
+            if value.abs() > CARE {
+                continue;
+            }
+            near.clear();
+            for (s, sample) in samples.iter().enumerate() {
+                let q = dot2(minus(at, sample.at)) * sample.inverse2;
+                if q < 1.0 {
+                    near.push((s as u32, 1.0 - q));
+                }
+            }
+            meter.spend(samples.len() as u64 * 2 + (near.len() * (kernel.rounds + 2)) as u64 * 8)?;
+            *node = careful(at, &samples, &near, *node, kernel);
+            if let (Some(own), Some(colour)) = (points.colours, colours.get_mut(k)) {
+                *colour = mean_colour(&near, |s| own[numbers[s as usize] as usize]);
+            }
+        }
+        Ok(())
+    };
+    Field::new(blocks, Node::UNKNOWN, points.colours.is_some(), budget, evaluate)
+}
+
+/// For each node of a block the sample that is nearest, by radii, among those that reach it.
+fn nearest_samples(samples: &[Sample]) -> Vec<Option<u32>> {
+    let mut best = vec![(1.0_f32, None); BLOCK];
+    for (s, sample) in samples.iter().enumerate() {
+        let [x, y, z] = reached(Vector(sample.at.map(f64::from)), f64::from(sample.radius));
+        for k in z.0..z.1 {
+            for j in y.0..y.1 {
+                for i in x.0..x.1 {
+                    let q = dot2(minus([i as f32, j as f32, k as f32], sample.at)) * sample.inverse2;
+                    let node = &mut best[i + SIDE * (j + SIDE * k)];
+                    if q < node.0 {
+                        *node = (q, Some(s as u32));
+                    }
+                }
+            }
+        }
+    }
+    best.into_iter().map(|(_, s)| s).collect()
+}
+
+/// The rounds at one node, from what its nearest point says. `near` has the samples around with 1 - |x - p|² / h² each.
+fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], start: Node, kernel: Kernel) -> Node {
+    let (mut f, mut g) = (start.value, start.gradient);
+    for round in 0..=kernel.rounds {
+        let (mut sum, mut sum_f) = (0.0_f32, 0.0_f32);
+        let (mut sum_n, mut sum_g, mut sum_gf) = ([0.0_f32; 3], [0.0_f32; 3], [0.0_f32; 3]);
+        for &(s, inner) in near {
+            let sample = &samples[s as usize];
+            let d = minus(at, sample.at);
+            let own = dot(sample.normal, d);
+            let mut alike = 1.0;
+            if kernel.rounds > 0 {
+                let mut unlike = dot2(minus(sample.normal, g)) / (kernel.sharpness * kernel.sharpness);
+                if round > 0 {
+                    let off = (own - f) / (kernel.residual * sample.radius);
+                    unlike += off * off;
+                }
+                alike = (-unlike).exp();
+            }
+            let cube = inner * inner * inner;
+            let weight = cube * inner * alike;
+            let slope = -8.0 * cube * sample.inverse2 * alike;
+            sum += weight;
+            sum_f += weight * own;
+            for k in 0..3 {
+                sum_n[k] += weight * sample.normal[k];
+                sum_g[k] += slope * d[k];
+                sum_gf[k] += slope * d[k] * own;
+            }
+        }
+        if !(sum > 1e-20) {
+            break;
+        }
+        let before = f;
+        f = sum_f / sum;
+        g = std::array::from_fn(|k| (sum_gf[k] - f * sum_g[k] + sum_n[k]) / sum);
+        if (f - before).abs() < 1e-4 {
+            break;
+        }
+    }
+    Node { value: f, gradient: g, beyond: beyond(at, samples, near, g, kernel) }
+}
+
+/// How far the place is from the middle of the points around, along the surface: 1 at their border [Adamson 2004].
+fn beyond(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], g: [f32; 3], kernel: Kernel) -> f32 {
+    let (mut sum, mut offset, mut radius) = (0.0_f32, [0.0_f32; 3], 0.0_f32);
+    for &(s, inner) in near {
+        let sample = &samples[s as usize];
+        let weight = inner * inner * inner * inner;
+        let d = minus(at, sample.at);
+        sum += weight;
+        radius += weight * sample.radius;
+        (0..3).for_each(|k| offset[k] += weight * d[k]);
+    }
+    let off = offset.map(|c| c / sum);
+    let up = dot(off, g) / dot2(g).max(1e-12);
+    let along: [f32; 3] = std::array::from_fn(|k| off[k] - up * g[k]);
+    dot2(along).sqrt() / (kernel.border * radius / sum)
+}
+
+/// Mean colour of samples, weighed as their heights are.
+fn mean_colour(near: &[(u32, f32)], colour: impl Fn(u32) -> [f64; 3]) -> [f32; 3] {
+    let (mut sum, mut mean) = (0.0, [0.0; 3]);
+    for &(s, inner) in near {
+        let weight = f64::from(inner).powi(4);
+        sum += weight;
+        colour(s).iter().enumerate().for_each(|(k, c)| mean[k] += weight * c);
+    }
+    mean.map(|c| (c / sum) as f32)
+}
+
+fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn dot2(a: [f32; 3]) -> f32 {
+    dot(a, a)
+}
+
+/// How far from the middle of the points around a place is that lies `past` radii beyond the straight border of evenly spread points, in radii.
+pub(crate) fn border_offset(past: f64) -> f64 {
+    // Across the border the kernel's weight is (1 - u²)^4.5 at u radii, and only what is farther than the border has any.
+    let from = past.clamp(-0.95, 0.95);
+    let steps = 200;
+    let width = (1.0 - from) / f64::from(steps);
+    let weight = |k: i32| (1.0 - (from + (f64::from(k) + 0.5) * width).powi(2)).max(0.0).powf(4.5) * width;
+    let whole: f64 = (0..steps).map(weight).sum();
+    (1.0 - from * from).powf(5.5) / 11.0 / whole
+}

@@ -1,0 +1,10 @@
+//! Triangle meshes: the nearest point, inside and outside, and what is wrong with one.
+
+mod crossings;
+mod index;
+mod report;
+mod topology;
+mod triangle;
+
+pub use index::{Closest, MeshIndex};
+pub use report::{Found, MeshReport};

@@ -1,0 +1,8 @@
+//! From points to a mesh.
+
+mod parts;
+mod report;
+mod run;
+mod sheet;
+
+pub use run::{Reconstruction, reconstruct};

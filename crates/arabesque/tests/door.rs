@@ -6,7 +6,7 @@ use std::{ops::ControlFlow, path::Path, thread};
 
 use arabesque::{
     Artwork, Error, Fill, Format, Geometry, Input, Job, Limits, OutputOptions, Prepared, Progress, Recipe, Redo,
-    Region, Request, Resources, Ribbon, Space, StopReason, Unobserved, Watch,
+    Region, Request, Resources, Ribbon, Space, StopReason, Surface, Unobserved, Watch,
 };
 
 fn folder() -> Resources {
@@ -107,6 +107,17 @@ impl Watch<Artwork> for Keep {
     }
 }
 
+/// Two balls of points with normals, apart, as two groups.
+fn balls() -> String {
+    let row = |k: u32| {
+        let z = 1.0 - (2.0 * f64::from(k % 300) + 1.0) / 300.0;
+        let (angle, r) = (2.4 * f64::from(k), (1.0 - z * z).sqrt());
+        let (x, y) = (r * angle.cos(), r * angle.sin());
+        format!("{},{y},{z},{x},{y},{z},{}\n", x + 3.0 * f64::from(k / 300), k / 300)
+    };
+    format!("x,y,z,nx,ny,nz,group\n{}", (0..600).map(row).collect::<String>())
+}
+
 #[test]
 fn one_watch_draws_the_previews_of_every_method() {
     let cube: String = (0..64).map(|k| format!("{},{},{}\n", k % 4, k / 4 % 4, k / 16)).collect();
@@ -116,6 +127,7 @@ fn one_watch_draws_the_previews_of_every_method() {
         leaves(Redo::of(Region::Box([20.0, 20.0, 20.0, 20.0]))),
         Recipe::new(cube, Space::new("5x5x5".parse().unwrap())),
         Recipe::new(Input::file("strip.svg"), Ribbon { scale: Some(0.8), ..Ribbon::new(Input::file("curve.svg")) }),
+        Recipe::new(Input::file("balls.csv").embedding(balls().as_bytes()), Surface::default()),
     ];
     for recipe in recipes {
         let mut keep = Keep(Vec::new());
@@ -127,10 +139,15 @@ fn one_watch_draws_the_previews_of_every_method() {
         let placed = match preview.geometry() {
             Geometry::Plane(snapshot) => snapshot.placements.len() + snapshot.curves.len() + snapshot.patches.len(),
             Geometry::Space(snapshot) => snapshot.placements.len() + snapshot.curves.len() + snapshot.patches.len(),
+            Geometry::Mesh(mesh) => mesh.triangles.len(),
         };
         assert!(placed > 0, "{progress}");
         assert_eq!(preview.points().len(), preview.summary().elements, "{progress}");
-        let format = if matches!(recipe.job, Job::Space(_)) { Format::Csv } else { Format::Svg };
+        let format = match recipe.job {
+            Job::Space(_) => Format::Csv,
+            Job::Surface(_) => Format::Ply,
+            _ => Format::Svg,
+        };
         let drawn = preview.encode(&OutputOptions { format: Some(format), bare: true, ..OutputOptions::default() });
         assert!(drawn.unwrap().bytes.len() > 100);
     }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    commands::{completions, fill, inspect, man, measure, ribbon, run},
+    commands::{completions, fill, inspect, man, measure, ribbon, run, surface},
     failure::Failure,
 };
 
@@ -27,6 +27,8 @@ enum Command {
     Fill(Box<fill::Fill>),
     /// Lay the pattern of a picture along curves without bending it
     Ribbon(Box<ribbon::Ribbon>),
+    /// Make the surface of points
+    Surface(Box<surface::Surface>),
     /// Say what was understood of an exemplar
     Inspect(inspect::Inspect),
     /// Say how good results are beside their exemplar: holes, clumps, overlaps, broken elements, copies
@@ -44,6 +46,7 @@ impl App {
         match self.command {
             Command::Fill(c) => c.execute(),
             Command::Ribbon(c) => c.execute(),
+            Command::Surface(c) => c.execute(),
             Command::Inspect(c) => c.execute(),
             Command::Measure(c) => c.execute(),
             Command::Run(c) => c.execute(),

@@ -35,7 +35,7 @@ pub(crate) struct RunOptions {
     /// Stop this long after the start of the command and write the best so far: seconds, or 1m30s
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub(crate) time_limit: Option<Duration>,
-    /// File format, where the extension of OUT does not say: svg, png, json, csv, obj, glb or toml (the recipe alone)
+    /// File format, where the extension of OUT does not say: svg, png, json, csv, obj, glb, ply or toml (the recipe alone)
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
     /// Leave the recipe out of the result, which then cannot be repeated by `arabesque run`
@@ -290,7 +290,8 @@ fn counted(made: &Summary) -> String {
     if let Some(r) = &made.ribbons {
         return format!("{} in {}", many(r.pieces, "piece"), many(r.ribbons, "ribbon"));
     }
-    let kinds = [(made.areas, "area"), (made.curves, "curve"), (made.elements, "element")];
+    let kinds =
+        [(made.triangles, "triangle"), (made.areas, "area"), (made.curves, "curve"), (made.elements, "element")];
     let said: Vec<String> = kinds.iter().filter(|(n, _)| *n > 0).map(|&(n, what)| many(n, what)).collect();
     match said.as_slice() {
         [] => many(0, "element"),

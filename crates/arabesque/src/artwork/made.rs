@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use arabesque_core::{Budget, EnergyPoint, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{Budget, EnergyPoint, Result, Snapshot, StopReason, TriangleMesh, Warning};
 
 use crate::{
     artwork::{points::PlacedPoint, summary::Summary},
@@ -66,6 +66,8 @@ pub enum Geometry {
     Plane(Snapshot<2>),
     /// In space.
     Space(Snapshot<3>),
+    /// A mesh.
+    Mesh(TriangleMesh),
 }
 
 impl Encoded {

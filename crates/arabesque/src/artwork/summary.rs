@@ -19,6 +19,9 @@ pub struct Summary {
     /// Number of filled areas that run through the result.
     #[serde(skip_serializing_if = "is_zero")]
     pub areas: usize,
+    /// Number of triangles of a surface.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub triangles: usize,
     /// Width and height of the seamless tile that was made, in the units of the exemplar.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tile: Option<[f64; 2]>,
@@ -51,6 +54,7 @@ impl Summary {
             curves: outcome.curves.len(),
             styles: counts(styles),
             areas: outcome.areas.len(),
+            triangles: 0,
             tile: None,
             ribbons: None,
             energy: outcome.energy.last().map(|e| e.energy),

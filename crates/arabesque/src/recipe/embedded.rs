@@ -6,6 +6,7 @@ use arabesque_io::{
     mesh::{
         gltf,
         obj::{self, strips},
+        ply,
     },
     raster::png,
     svg,
@@ -45,6 +46,8 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
         (png::recipe_of(bytes), "a picture")
     } else if gltf::is_glb(bytes) {
         (gltf::recipe_of(bytes), "a mesh")
+    } else if ply::is_ply(bytes) {
+        (ply::recipe_of(bytes), "a PLY file")
     } else {
         let text = file::decode_text(name, bytes, &Budget::default())?;
         let start = text.trim_start();
@@ -78,6 +81,9 @@ pub fn is_result(bytes: &[u8]) -> bool {
     let begins = |mark: &str| contains(&bytes[..bytes.len().min(HEAD)], mark.as_bytes());
     if png::is_png(bytes) {
         return has("iTXtarabesque recipe\0");
+    }
+    if ply::is_ply(bytes) {
+        return begins("\ncomment arabesque recipe:\n");
     }
     if gltf::is_glb(bytes) {
         return begins("\"generator\":\"arabesque ") || has("\"arabesque recipe\":");

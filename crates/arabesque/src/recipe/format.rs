@@ -20,21 +20,24 @@ pub enum Format {
     Csv,
     /// Curves in space as polylines; ribbons as textured strips.
     Obj,
-    /// Ribbons as textured strips, with their pictures.
+    /// Ribbons as textured strips, with their pictures; points and meshes.
     Glb,
+    /// Points with attributes, and meshes.
+    Ply,
     /// The recipe alone.
     Toml,
 }
 
 impl Format {
     /// Every format, by name.
-    pub const ALL: [(&'static str, Self); 7] = [
+    pub const ALL: [(&'static str, Self); 8] = [
         ("svg", Self::Svg),
         ("png", Self::Png),
         ("json", Self::Json),
         ("csv", Self::Csv),
         ("obj", Self::Obj),
         ("glb", Self::Glb),
+        ("ply", Self::Ply),
         ("toml", Self::Toml),
     ];
 

@@ -19,7 +19,9 @@ pub use embedded::{Carrier, carried_recipe, is_result, recipe_in};
 pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
-pub use job::{ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, WidthSource, ribbon_options};
+pub use job::{
+    ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, Surface, WidthSource, ribbon_options,
+};
 pub use output::OutputOptions;
 pub use region::Region;
 pub use size::{Cuboid, Size, Tile};
@@ -65,7 +67,7 @@ struct Document {
     seed: u64,
     /// The exemplar.
     exemplar: Input,
-    /// Fill a part of the plane. One of `fill`, `redo`, `space` and `ribbon` may be there; with none of them the
+    /// Fill a part of the plane. One of `fill`, `redo`, `space`, `ribbon` and `surface` may be there; with none of them the
     /// layer Domain of the exemplar is filled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fill: Option<Fill>,
@@ -78,6 +80,9 @@ struct Document {
     /// Lay the pattern of a picture along curves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     ribbon: Option<Ribbon>,
+    /// Make a surface of points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surface: Option<Surface>,
     /// What to write.
     #[serde(default)]
     output: OutputOptions,
@@ -87,10 +92,9 @@ impl TryFrom<Document> for Recipe {
     type Error = String;
 
     fn try_from(document: Document) -> std::result::Result<Self, String> {
-        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, output } = document;
-        let mut jobs = [fill.map(Job::Fill), redo.map(Job::Redo), space.map(Job::Space), ribbon.map(Job::Ribbon)]
-            .into_iter()
-            .flatten();
+        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, output } = document;
+        let plane = [fill.map(Job::Fill), redo.map(Job::Redo), ribbon.map(Job::Ribbon)];
+        let mut jobs = plane.into_iter().chain([space.map(Job::Space), surface.map(Job::Surface)]).flatten();
         match (jobs.next(), jobs.next()) {
             (Some(job), None) => Ok(Self { arabesque, seed, exemplar, job, output }),
             (None, _) => Ok(Self { arabesque, seed, exemplar, job: Job::Fill(Fill::default()), output }),
@@ -102,14 +106,15 @@ impl TryFrom<Document> for Recipe {
 impl From<Recipe> for Document {
     fn from(recipe: Recipe) -> Self {
         let Recipe { arabesque, seed, exemplar, job, output } = recipe;
-        let (mut fill, mut redo, mut space, mut ribbon) = (None, None, None, None);
+        let (mut fill, mut redo, mut space, mut ribbon, mut surface) = (None, None, None, None, None);
         match job {
+            Job::Surface(job) => surface = Some(job),
             Job::Fill(job) => fill = Some(job),
             Job::Redo(job) => redo = Some(job),
             Job::Space(job) => space = Some(job),
             Job::Ribbon(job) => ribbon = Some(job),
         }
-        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, output }
+        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, output }
     }
 }
 
@@ -234,6 +239,7 @@ mod tests {
         for job in [
             Job::from(Redo::of(Region::Own("hole".into()))),
             Job::from(Space::new("5x5x5".parse().unwrap())),
+            Job::from(Surface { trim: Some(Input::file("hull.ply")), ..Surface::default() }),
             Job::from(ribbon),
         ] {
             let recipe = Recipe::new(Input::file("a"), job);

@@ -50,7 +50,7 @@ impl Made for VolumeMade {
                 let page = json::Frame { view: frame, unit: None, recipe: sheet.recipe };
                 (json::write_json(exemplar, outcome, &page)?, Vec::new())
             }
-            Format::Svg | Format::Png | Format::Glb | Format::Toml => {
+            Format::Svg | Format::Png | Format::Glb | Format::Ply | Format::Toml => {
                 let what = format!("a result in space as {}", sheet.format.name());
                 let advice = "write obj (curves), csv (points) or json (both)";
                 return Err(Error::Unsupported { what, advice: advice.into() });

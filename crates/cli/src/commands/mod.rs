@@ -7,4 +7,5 @@ pub(crate) mod man;
 pub(crate) mod measure;
 pub(crate) mod ribbon;
 pub(crate) mod run;
+pub(crate) mod surface;
 pub(crate) mod telling;

@@ -36,6 +36,7 @@ impl Job {
                 wanted.extend(job.then.iter().map(|input| ("exemplar", input)));
                 wanted.extend(avoided(&job.avoid));
             }
+            Self::Surface(job) => wanted.extend(job.trim.iter().map(|input| ("--trim", input))),
         }
         wanted
     }

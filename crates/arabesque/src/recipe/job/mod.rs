@@ -6,12 +6,14 @@ mod parameters;
 mod redo;
 mod ribbon;
 mod space;
+mod surface;
 
 pub use fill::{ExemplarTile, Fill, Method, Reading};
 pub use parameters::Parameters;
 pub use redo::Redo;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};
 pub use space::Space;
+pub use surface::Surface;
 
 pub(super) use parameters::plain_values;
 
@@ -28,6 +30,8 @@ pub enum Job {
     Space(Space),
     /// Lay the pattern of a picture along curves.
     Ribbon(Ribbon),
+    /// Make a surface of points.
+    Surface(Surface),
 }
 
 impl Job {
@@ -38,11 +42,12 @@ impl Job {
             Self::Redo(_) => "redo",
             Self::Space(_) => "space",
             Self::Ribbon(_) => "ribbon",
+            Self::Surface(_) => "surface",
         }
     }
 
     /// The file format where nobody says which: SVG for the plane, OBJ for curves and CSV for points in space, PNG for ribbons, GLB
-    /// for ribbons in space.
+    /// for ribbons in space, PLY for surfaces.
     pub(crate) fn usual_format(&self, exemplar: &Input) -> Format {
         let is = |input: &Input, format| Format::of_path(&input.path).ok().flatten() == Some(format);
         match self {
@@ -51,6 +56,7 @@ impl Job {
             Self::Space(_) => Format::Obj,
             Self::Ribbon(ribbon) if is(&ribbon.along, Format::Obj) => Format::Glb,
             Self::Ribbon(_) => Format::Png,
+            Self::Surface(_) => Format::Ply,
         }
     }
 
@@ -75,6 +81,7 @@ impl Job {
             Self::Redo(job) => Self::Redo(job.prepared_part()),
             Self::Space(job) => Self::Space(job.prepared_part()),
             Self::Ribbon(job) => Self::Ribbon(job.prepared_part()),
+            Self::Surface(job) => Self::Surface(job.prepared_part()),
         }
     }
 }
@@ -94,6 +101,12 @@ impl From<Redo> for Job {
 impl From<Space> for Job {
     fn from(job: Space) -> Self {
         Self::Space(job)
+    }
+}
+
+impl From<Surface> for Job {
+    fn from(job: Surface) -> Self {
+        Self::Surface(job)
     }
 }
 

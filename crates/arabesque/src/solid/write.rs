@@ -1,0 +1,79 @@
+//! Points and meshes as files.
+
+use arabesque_core::{Error, PointSet, Result, StopReason, TriangleMesh, Warning};
+use arabesque_io::{
+    json::geometry as json,
+    mesh::{
+        gltf::{self, Scene},
+        obj,
+        ply::{PlyFile, write_ply},
+    },
+    table::points,
+};
+
+use crate::{
+    artwork::{Encoded, Sheet},
+    recipe::Format,
+};
+
+/// What is said in a file beside what was made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Said<'a> {
+    pub(crate) warnings: &'a [Warning],
+    pub(crate) stopped: StopReason,
+}
+
+impl<'a> Said<'a> {
+    fn report(self, recipe: Option<&'a str>) -> json::Report<'a> {
+        let stopped = match self.stopped {
+            StopReason::Finished => "finished",
+            StopReason::Stopped => "early",
+            StopReason::Limit => "limit",
+        };
+        json::Report { warnings: self.warnings, stopped, recipe }
+    }
+}
+
+/// Writes a mesh.
+pub(crate) fn encode_mesh(mesh: &TriangleMesh, sheet: &Sheet<'_>, said: Said<'_>) -> Result<Encoded> {
+    let (recipe, budget) = (sheet.recipe, sheet.budget);
+    let bytes = match sheet.format {
+        Format::Ply => write_ply(&PlyFile::of_mesh(mesh).with_recipe(recipe), budget)?,
+        Format::Obj => obj::write_mesh(mesh, recipe, budget)?.into_bytes(),
+        Format::Glb => gltf::write_scene(&Scene::of_mesh("surface", mesh), recipe, budget)?,
+        Format::Json => json::write_mesh(mesh, &said.report(recipe), budget)?.into_bytes(),
+        Format::Svg | Format::Png | Format::Csv | Format::Toml => {
+            return Err(refused("a surface", sheet.format, "write ply, obj, glb or json"));
+        }
+    };
+    Ok(Encoded { bytes, warnings: Vec::new() })
+}
+
+/// Writes points in space.
+#[allow(dead_code, reason = "structures come next")]
+pub(crate) fn encode_points(points: &PointSet<3>, sheet: &Sheet<'_>, said: Said<'_>) -> Result<Encoded> {
+    let (recipe, budget) = (sheet.recipe, sheet.budget);
+    let mut warnings = Vec::new();
+    let bytes = match sheet.format {
+        Format::Ply => write_ply(&PlyFile::of_points(points).with_recipe(recipe), budget)?,
+        Format::Obj => {
+            if points.radii.is_some() || points.groups.is_some() || points.elements.is_some() {
+                let message = "an OBJ file holds no radii, groups and elements of points: left out";
+                warnings.push(Warning::new(message, "write ply, csv or json"));
+            }
+            obj::write_cloud(points, recipe, budget)?.into_bytes()
+        }
+        Format::Glb => gltf::write_scene(&Scene::of_points(points.clone()), recipe, budget)?,
+        Format::Csv => points::write_table(points, recipe, budget)?.into_bytes(),
+        Format::Json => json::write_cloud(points, &said.report(recipe), budget)?.into_bytes(),
+        Format::Svg | Format::Png | Format::Toml => {
+            return Err(refused("points in space", sheet.format, "write ply, csv, obj, glb or json"));
+        }
+    };
+    Ok(Encoded { bytes, warnings })
+}
+
+/// A format that cannot hold what was made.
+pub(crate) fn refused(what: &str, format: Format, advice: &str) -> Error {
+    Error::Unsupported { what: format!("{what} as {}", format.name()), advice: advice.into() }
+}

@@ -1,0 +1,151 @@
+//! How much of the space around what is seen other things fill.
+//!
+//! Around each place some places are looked at, on a spiral in the picture; each that is nearer to the eye takes away light by how far
+//! it stands above the surface there, and the less the farther off it is. Neighbouring places look in other directions, and
+//! the mean over a small square of them evens that out. Two reaches are looked at: what touches, and what forms hollows.
+
+use arabesque_core::{Budget, Result};
+
+use super::frame::{FINE, Frame};
+
+/// Looks from one place, for each reach.
+const LOOKS: usize = 14;
+/// Work of one look.
+const PER_LOOK: u64 = 8;
+/// Side of the square of directions.
+const SQUARE: usize = 4;
+/// Angle from one look to the next.
+const GOLDEN_ANGLE: f32 = 2.399_963_2;
+/// Cosines above the surface that count for nothing, so that flat things stay light.
+const FLAT: f32 = 0.12;
+
+/// What is seen in each pixel: its nearness in pixels, and its direction.
+struct Coarse {
+    width: usize,
+    height: usize,
+    depth: Vec<f32>,
+    normal: Vec<[f32; 3]>,
+}
+
+/// How much light comes to each pixel, from 0 to 1, with what is looked at up to each of the `reaches`, in pixels.
+pub(super) fn openness(frame: &Frame, reaches: [f32; 2], budget: &Budget) -> Result<Vec<f32>> {
+    let coarse = coarse(frame, budget)?;
+    let pixels = coarse.depth.len();
+    let (mut light, _held) = budget.list("light of the picture", pixels.saturating_mul(2))?;
+    light.resize(pixels, 1.0_f32);
+    for reach in reaches {
+        let mut raw = Vec::with_capacity(pixels);
+        for y in 0..coarse.height {
+            budget.spend(PER_LOOK * (LOOKS * coarse.width) as u64)?;
+            raw.extend((0..coarse.width).map(|x| coarse.hidden(x, y, reach)));
+        }
+        for y in 0..coarse.height {
+            budget.spend(PER_LOOK * (SQUARE * SQUARE * coarse.width) as u64)?;
+            for x in 0..coarse.width {
+                let at = y * coarse.width + x;
+                if coarse.depth[at] > f32::NEG_INFINITY {
+                    light[at] *= 1.0 - coarse.even(&raw, x, y, reach).min(1.0);
+                }
+            }
+        }
+    }
+    Ok(light)
+}
+
+fn coarse(frame: &Frame, budget: &Budget) -> Result<Coarse> {
+    let [width, height] = [frame.width / FINE, frame.height / FINE];
+    let _held = budget.hold("places of the picture", width.saturating_mul(height).saturating_mul(16))?;
+    let mut coarse = Coarse { width, height, depth: Vec::new(), normal: Vec::new() };
+    for y in 0..height {
+        budget.spend(PER_LOOK * frame.width as u64)?;
+        for x in 0..width {
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
+            let samples = corners.map(|(i, j)| frame.samples[(FINE * y + j) * frame.width + FINE * x + i]);
+            let nearest = samples.into_iter().fold(samples[0], |a, b| if b.depth > a.depth { b } else { a });
+            coarse.depth.push(nearest.depth / FINE as f32);
+            coarse.normal.push(nearest.direction());
+        }
+    }
+    Ok(coarse)
+}
+
+impl Coarse {
+    /// The share of the space around a place that is filled.
+    fn hidden(&self, x: usize, y: usize, reach: f32) -> f32 {
+        let at = y * self.width + x;
+        let (depth, n) = (self.depth[at], self.normal[at]);
+        if depth == f32::NEG_INFINITY {
+            return 0.0;
+        }
+        let turn = ((x % SQUARE) * SQUARE + (y % SQUARE) * 7 % 16) as f32 * (std::f32::consts::TAU / 16.0);
+        let mut sum = 0.0;
+        for look in 0..LOOKS {
+            let far = reach * ((look as f32 + 0.5) / LOOKS as f32).sqrt();
+            let (sin, cos) = (turn + GOLDEN_ANGLE * look as f32).sin_cos();
+            let [to_x, to_y] = [x as f32 + far * cos, y as f32 + far * sin].map(f32::round);
+            if to_x < 0.0 || to_y < 0.0 || to_x >= self.width as f32 || to_y >= self.height as f32 {
+                continue;
+            }
+            let there = self.depth[to_y as usize * self.width + to_x as usize];
+            let v = [to_x - x as f32, y as f32 - to_y, there - depth];
+            let length = v.iter().map(|c| c * c).sum::<f32>();
+            if !length.is_finite() || length == 0.0 {
+                continue;
+            }
+            let above = (v[0] * n[0] + v[1] * n[1] + v[2] * n[2]) / length.sqrt() - FLAT;
+            let weight = 1.0 / (1.0 + length / (reach * reach));
+            sum += above.max(0.0) * weight;
+        }
+        2.6 * sum / LOOKS as f32
+    }
+
+    /// The mean over a square of places that are about as near.
+    fn even(&self, raw: &[f32], x: usize, y: usize, reach: f32) -> f32 {
+        let depth = self.depth[y * self.width + x];
+        let (mut sum, mut count) = (0.0, 0.0);
+        let side = |at: usize, most: usize| at.saturating_sub(SQUARE / 2)..(at + SQUARE / 2).min(most);
+        for j in side(y, self.height) {
+            for i in side(x, self.width) {
+                let at = j * self.width + i;
+                if (self.depth[at] - depth).abs() < 0.3 * reach {
+                    sum += raw[at];
+                    count += 1.0;
+                }
+            }
+        }
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::frame::Sample;
+
+    /// A floor, with a step of the given height across its right half.
+    fn step(height: f32) -> Vec<f32> {
+        let mut frame = Frame::empty([60, 40], &Budget::default()).unwrap();
+        for y in 0..frame.height {
+            for x in 0..frame.width {
+                let depth = if x >= 60 { height } else { 0.0 };
+                frame.put(x, y, Sample::new(depth, [0.0, 0.0, 1.0], [0; 3]));
+            }
+        }
+        openness(&frame, [6.0, 12.0], &Budget::default()).unwrap()
+    }
+
+    #[test]
+    fn flat_things_are_light_and_the_foot_of_a_step_is_dark() {
+        assert!(step(0.0).iter().all(|light| *light == 1.0));
+        let light = step(24.0);
+        let row = &light[20 * 60..21 * 60];
+        assert!(row[28] < 0.8, "{row:?}");
+        assert!(row[2] > 0.97 && row[31] > 0.97, "{row:?}");
+    }
+
+    #[test]
+    fn nothing_is_not_dark() {
+        let frame = Frame::empty([8, 8], &Budget::default()).unwrap();
+        assert!(openness(&frame, [4.0, 8.0], &Budget::default()).unwrap().iter().all(|light| *light == 1.0));
+    }
+}

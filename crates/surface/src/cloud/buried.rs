@@ -5,8 +5,10 @@ use rayon::prelude::*;
 
 use crate::{dipoles::Dipoles, tree::Tree};
 
-/// On a closed surface the winding number is one half, inside of another solid one more.
-const BURIED: f64 = 1.05;
+/// On a closed surface the winding number is one half, in a hollow up to one, inside of another solid one more: a point is buried at so many times what most have.
+const BURIED: f64 = 2.2;
+/// Where most have less, too little is surrounded to tell.
+const OPEN: f64 = 0.1;
 /// Share of points with an opposite one close by from which there may be solids inside of one another.
 const TOUCHING: usize = 200;
 
@@ -30,23 +32,28 @@ pub(crate) fn buried(
         (points[i], normals[i] * (spacing[i] * spacing[i]))
     };
     let dipoles = Dipoles::new(&tree, piece);
-    let chunk = |chunk: &[usize]| -> Result<Vec<usize>> {
+    let chunk = |chunk: &[usize]| -> Result<Vec<f64>> {
         let (mut found, mut meter) = (Vec::new(), budget.meter());
         for &i in chunk {
             // Pieces are discs, not points: near-by ones fill less than a dipole would.
             let angle = |k: u32| {
                 let (at, area) = piece(k);
-                let (offset, soft) = (at - points[i], 0.5 * spacing[sheet[k as usize]]);
+                let (offset, soft) = (at - points[i], 0.3 * spacing[sheet[k as usize]]);
                 area.dot(offset) / (offset.norm2() + soft * soft).powf(1.5)
             };
             let (winding, looked) = dipoles.winding(&tree, points[i], angle);
             meter.spend(looked * 12)?;
-            found.extend((winding > BURIED).then_some(i));
+            found.push(winding);
         }
         Ok(found)
     };
     let chunks: Result<Vec<_>> = sheet.par_chunks(256).map(chunk).collect();
-    Ok(chunks?.into_iter().flatten().collect())
+    let windings: Vec<f64> = chunks?.into_iter().flatten().collect();
+    let mut sorted = windings.clone();
+    let half = sorted.len() / 2;
+    let usual = *sorted.select_nth_unstable_by(half, f64::total_cmp).1;
+    let is_buried = |&(_, &winding): &(&usize, &f64)| usual > OPEN && winding > BURIED * usual;
+    Ok(sheet.iter().zip(&windings).filter(is_buried).map(|(&i, _)| i).collect())
 }
 
 /// How many of some points spread over the sheet have one close by that faces them or their back.

@@ -24,6 +24,9 @@ pub(crate) struct Oriented<'a> {
     pub(crate) radii: &'a [f64],
 }
 
+/// Cosine to the nearest point's normal below which points face another side.
+const OTHER: f32 = 0.0;
+
 /// How points are weighed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kernel {
@@ -81,7 +84,7 @@ pub(crate) fn rimls(points: &Oriented<'_>, kernel: Kernel, cell: f64, budget: &B
                 }
             }
             meter.spend(samples.len() as u64 * 2 + (near.len() * (kernel.rounds + 2)) as u64 * 8)?;
-            *node = careful(at, &samples, &near, *node, kernel);
+            *node = careful(at, &samples, &near, first.normal, kernel);
             if let (Some(own), Some(colour)) = (points.colours, colours.get_mut(k)) {
                 *colour = mean_colour(&near, |s| own[numbers[s as usize] as usize]);
             }
@@ -111,9 +114,48 @@ fn nearest_samples(samples: &[Sample]) -> Vec<Option<u32>> {
     best.into_iter().map(|(_, s)| s).collect()
 }
 
-/// The rounds at one node, from what its nearest point says. `near` has the samples around with 1 - |x - p|² / h² each.
-fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], start: Node, kernel: Kernel) -> Node {
-    let (mut f, mut g) = (start.value, start.gradient);
+/// What the points around a node say. `near` has the samples that reach it with 1 - |x - p|² / h² each, `first` is the normal of the nearest one.
+///
+/// Where others face another side they are asked by themselves. Two surfaces that turn their backs on one another have something between them, and outside of it is what is outside of either;
+/// two that face one another have a gap or a groove between them, and outside is what is outside of both.
+fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], first: [f32; 3], kernel: Kernel) -> Node {
+    let nearest = |faces: &dyn Fn([f32; 3]) -> bool| {
+        let facing = near.iter().filter(|(s, _)| faces(samples[*s as usize].normal));
+        facing.fold(None, |best: Option<(u32, f32)>, &n| if best.is_none_or(|b| n.1 > b.1) { Some(n) } else { best })
+    };
+    let ask =
+        |sample: &Sample| rounds(at, samples, near, dot(sample.normal, minus(at, sample.at)), sample.normal, kernel);
+    let Some((own, _)) = nearest(&|n| n == first) else { return Node::UNKNOWN };
+    let node = ask(&samples[own as usize]);
+    let Some((other, _)) = nearest(&|n| dot(n, first) < OTHER).filter(|_| kernel.rounds > 0) else { return node };
+    let normal = samples[other as usize].normal;
+    let second = ask(&samples[other as usize]);
+    let way = minus(middle(samples, near, normal), middle(samples, near, first));
+    let is_gap = dot(way, minus(first, normal)) > 0.0;
+    if (second.value < node.value) == is_gap { Node { beyond: node.beyond, ..second } } else { node }
+}
+
+/// Where the samples lie that face a side, in the mean.
+fn middle(samples: &[Sample], near: &[(u32, f32)], side: [f32; 3]) -> [f32; 3] {
+    let (mut sum, mut place) = (0.0_f32, [0.0_f32; 3]);
+    for (sample, inner) in near.iter().map(|&(s, inner)| (&samples[s as usize], inner)) {
+        let weight = if dot(sample.normal, side) > 0.3 { inner * inner } else { 0.0 };
+        sum += weight;
+        (0..3).for_each(|k| place[k] += weight * sample.at[k]);
+    }
+    place.map(|c| c / sum.max(f32::MIN_POSITIVE))
+}
+
+/// The rounds at one node, from a height and a normal.
+fn rounds(
+    at: [f32; 3],
+    samples: &[Sample],
+    near: &[(u32, f32)],
+    height: f32,
+    normal: [f32; 3],
+    kernel: Kernel,
+) -> Node {
+    let (mut f, mut g) = (height, normal);
     for round in 0..=kernel.rounds {
         let (mut sum, mut sum_f) = (0.0_f32, 0.0_f32);
         let (mut sum_n, mut sum_g, mut sum_gf) = ([0.0_f32; 3], [0.0_f32; 3], [0.0_f32; 3]);

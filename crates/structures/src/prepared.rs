@@ -6,17 +6,17 @@ use arabesque_core::{Budget, Error, PointSet, Result, Warning};
 
 use crate::{
     energy::kernel::Kernel,
-    exemplar::{field::Field, pattern::Pattern, repetition::repetition},
+    exemplar::{field::Field, pattern::Pattern, repetition::{Repetition, repetition}},
     params::StructureParams,
     territory::SitePlan,
 };
 
 /// Share of what repeats that the window is by itself.
-const WINDOW: f64 = 0.5;
+const WINDOW: f64 = 0.7;
 /// Smallest window, in spacings.
 const SMALLEST: f64 = 3.0;
 /// Largest share of the exemplar's length that the window is by itself.
-const LARGEST: f64 = 0.2;
+const LARGEST: f64 = 0.22;
 /// Largest share that it may be.
 const MOST: f64 = 0.5;
 /// Windows at most from one site to the next, when they are smallest.
@@ -29,7 +29,7 @@ pub struct Prepared<const D: usize> {
     pub(crate) params: StructureParams,
     /// The window at first, in the units of the exemplar.
     pub(crate) window: f64,
-    repetition: Option<f64>,
+    pub(crate) repetition: Repetition<D>,
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -45,18 +45,16 @@ impl<const D: usize> Prepared<D> {
         let pattern = Pattern::new(points, params, &budget, &mut warnings)?;
         let sigma = params.sigma * pattern.spacing;
         let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
-        let (window, repetition) = match params.window {
-            Some(window) => (window * pattern.spacing, None),
-            None => {
-                let kernel = Kernel::new(sigma, 1e3 * shortest.max(sigma), pattern.base, params.shape);
-                let places = &pattern.points.positions;
-                let field = Field::new(places, &pattern.weights, pattern.channels.blocks(), &kernel, &budget)?;
-                let step = if pattern.repeats() > 2 { sigma } else { 0.6 * sigma };
-                let repetition = repetition(&pattern, &field, step.max(shortest / 150.0), &budget)?;
-                let window = WINDOW * repetition.unwrap_or(2.0 * LARGEST * shortest);
-                (window.min(LARGEST * shortest).max(SMALLEST * pattern.spacing), repetition)
-            }
-        };
+        let kernel = Kernel::new(sigma, 1e3 * shortest.max(sigma), pattern.base, params.shape);
+        let places = &pattern.points.positions;
+        let field = Field::new(places, &pattern.weights, pattern.channels.blocks(), &kernel, &budget)?;
+        let step = if pattern.repeats() > 2 { sigma } else { 0.6 * sigma };
+        let repetition = repetition(&pattern, &field, step.max(shortest / 150.0), &budget)?;
+        let found = WINDOW * repetition.length.unwrap_or(2.0 * LARGEST * shortest);
+        let window = params.window.map_or_else(
+            || found.min(LARGEST * shortest).max(SMALLEST * pattern.spacing),
+            |window| window * pattern.spacing,
+        );
         if window > MOST * shortest {
             let least = shortest * MOST / pattern.spacing;
             return Err(Error::parameter(
@@ -80,7 +78,7 @@ impl<const D: usize> Prepared<D> {
 
     /// How far the exemplar is from where it looks like itself again, where that was looked for and found.
     pub fn repetition(&self) -> Option<f64> {
-        self.repetition
+        self.repetition.length
     }
 
     /// Along how many directions the exemplar repeats: 1 for ropes, 2 for surfaces, 3 for volumes.

@@ -141,9 +141,10 @@ impl<'a, const D: usize> Stage<'a, D> {
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
         let tables = Tables::new(pattern, kernel, &self.budget)?;
         let level =
-            Level { pattern, tables: &tables, sites: &self.sites, index: &self.index, domain: &self.domain };
+            Level { pattern, tables: &tables, sites: &self.sites, index: &self.index, domain: &self.domain, shifts: &self.prepared.repetition.shifts };
         if n == 0 {
             self.start(&level, state)?;
+            if std::env::var("INIT").is_ok() { return Ok(ControlFlow::Break(())); }
         }
         let room = room(&level);
         let mut matches = Matches::new(&level, state.matches.iter().map(|&m| room.clamp(m)).collect());
@@ -243,7 +244,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);
         let tables = Tables::new(pattern, kernel, &budget)?;
         let level =
-            Level { pattern, tables: &tables, sites: &self.sites, index: &self.index, domain: &self.domain };
+            Level { pattern, tables: &tables, sites: &self.sites, index: &self.index, domain: &self.domain, shifts: &self.prepared.repetition.shifts };
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;
         let sources = sources(&level, &state.output, &near, &matches);

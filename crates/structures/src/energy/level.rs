@@ -54,6 +54,8 @@ pub(crate) struct Level<'a, const D: usize> {
     pub(crate) sites: &'a [Site<D>],
     pub(crate) index: &'a SiteIndex<D>,
     pub(crate) domain: &'a Domain<D>,
+    /// Shifts that lay the exemplar well upon itself.
+    pub(crate) shifts: &'a [Vector<D>],
 }
 
 /// Where each site looks in the exemplar.

@@ -9,10 +9,21 @@ use super::{field::Field, pattern::Pattern};
 const POINTS: usize = 500;
 /// Share of the exemplar's length up to which lags are looked at.
 const FARTHEST: f64 = 0.48;
+/// Most shifts that are kept, not counting their opposites.
+const SHIFTS: usize = 12;
 /// A peak counts that rises at least so far towards the highest one.
 const RISE: f64 = 0.7;
 
-/// Distance to the nearest shift of the exemplar that lays it well upon itself; `None` where there is none.
+/// Shifts of the exemplar that lay it well upon itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Repetition<const D: usize> {
+    /// Length of the shortest of them; `None` where there is none.
+    pub(crate) length: Option<f64>,
+    /// The best of them, each with its opposite, best first.
+    pub(crate) shifts: Vec<Vector<D>>,
+}
+
+/// Looks for shifts that lay the exemplar well upon itself.
 ///
 /// What overlaps is compared for shifts on a grid along the base. Peaks are higher than all shifts around them.
 pub(crate) fn repetition<const D: usize>(
@@ -20,7 +31,7 @@ pub(crate) fn repetition<const D: usize>(
     field: &Field<D>,
     step: f64,
     budget: &Budget,
-) -> Result<Option<f64>> {
+) -> Result<Repetition<D>> {
     let size = pattern.bounds.size();
     let half: [usize; D] =
         std::array::from_fn(|k| if pattern.base[k] { (FARTHEST * size[k] / step) as usize } else { 0 });
@@ -87,11 +98,15 @@ pub(crate) fn repetition<const D: usize>(
         });
         let far = here.iter().map(|&n| (n as f64 * step).powi(2)).sum::<f64>().sqrt();
         if highest && far > 2.5 * pattern.spacing {
-            peaks.push((far, alike[index]));
+            peaks.push((far, alike[index], Vector(here.map(|n| n as f64 * step))));
         }
     }
     let best = peaks.iter().map(|p| p.1).fold(0.0, f64::max);
     let mean = alike.iter().sum::<f64>() / alike.len() as f64;
     let least = mean + RISE * (best - mean);
-    Ok(peaks.iter().filter(|p| p.1 >= least).map(|p| p.0).min_by(f64::total_cmp))
+    peaks.retain(|p| p.1 >= least);
+    let length = peaks.iter().map(|p| p.0).min_by(f64::total_cmp);
+    peaks.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+    peaks.truncate(SHIFTS);
+    Ok(Repetition { length, shifts: peaks.into_iter().flat_map(|p| [p.2, -p.2]).collect() })
 }

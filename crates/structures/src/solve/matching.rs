@@ -195,6 +195,12 @@ pub(crate) fn matching<const D: usize>(
             }
             let mut stream = Stream::new(round.seed, TRIES, round.number << 32 | q as u64);
             (0..round.tries).for_each(|_| consider(anywhere(&room, &mut stream)));
+            if !level.shifts.is_empty() {
+                let m = now.m + level.shifts[stream.below(level.shifts.len())];
+                if room.contains(m) {
+                    consider(m);
+                }
+            }
             budget.spend(((candidates.len() + 3 * STEPS * BEST) * view.len()) as u64 * 30 + 200)?;
             candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
             candidates.truncate(BEST);

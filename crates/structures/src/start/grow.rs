@@ -24,8 +24,10 @@ use crate::{
 const TRIES: Stage = Stage::new(42);
 /// How many of them.
 const RANDOM: usize = 28;
+/// What it costs to go on elsewhere in the exemplar, as a share of all that a window holds.
+const JUMP: f64 = 0.1;
 /// How far a site looks at what is there, in units of the window.
-const LOOK: f64 = 1.35;
+const LOOK: f64 = 1.8;
 /// Cells of the map of what is there, in one step of the sites.
 const CELLS: f64 = 2.5;
 /// A new point is no nearer to one like it than this, in spacings.
@@ -132,6 +134,22 @@ struct Map<const D: usize> {
 }
 
 impl<const D: usize> Map<D> {
+    /// The map without cells next to one that is not done: what lies there has neighbours in the exemplar that are still to come.
+    fn eroded(mut self) -> Self {
+        let side = 2 * self.half + 1;
+        let mut stride = 1;
+        for _ in (0..D).filter(|&k| self.base[k]) {
+            let before = self.done.clone();
+            for (n, done) in self.done.iter_mut().enumerate() {
+                let at = n as i64 / stride % side;
+                *done &= at == 0 || before[(n as i64 - stride) as usize];
+                *done &= at == side - 1 || before[(n as i64 + stride) as usize];
+            }
+            stride *= side;
+        }
+        self
+    }
+
     fn at(&self, v: &[f64; D]) -> bool {
         let (mut index, mut stride) = (0_i64, 1);
         for k in 0..D {
@@ -193,11 +211,11 @@ impl<const D: usize> Growth<'_, '_, D> {
                 level.index.nearest(p, 1.6 * self.step * site.scale).is_some_and(|s| self.done[s])
             })
             .collect();
-        Map { half, cell, base, done }
+        Map { half, cell, base, done }.eroded()
     }
 
     /// What is there around site `q`.
-    fn there(&self, q: usize) -> Vec<There<D>> {
+    fn there(&self, q: usize, map: &Map<D>) -> Vec<There<D>> {
         let (level, site) = (self.level, &self.level.sites[q]);
         let look = LOOK * level.tables.kernel.delta;
         let across = 1.3 * level.pattern.thickness + level.pattern.spacing;
@@ -208,7 +226,7 @@ impl<const D: usize> Growth<'_, '_, D> {
             let u = site.seen(offset);
             let near = (0..D).all(|k| u[k].abs() <= if level.pattern.base[k] { look } else { across });
             let (pair, outer) = level.tables.kernel.weights(&u);
-            if near && pair > 0.0 {
+            if near && pair > 0.0 && map.at(&u) {
                 let weights = level.pattern.channels.turned(&self.output.weights[i], &back);
                 there.push(There { u, weights, own: (pair * self.own[i]) as f32, outer: outer as f32 });
             }
@@ -240,12 +258,13 @@ impl<const D: usize> Growth<'_, '_, D> {
 
     fn site(&mut self, q: usize, around: &[u32], room: &Bounds<D>, seed: u64, budget: &Budget) -> Result<()> {
         let level = self.level;
-        let there = self.there(q);
+        let map = self.map(q);
+        let there = self.there(q, &map);
         let mut stream = Stream::new(seed, TRIES, q as u64);
         let mut best = anywhere(room, &mut stream);
-        if !there.is_empty() {
-            let map = self.map(q);
-            let mut candidates: Vec<Vector<D>> = (0..RANDOM).map(|_| anywhere(room, &mut stream)).collect();
+        if around.iter().any(|&o| self.done[o as usize]) {
+            let mut random: Vec<Vector<D>> = (0..RANDOM).map(|_| anywhere(room, &mut stream)).collect();
+            let mut carried = Vec::new();
             for &other in around {
                 let other = other as usize;
                 if self.done[other] {
@@ -254,18 +273,21 @@ impl<const D: usize> Growth<'_, '_, D> {
                         self.matches[other][k] + if level.pattern.base[k] { step[k] } else { 0.0 }
                     }));
                     if room.contains(m) {
-                        candidates.push(m);
+                        carried.push(m);
                     }
+                    random.extend(level.shifts.iter().map(|&t| m + t).filter(|m| room.contains(*m)));
                 }
             }
-            budget.spend((candidates.len() * (there.len() * 30 + 1000)) as u64)?;
+            budget.spend(((RANDOM + 20) * (there.len() * 30 + 1000)) as u64)?;
             let rate = |m: &Vector<D>| self.error(&there, &map, m);
-            let mut rated: Vec<(f64, Vector<D>)> = candidates.par_iter().map(|m| (rate(m), *m)).collect();
+            let jump = JUMP * level.tables.back.at(&level.pattern.bounds.centre().0).0;
+            let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rate(m), *m)).collect();
             rated.sort_by(|a, b| a.0.total_cmp(&b.0));
-            rated.truncate(3);
-            let refined: Vec<(f64, Vector<D>)> =
-                rated.into_par_iter().map(|start| self.refined(start, room, &rate)).collect();
-            best = refined.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map_or(best, |b| b.1);
+            rated.truncate(8);
+            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate)).map(|(e, m)| (e + jump, m));
+            let carried = carried.into_iter().map(|m| (rate(&m), m));
+            let first = carried.chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
+            best = first.map_or(best, |b| b.1);
         }
         self.matches[q] = best;
         self.done[q] = true;

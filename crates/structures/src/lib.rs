@@ -1,5 +1,7 @@
 //! Repetitive structures as sums of Gaussians [Roveri 2015].
 
+#![allow(clippy::needless_range_loop, reason = "coordinates are numbered alike in many arrays at once")]
+
 mod energy;
 mod exemplar;
 mod output;
@@ -14,4 +16,8 @@ mod territory;
 pub use params::{Start, StructureParams, Window};
 pub use prepared::Prepared;
 pub use request::{PlacedElement, StructureOutcome, StructureRequest};
-pub use territory::{Site, SitePlan, Territory, flat::Flat, tube::{Along, Thread, Tube}};
+pub use territory::{
+    Site, SitePlan, Territory,
+    flat::Flat,
+    tube::{Along, Thread, Tube},
+};

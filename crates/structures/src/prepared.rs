@@ -6,7 +6,11 @@ use arabesque_core::{Budget, Error, PointSet, Result, Warning};
 
 use crate::{
     energy::kernel::Kernel,
-    exemplar::{field::Field, pattern::Pattern, repetition::{Repetition, repetition}},
+    exemplar::{
+        field::Field,
+        pattern::Pattern,
+        repetition::{Repetition, repetition},
+    },
     params::StructureParams,
     territory::SitePlan,
 };
@@ -60,7 +64,9 @@ impl<const D: usize> Prepared<D> {
             return Err(Error::parameter(
                 "window",
                 format!("{:.1}", window / pattern.spacing),
-                format!("at most {least:.1} spacings, half the length of the exemplar, or an exemplar that shows more of the structure"),
+                format!(
+                    "at most {least:.1} spacings, half the length of the exemplar, or an exemplar that shows more of the structure"
+                ),
             ));
         }
         Ok(Self { pattern: Arc::new(pattern), params: params.clone(), window, repetition, warnings })

@@ -2,9 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{
-    Budget, Domain, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch,
-};
+use arabesque_core::{Budget, Domain, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
 
 use crate::{
     energy::{
@@ -21,7 +19,7 @@ use crate::{
     request::{StructureOutcome, StructureRequest},
     solve::{
         attributes::attributes,
-        matching::{Round, matching, room, anywhere},
+        matching::{Round, anywhere, matching, room},
         merging::merge,
         sampling::control,
     },
@@ -70,11 +68,14 @@ impl<const D: usize> Prepared<D> {
     ///
     /// # Errors
     /// When the territory has no room, when a kept point is no number, or when the budget is used up before there are points.
-    pub fn run(&self, request: &StructureRequest<D>, watch: &mut dyn Watch<PointSet<D>>) -> Result<StructureOutcome<D>> {
+    pub fn run(
+        &self,
+        request: &StructureRequest<D>,
+        watch: &mut dyn Watch<PointSet<D>>,
+    ) -> Result<StructureOutcome<D>> {
         let stage = Stage::new(self, request)?;
         let start = kept(&self.pattern, &request.kept)?;
-        let mut state =
-            State { output: start, matches: Vec::new(), energy: Vec::new(), stopped: StopReason::Finished };
+        let mut state = State { output: start, matches: Vec::new(), energy: Vec::new(), stopped: StopReason::Finished };
         for n in 0..stage.scales.len() {
             match stage.level(n, &mut state, watch) {
                 Ok(ControlFlow::Continue(())) => {}
@@ -112,7 +113,11 @@ impl<'a, const D: usize> Stage<'a, D> {
         let expected = sites.iter().map(|s| s.weight).sum::<f64>() * plan.step.powi(pattern.repeats() as i32)
             / pattern.measure()
             * pattern.points.len() as f64;
-        budget.within("points of the result", expected as usize, ("output-elements", budget.limits().output_elements))?;
+        budget.within(
+            "points of the result",
+            expected as usize,
+            ("output-elements", budget.limits().output_elements),
+        )?;
         budget.allow_elements(expected);
         let domain = request.territory.surroundings();
         let index = SiteIndex::new(&sites, plan.step, &domain);
@@ -140,11 +145,19 @@ impl<'a, const D: usize> Stage<'a, D> {
         let params = &self.prepared.params;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
         let tables = Tables::new(pattern, kernel, &self.budget)?;
-        let level =
-            Level { pattern, tables: &tables, sites: &self.sites, index: &self.index, domain: &self.domain, shifts: &self.prepared.repetition.shifts };
+        let level = Level {
+            pattern,
+            tables: &tables,
+            sites: &self.sites,
+            index: &self.index,
+            domain: &self.domain,
+            shifts: &self.prepared.repetition.shifts,
+        };
         if n == 0 {
             self.start(&level, state)?;
-            if std::env::var("INIT").is_ok() { return Ok(ControlFlow::Break(())); }
+            if std::env::var("INIT").is_ok() {
+                return Ok(ControlFlow::Break(()));
+            }
         }
         let room = room(&level);
         let mut matches = Matches::new(&level, state.matches.iter().map(|&m| room.clamp(m)).collect());
@@ -206,7 +219,9 @@ impl<'a, const D: usize> Stage<'a, D> {
             Start::Noise => {
                 let output = noise(level, kept, step, seed);
                 let room = room(level);
-                let first = |q| anywhere(&room, &mut arabesque_core::Stream::new(seed, arabesque_core::Stage::new(46), q as u64));
+                let first = |q| {
+                    anywhere(&room, &mut arabesque_core::Stream::new(seed, arabesque_core::Stage::new(46), q as u64))
+                };
                 let mut matches = Matches::new(level, (0..self.sites.len()).map(first).collect());
                 let near = level.near(&output, &self.budget)?;
                 for number in 0..FIRST {
@@ -243,8 +258,14 @@ impl<'a, const D: usize> Stage<'a, D> {
         let pattern = &*self.prepared.pattern;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);
         let tables = Tables::new(pattern, kernel, &budget)?;
-        let level =
-            Level { pattern, tables: &tables, sites: &self.sites, index: &self.index, domain: &self.domain, shifts: &self.prepared.repetition.shifts };
+        let level = Level {
+            pattern,
+            tables: &tables,
+            sites: &self.sites,
+            index: &self.index,
+            domain: &self.domain,
+            shifts: &self.prepared.repetition.shifts,
+        };
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;
         let sources = sources(&level, &state.output, &near, &matches);
@@ -252,7 +273,10 @@ impl<'a, const D: usize> Stage<'a, D> {
         let finished = self.cut(&state.output, &sources, groups.as_deref());
         let mut warnings = self.prepared.warnings.clone();
         if finished.points.is_empty() {
-            return Err(Error::no_result("no point lies in the domain", "make the domain larger, or the scale smaller"));
+            return Err(Error::no_result(
+                "no point lies in the domain",
+                "make the domain larger, or the scale smaller",
+            ));
         }
         if state.stopped == StopReason::Limit {
             warnings.push(Warning::new("the limit of work was reached", "raise it with --limit work=N"));

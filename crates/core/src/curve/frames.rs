@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn around_a_plane_curve_the_normal_of_the_plane_stays() {
-        let tangents: Vec<_> = (0..=40).map(|k| f64::from(k) / 40.0 * TAU).map(|a| Vector([-a.sin(), a.cos(), 0.0])).collect();
+        let tangents: Vec<_> =
+            (0..=40).map(|k| f64::from(k) / 40.0 * TAU).map(|a| Vector([-a.sin(), a.cos(), 0.0])).collect();
         let up = Vector([0.0, 0.0, 1.0]);
         assert!(carried(&tangents, up, true).iter().all(|&d| (d - up).norm() < 1e-12));
     }

@@ -40,7 +40,8 @@ impl<const D: usize> Back<D> {
                 cost += 20;
                 let middle = p + offset * 0.5;
                 let seen = f64::from(known.at(&middle.0.map(|x| x as f32)));
-                let value = seen * f64::from(inner(&pattern.weights[i], &pattern.weights[j])) * (-pair * offset.norm2()).exp();
+                let value =
+                    seen * f64::from(inner(&pattern.weights[i], &pattern.weights[j])) * (-pair * offset.norm2()).exp();
                 share(&lattice, &counts, base, step, middle, |cell, w| values[cell] += w * value);
             });
             meter.spend(cost)?;
@@ -129,11 +130,13 @@ fn blur<const D: usize>(values: &mut [f64], counts: &[usize; D], base: [bool; D]
     for k in 0..D {
         if base[k] {
             let reach = (kernel.reach() / step) as isize;
-            let taps: Vec<f64> = (-reach..=reach).map(|t| {
-                let mut u = [0.0; D];
-                u[k] = t as f64 * step;
-                kernel.weights(&u).0
-            }).collect();
+            let taps: Vec<f64> = (-reach..=reach)
+                .map(|t| {
+                    let mut u = [0.0; D];
+                    u[k] = t as f64 * step;
+                    kernel.weights(&u).0
+                })
+                .collect();
             for start in 0..values.len() {
                 if start / stride % counts[k] != 0 {
                     continue;

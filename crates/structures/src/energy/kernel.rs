@@ -9,10 +9,11 @@
 //! the window: `exp(-l |u|^2) E(m + (1 - k) u)`, where `E` is a sum of Gaussians of width `g` with `1 / g^2 = 1 / (2 sigma^2) + 1 / (4 R^2)`,
 //! `k = g^2 / (2 R^2)` and `l = 1 / R^2 - g^2 / (4 R^4)`. So a match costs one look-up for each point in the window.
 
+use super::exp::exp;
 use crate::params::Window;
 
-/// Where a Gaussian window ends, in units of `R`: what is beyond weighs less than one per cent.
-const REACH: f64 = 2.15;
+/// Where a Gaussian window ends, in units of `R`: what is beyond weighs about two per cent.
+const REACH: f64 = 1.95;
 /// Where the Gaussians of pairs end, in units of `sigma`.
 const PAIRS: f64 = 3.1;
 
@@ -74,7 +75,11 @@ impl<const D: usize> Kernel<D> {
                     pair += self.window[k] * u[k] * u[k];
                     outer += self.outer[k] * u[k] * u[k];
                 }
-                if pair > REACH * REACH { (0.0, 0.0) } else { ((-pair).exp(), (-outer).exp()) }
+                if pair > REACH * REACH {
+                    (0.0, 0.0)
+                } else {
+                    (f64::from(exp(-pair as f32)), f64::from(exp(-outer as f32)))
+                }
             }
             Window::Box => {
                 let inside = (0..D).all(|k| self.window[k] == 0.0 || u[k].abs() <= self.delta);

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::{
     back::Back,
+    exp::exp,
     kernel::Kernel,
     links::{Lists, Reach, SiteIndex, neighbours, windows},
 };
@@ -162,7 +163,13 @@ impl<const D: usize> Level<'_, D> {
     }
 
     /// All pulls on the points of an output, in their order.
-    pub(crate) fn pulls(&self, output: &Output<D>, near: &Near, matches: &Matches<D>, budget: &Budget) -> Result<Vec<Pull<D>>> {
+    pub(crate) fn pulls(
+        &self,
+        output: &Output<D>,
+        near: &Near,
+        matches: &Matches<D>,
+        budget: &Budget,
+    ) -> Result<Vec<Pull<D>>> {
         budget.spend(near.windows.total() as u64 * 60)?;
         Ok((0..output.places.len())
             .into_par_iter()
@@ -188,7 +195,7 @@ impl<const D: usize> Level<'_, D> {
     #[inline]
     pub(crate) fn pair(&self, r2: f64, scale: f64, other: f64) -> f64 {
         let sigma = self.tables.kernel.sigma * 0.5 * (scale + other);
-        (-0.5 * r2 / (sigma * sigma)).exp()
+        f64::from(exp((-0.5 * r2 / (sigma * sigma)) as f32))
     }
 
     /// `T` from the pulls on all points.

@@ -90,11 +90,6 @@ impl<const D: usize> SiteIndex<D> {
     pub(crate) fn nearest(&self, p: Vector<D>, radius: f64) -> Option<usize> {
         self.index.nearest(p, radius, None).map(|found| found.0)
     }
-
-    /// Calls `visit` with each site within `radius` of `p` and the offset to it.
-    pub(crate) fn around(&self, p: Vector<D>, radius: f64, visit: impl FnMut(usize, Vector<D>)) {
-        self.index.within(p, radius, visit);
-    }
 }
 
 /// How far a window reaches along and across the base.

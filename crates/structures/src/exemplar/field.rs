@@ -22,7 +22,7 @@ pub(crate) struct Field<const D: usize> {
     counts: [usize; D],
     strides: [usize; D],
     blocks: usize,
-    /// For each node the values of all channels, then their slopes along each coordinate.
+    /// For each node and block of channels the values, then the slopes along each coordinate.
     nodes: Vec<f32>,
 }
 
@@ -79,7 +79,7 @@ impl<const D: usize> Field<D> {
         let last = D - 1;
         let record = (1 + D) * self.blocks * BLOCK;
         let slab = self.strides[last] * record;
-        let (origin, step, counts, strides, blocks) = (self.origin, self.step, self.counts, self.strides, self.blocks);
+        let (origin, step, counts, strides) = (self.origin, self.step, self.counts, self.strides);
         let span = |p: &Vector<D>, k: usize| {
             let at = |x: f64| (x - f64::from(origin[k])) / f64::from(step);
             let low = at(p[k] - end[k]).ceil().max(0.0) as usize;
@@ -94,8 +94,7 @@ impl<const D: usize> Field<D> {
                 let p = &places[i];
                 let high = height - p[last];
                 let tall = (-high * high * kernel.field[last]).exp();
-                let spans: [(usize, usize); D] =
-                    std::array::from_fn(|k| if k == last { (0, 0) } else { span(p, k) });
+                let spans: [(usize, usize); D] = std::array::from_fn(|k| if k == last { (0, 0) } else { span(p, k) });
                 let rows = if D == 3 { spans[1].0..=spans[1].1 } else { 0..=0 };
                 for y in rows {
                     let wide = f64::from(origin[1]) + y as f64 * f64::from(step) - p[1];
@@ -103,18 +102,25 @@ impl<const D: usize> Field<D> {
                     for x in spans[0].0..=spans[0].1 {
                         let along = f64::from(origin[0]) + x as f64 * f64::from(step) - p[0];
                         let gauss = tall * side * (-along * along * kernel.field[0]).exp();
-                        let offset: [f64; D] =
-                            std::array::from_fn(|k| if k == last { high } else if k == 0 { along } else { wide });
+                        let offset: [f64; D] = std::array::from_fn(|k| {
+                            if k == last {
+                                high
+                            } else if k == 0 {
+                                along
+                            } else {
+                                wide
+                            }
+                        });
                         let node = x + if D == 3 { y * strides[1] } else { 0 };
                         let record = &mut nodes[node * record..(node + 1) * record];
-                        let (values, slopes) = record.split_at_mut(blocks * BLOCK);
-                        for (v, w) in values.iter_mut().zip(&weights[i]) {
-                            *v += gauss as f32 * w;
-                        }
-                        for (k, slopes) in slopes.chunks_exact_mut(blocks * BLOCK).enumerate() {
-                            let factor = (-2.0 * offset[k] * kernel.field[k] * gauss) as f32;
-                            for (v, w) in slopes.iter_mut().zip(&weights[i]) {
-                                *v += factor * w;
+                        let slopes: [f32; D] =
+                            std::array::from_fn(|k| (-2.0 * offset[k] * kernel.field[k] * gauss) as f32);
+                        for (part, w) in record.chunks_exact_mut((1 + D) * BLOCK).zip(weights[i].chunks_exact(BLOCK)) {
+                            for (n, part) in part.chunks_exact_mut(BLOCK).enumerate() {
+                                let factor = if n == 0 { gauss as f32 } else { slopes[n - 1] };
+                                for (v, w) in part.iter_mut().zip(w) {
+                                    *v += factor * w;
+                                }
                             }
                         }
                     }
@@ -133,20 +139,18 @@ impl<const D: usize> Field<D> {
             if !(at >= 0.0 && at < (self.counts[k] - 1) as f32) {
                 return None;
             }
-            let low = at as usize;
+            let low = at as i32;
             into[k] = at - low as f32;
-            node += low * self.strides[k];
+            node += low as usize * self.strides[k];
         }
         Some((node, into))
     }
 
-    /// Inner product of the field at `y` with `weights`.
-    #[inline]
-    pub(crate) fn project(&self, y: &[f32; D], weights: &Weights) -> f32 {
-        let Some((node, into)) = self.cell(y) else { return 0.0 };
-        let lanes = self.blocks * BLOCK;
-        let record = (1 + D) * lanes;
-        let mut sums = [0.0_f32; BLOCK];
+    /// Calls `visit` with the corners of the cell at `y`: the share of each, the way from there to `y`, halved, and its record.
+    #[inline(always)]
+    fn corners(&self, y: &[f32; D], mut visit: impl FnMut(f32, &[f32; D], &[f32])) {
+        let Some((node, into)) = self.cell(y) else { return };
+        let record = (1 + D) * self.blocks * BLOCK;
         for corner in 0..1_usize << D {
             let (mut share, mut at) = (1.0, node);
             let mut off = [0.0_f32; D];
@@ -156,53 +160,44 @@ impl<const D: usize> Field<D> {
                 off[k] = 0.5 * self.step * (into[k] - far as f32);
                 at += far * self.strides[k];
             }
-            let record = &self.nodes[at * record..(at + 1) * record];
-            for b in 0..self.blocks {
-                for l in 0..BLOCK {
-                    let c = b * BLOCK + l;
-                    let mut v = record[c];
-                    for k in 0..D {
-                        v += off[k] * record[(1 + k) * lanes + c];
-                    }
-                    sums[l] += share * v * weights[c];
-                }
-            }
+            visit(share, &off, &self.nodes[at * record..(at + 1) * record]);
         }
+    }
+
+    /// Inner product of the field at `y` with `weights`.
+    #[inline]
+    pub(crate) fn project(&self, y: &[f32; D], weights: &Weights) -> f32 {
+        let mut sums = [0.0_f32; BLOCK];
+        self.corners(y, |share, off, record| {
+            for (part, w) in record.chunks_exact((1 + D) * BLOCK).zip(weights.chunks_exact(BLOCK)) {
+                let mut v = lanes(part, 0);
+                for k in 0..D {
+                    let slope = lanes(part, 1 + k);
+                    (0..BLOCK).for_each(|l| v[l] += off[k] * slope[l]);
+                }
+                (0..BLOCK).for_each(|l| sums[l] += share * v[l] * w[l]);
+            }
+        });
         sums[0] + sums[1] + (sums[2] + sums[3])
     }
 
     /// As [`Field::project`], with the slope of the inner product.
     #[inline]
     pub(crate) fn project_slope(&self, y: &[f32; D], weights: &Weights) -> (f32, [f32; D]) {
-        let Some((node, into)) = self.cell(y) else { return (0.0, [0.0; D]) };
-        let lanes = self.blocks * BLOCK;
-        let record = (1 + D) * lanes;
         let mut sums = [0.0_f32; BLOCK];
         let mut slopes = [[0.0_f32; BLOCK]; D];
-        for corner in 0..1_usize << D {
-            let (mut share, mut at) = (1.0, node);
-            let mut off = [0.0_f32; D];
-            for k in 0..D {
-                let far = corner >> k & 1;
-                share *= if far == 1 { into[k] } else { 1.0 - into[k] };
-                off[k] = 0.5 * self.step * (into[k] - far as f32);
-                at += far * self.strides[k];
-            }
-            let record = &self.nodes[at * record..(at + 1) * record];
-            for b in 0..self.blocks {
-                for l in 0..BLOCK {
-                    let c = b * BLOCK + l;
-                    let w = share * weights[c];
-                    let mut v = record[c];
-                    for k in 0..D {
-                        let slope = record[(1 + k) * lanes + c];
-                        v += off[k] * slope;
-                        slopes[k][l] += w * slope;
-                    }
-                    sums[l] += w * v;
+        self.corners(y, |share, off, record| {
+            for (part, w) in record.chunks_exact((1 + D) * BLOCK).zip(weights.chunks_exact(BLOCK)) {
+                let mut v = lanes(part, 0);
+                let w: [f32; BLOCK] = std::array::from_fn(|l| share * w[l]);
+                for k in 0..D {
+                    let slope = lanes(part, 1 + k);
+                    (0..BLOCK).for_each(|l| v[l] += off[k] * slope[l]);
+                    (0..BLOCK).for_each(|l| slopes[k][l] += w[l] * slope[l]);
                 }
+                (0..BLOCK).for_each(|l| sums[l] += v[l] * w[l]);
             }
-        }
+        });
         let total = |s: &[f32; BLOCK]| s[0] + s[1] + (s[2] + s[3]);
         (total(&sums), std::array::from_fn(|k| total(&slopes[k])))
     }
@@ -211,27 +206,24 @@ impl<const D: usize> Field<D> {
     #[inline]
     pub(crate) fn value(&self, y: &[f32; D]) -> Weights {
         let mut sums = [0.0_f32; LANES];
-        let Some((node, into)) = self.cell(y) else { return sums };
-        let lanes = self.blocks * BLOCK;
-        let record = (1 + D) * lanes;
-        for corner in 0..1_usize << D {
-            let (mut share, mut at) = (1.0, node);
-            let mut off = [0.0_f32; D];
-            for k in 0..D {
-                let far = corner >> k & 1;
-                share *= if far == 1 { into[k] } else { 1.0 - into[k] };
-                off[k] = 0.5 * self.step * (into[k] - far as f32);
-                at += far * self.strides[k];
-            }
-            let record = &self.nodes[at * record..(at + 1) * record];
-            for c in 0..lanes {
-                let mut v = record[c];
+        self.corners(y, |share, off, record| {
+            for (part, sums) in record.chunks_exact((1 + D) * BLOCK).zip(sums.chunks_exact_mut(BLOCK)) {
+                let mut v = lanes(part, 0);
                 for k in 0..D {
-                    v += off[k] * record[(1 + k) * lanes + c];
+                    let slope = lanes(part, 1 + k);
+                    (0..BLOCK).for_each(|l| v[l] += off[k] * slope[l]);
                 }
-                sums[c] += share * v;
+                (0..BLOCK).for_each(|l| sums[l] += share * v[l]);
             }
-        }
+        });
         sums
     }
+}
+
+/// Block `n` of a record.
+#[inline(always)]
+fn lanes(part: &[f32], n: usize) -> [f32; BLOCK] {
+    let mut lanes = [0.0; BLOCK];
+    lanes.copy_from_slice(&part[n * BLOCK..(n + 1) * BLOCK]);
+    lanes
 }

@@ -62,7 +62,8 @@ pub(crate) fn repetition<const D: usize>(
             let (mut same, mut all) = (0.0, 1e-12);
             for i in (0..pattern.points.len()).step_by(stride) {
                 let to = pattern.points.positions[i] + shift;
-                let inside = (0..D).all(|k| !pattern.base[k] || to[k] >= pattern.bounds.min[k] && to[k] <= pattern.bounds.max[k]);
+                let inside = (0..D)
+                    .all(|k| !pattern.base[k] || to[k] >= pattern.bounds.min[k] && to[k] <= pattern.bounds.max[k]);
                 if inside {
                     same += f64::from(field.project(&to.0.map(|x| x as f32), &pattern.weights[i]));
                     all += f64::from(own[i]);

@@ -14,7 +14,12 @@ use crate::{
 const PART: f64 = 2.2;
 
 /// For each point the point of the exemplar it stands for: the nearest to where most of its windows see it.
-pub(crate) fn sources<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, matches: &Matches<D>) -> Vec<usize> {
+pub(crate) fn sources<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    near: &Near,
+    matches: &Matches<D>,
+) -> Vec<usize> {
     (0..output.places.len())
         .into_par_iter()
         .with_min_len(64)
@@ -74,7 +79,12 @@ fn parts_of_exemplar<const D: usize>(pattern: &Pattern<D>, groups: &[i32]) -> Ve
 }
 
 /// Numbers of the parts of the output. Neighbours are of one part when most windows see them as of one part of the exemplar.
-pub(crate) fn groups<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, matches: &Matches<D>) -> Option<Vec<i32>> {
+pub(crate) fn groups<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    near: &Near,
+    matches: &Matches<D>,
+) -> Option<Vec<i32>> {
     let pattern = level.pattern;
     let parts = parts_of_exemplar(pattern, pattern.points.groups.as_ref()?);
     let n = output.places.len();

@@ -2,11 +2,7 @@
 
 use arabesque_core::{Similarity, Vector};
 
-use crate::exemplar::{
-    bodies::LOOSE,
-    channels::Weights,
-    pattern::Pattern,
-};
+use crate::exemplar::{bodies::LOOSE, channels::Weights, pattern::Pattern};
 
 /// A rigid element of the output: an element of the exemplar where it was put.
 #[derive(Clone, Debug)]

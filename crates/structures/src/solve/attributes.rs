@@ -8,7 +8,10 @@ use arabesque_core::Vector;
 
 use crate::{
     energy::level::{Level, Matches, Near, Pull},
-    exemplar::{bodies::LOOSE, channels::{LANES, Weights}},
+    exemplar::{
+        bodies::LOOSE,
+        channels::{LANES, Weights},
+    },
     output::state::Output,
 };
 
@@ -52,7 +55,8 @@ pub(crate) fn attributes<const D: usize>(
             new[c] = (rest[c] + INERTIA * own * old[c]) / ((1.0 + INERTIA) * own).max(1e-12);
         }
         // Exactly how T changes.
-        let change: f32 = (0..LANES).map(|c| own * (new[c] * new[c] - old[c] * old[c]) - 2.0 * rest[c] * (new[c] - old[c])).sum();
+        let change: f32 =
+            (0..LANES).map(|c| own * (new[c] * new[c] - old[c] * old[c]) - 2.0 * rest[c] * (new[c] - old[c])).sum();
         if change < 0.0 {
             output.weights[i] = new;
             pulls[i].wanted = (0..LANES).map(|c| f64::from(new[c] * wanted[i][c])).sum();

@@ -18,9 +18,11 @@ use crate::{
 /// Random matches.
 const TRIES: Stage = Stage::new(41);
 /// Steps downhill.
-const STEPS: usize = 4;
-/// How many of the best candidates go downhill.
-const BEST: usize = 2;
+const STEPS: usize = 3;
+/// How many of the candidates that look best are compared in full; the best of them goes downhill.
+const BEST: usize = 3;
+/// Points that candidates are compared by at first.
+const FEW: usize = 90;
 /// Least share of a window along each direction that the exemplar must show.
 const SEEN: f64 = 0.72;
 /// A match has to be better by this share to replace the one before.
@@ -65,16 +67,21 @@ impl<const D: usize> View<D> {
 
     /// The error density for a match, divided by the known share.
     pub(crate) fn error(&self, level: &Level<'_, D>, m: &Vector<D>) -> f64 {
+        self.rough(level, m, 1)
+    }
+
+    /// The error density from one in `stride` of the points.
+    fn rough(&self, level: &Level<'_, D>, m: &Vector<D>, stride: usize) -> f64 {
         let tables = level.tables;
         let mut sum = 0.0_f32;
-        for p in &self.points {
+        for p in self.points.iter().step_by(stride) {
             let known = tables.known.at(&std::array::from_fn(|k| (m[k] + p.u[k]) as f32));
             if known > 0.0 {
                 let y = std::array::from_fn(|k| (m[k] + tables.kernel.inward[k] * p.u[k]) as f32);
                 sum += known * (p.own - 2.0 * p.outer * tables.field.project(&y, &p.weights));
             }
         }
-        (f64::from(sum) + tables.back.at(&m.0).0) / tables.known.share(&m.0).max(0.05)
+        (f64::from(sum) * stride as f64 + tables.back.at(&m.0).0) / tables.known.share(&m.0).max(0.05)
     }
 
     /// Goes downhill from `m`, along the base alone.
@@ -101,7 +108,7 @@ impl<const D: usize> View<D> {
                 let s = if level.pattern.base[k] { -slope[k] / curve } else { 0.0 };
                 (s * length).clamp(-0.6 * sigma, 0.6 * sigma)
             }));
-            if step.norm() < 1e-4 * sigma {
+            if step.norm() < 5e-3 * sigma {
                 break;
             }
             let to = room.clamp(m + step);
@@ -144,7 +151,9 @@ pub(crate) fn room<const D: usize>(level: &Level<'_, D>) -> Bounds<D> {
 
 /// A random place in `room`.
 pub(crate) fn anywhere<const D: usize>(room: &Bounds<D>, stream: &mut Stream) -> Vector<D> {
-    Vector(std::array::from_fn(|k| if room.max[k] > room.min[k] { stream.range(room.min[k], room.max[k]) } else { room.min[k] }))
+    Vector(std::array::from_fn(|k| {
+        if room.max[k] > room.min[k] { stream.range(room.min[k], room.max[k]) } else { room.min[k] }
+    }))
 }
 
 /// What is drawn for one round of the local step.
@@ -181,8 +190,9 @@ pub(crate) fn matching<const D: usize>(
         .map(|q| {
             let view = View::new(level, q, output, &own, points.of(q));
             let now = Match { m: before.places[q], error: view.error(level, &before.places[q]) };
-            let mut candidates = vec![now.clone()];
-            let mut consider = |m: Vector<D>| candidates.push(Match { m, error: view.error(level, &m) });
+            let stride = (view.len() / FEW).max(1);
+            let mut candidates = Vec::new();
+            let mut consider = |m: Vector<D>| candidates.push(Match { m, error: view.rough(level, &m, stride) });
             for &other in around.of(q) {
                 let other = other as usize;
                 let step = level.sites[other].seen(level.domain.offset(level.sites[other].place, level.sites[q].place));
@@ -204,9 +214,11 @@ pub(crate) fn matching<const D: usize>(
             budget.spend(((candidates.len() + 3 * STEPS * BEST) * view.len()) as u64 * 30 + 200)?;
             candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
             candidates.truncate(BEST);
-            let best = candidates.into_iter().map(|c| view.refined(level, &room, c)).fold(now.clone(), |best, c| {
-                if c.error < best.error - BETTER * best.error.abs() { c } else { best }
-            });
+            let exact = |c: Match<D>| Match { error: if stride > 1 { view.error(level, &c.m) } else { c.error }, ..c };
+            let start =
+                candidates.into_iter().map(exact).fold(now.clone(), |a, b| if b.error < a.error { b } else { a });
+            let best = view.refined(level, &room, start);
+            let best = if best.error < now.error - BETTER * now.error.abs() { best } else { now.clone() };
             Ok((now.error, best))
         })
         .collect();

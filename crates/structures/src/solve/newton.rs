@@ -7,7 +7,10 @@ use arabesque_core::{Matrix, Vector};
 use rayon::prelude::*;
 
 use crate::{
-    energy::level::{Level, Near, Pull},
+    energy::{
+        exp::exp,
+        level::{Level, Near, Pull},
+    },
     exemplar::channels::inner,
     output::state::Output,
 };
@@ -39,7 +42,8 @@ pub(crate) fn slopes<const D: usize>(
                 let j = j as usize;
                 let r = level.domain.offset(output.places[j], x);
                 let width = sigma * 0.5 * (here.scale + pulls[j].scale);
-                let h = (-0.5 * r.norm2() / (width * width)).exp() * f64::from(inner(a, &output.weights[j]));
+                let h = f64::from(exp((-0.5 * r.norm2() / (width * width)) as f32))
+                    * f64::from(inner(a, &output.weights[j]));
                 own += h;
                 slope += r * (-h / (width * width) * (here.cover + pulls[j].cover));
             }
@@ -72,7 +76,8 @@ impl<const D: usize> System<D> {
                     let n = j as usize;
                     let r = level.domain.offset(output.places[n], x);
                     let width = sigma * 0.5 * (here.scale + pulls[n].scale);
-                    let h = (-0.5 * r.norm2() / (width * width)).exp() * f64::from(inner(a, &output.weights[n]));
+                    let h = f64::from(exp((-0.5 * r.norm2() / (width * width)) as f32))
+                        * f64::from(inner(a, &output.weights[n]));
                     let cover = (here.cover * pulls[n].cover).max(0.0).sqrt();
                     let weight = 2.0 * cover * h / (width * width);
                     (j, weight as f32, r.0.map(|c| (c / width) as f32))

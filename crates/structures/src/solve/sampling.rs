@@ -9,7 +9,10 @@ use rayon::prelude::*;
 
 use crate::{
     energy::level::{Level, Matches, Near, Pull},
-    exemplar::{bodies::LOOSE, channels::{LANES, Weights, inner}},
+    exemplar::{
+        bodies::LOOSE,
+        channels::{LANES, Weights, inner},
+    },
     output::state::Output,
 };
 
@@ -67,7 +70,13 @@ fn remove<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near,
         let mut sum: f64 = all.clone().map(|k| change[k]).sum();
         // Pairs within an element go once, not twice.
         for a in all.clone().filter(|_| all.len() > 1) {
-            sum += near.pairs.of(a).iter().filter(|j| all.contains(&(**j as usize))).map(|&j| pair(a, j as usize)).sum::<f64>();
+            sum += near
+                .pairs
+                .of(a)
+                .iter()
+                .filter(|j| all.contains(&(**j as usize)))
+                .map(|&j| pair(a, j as usize))
+                .sum::<f64>();
         }
         let weight: f64 = all.map(|k| f64::from(inner(&output.weights[k], &output.weights[k])) * pulls[k].cover).sum();
         sum / weight.max(1e-30)
@@ -103,7 +112,12 @@ struct Offer<const D: usize> {
 }
 
 /// Adds what is missing, the most wanted first, each with the ones before it there. Returns how many points.
-fn add<const D: usize>(level: &Level<'_, D>, output: &mut Output<D>, matches: &Matches<D>, budget: &Budget) -> Result<usize> {
+fn add<const D: usize>(
+    level: &Level<'_, D>,
+    output: &mut Output<D>,
+    matches: &Matches<D>,
+    budget: &Budget,
+) -> Result<usize> {
     let before = output.places.len();
     let radius = level.tables.kernel.pairs() * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
     let index = GridIndex::new(&output.places, radius, level.domain);
@@ -203,12 +217,7 @@ fn offers<const D: usize>(
             if pattern.bodies[body].members[0] != j {
                 return;
             }
-            let pose = Similarity::about(
-                m,
-                site.place,
-                site.rotation,
-                site.scale,
-            );
+            let pose = Similarity::about(m, site.place, site.rotation, site.scale);
             offers.push(Offer { place: Vector::ZERO, weights: [0.0; LANES], body: Some((body, pose)), worth: 0.0 });
         } else {
             let place = site.place + site.shown(offset);
@@ -218,26 +227,28 @@ fn offers<const D: usize>(
     });
     offers.retain_mut(|offer| {
         let members = members(level, offer);
+        let apart = APART * pattern.spacing * site.scale;
+        if let [(place, weights)] = &members[..] {
+            let mut crowded = false;
+            index.within(*place, apart, |i, _| crowded |= inner(weights, &output.weights[i]) > 0.0);
+            if crowded {
+                return false;
+            }
+        }
         let (mut wanted, mut weight) = (0.0, 0.0);
         for (n, (place, weights)) in members.iter().enumerate() {
             let mut windows = Vec::new();
             level.index.windows(level.sites, *place, &level.tables.reach, |q, _| windows.push(q as u32));
             let (field, cover) = level.wanted(*place, &windows, matches);
             let mut rest = f64::from(inner(weights, &field));
-            let mut crowded = false;
             index.within(*place, level.tables.kernel.pairs() * site.scale, |i, r| {
                 let h = level.pair(r.norm2(), site.scale, site.scale) * cover;
-                let like = f64::from(inner(weights, &output.weights[i]));
-                rest -= h * like;
-                crowded |= members.len() == 1 && like > 0.0 && r.norm() < APART * pattern.spacing * site.scale;
+                rest -= h * f64::from(inner(weights, &output.weights[i]));
             });
             // Pairs within an element.
             for (other, w) in &members[..n] {
                 let r2 = level.domain.offset(*place, *other).norm2();
                 rest -= level.pair(r2, site.scale, site.scale) * cover * f64::from(inner(weights, w));
-            }
-            if crowded {
-                return false;
             }
             let own = f64::from(inner(weights, weights)) * cover;
             wanted += 2.0 * rest - own;

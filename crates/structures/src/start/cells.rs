@@ -38,10 +38,15 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Calls `visit` with each point within `radius` of `p` and the offset to it, in a fixed order.
-    pub(crate) fn within(&self, domain: &Domain<D>, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) {
+    pub(crate) fn within(
+        &self,
+        domain: &Domain<D>,
+        p: Vector<D>,
+        radius: f64,
+        mut visit: impl FnMut(usize, Vector<D>),
+    ) {
         let low: [i64; D] = std::array::from_fn(|k| ((p[k] - radius) / self.size[k]).floor() as i64);
-        let mut span: [i64; D] =
-            std::array::from_fn(|k| ((p[k] + radius) / self.size[k]).floor() as i64 - low[k] + 1);
+        let mut span: [i64; D] = std::array::from_fn(|k| ((p[k] + radius) / self.size[k]).floor() as i64 - low[k] + 1);
         if let Some(n) = self.counts {
             (0..D).for_each(|k| span[k] = span[k].min(n[k]));
         }

@@ -8,10 +8,7 @@ use rayon::prelude::*;
 
 use super::cells::Cells;
 use crate::{
-    energy::{
-        level::Level,
-        links::Lists,
-    },
+    energy::{level::Level, links::Lists},
     exemplar::{
         bodies::LOOSE,
         channels::{Weights, inner},
@@ -268,7 +265,8 @@ impl<const D: usize> Growth<'_, '_, D> {
             for &other in around {
                 let other = other as usize;
                 if self.done[other] {
-                    let step = level.sites[other].seen(level.domain.offset(level.sites[other].place, level.sites[q].place));
+                    let step =
+                        level.sites[other].seen(level.domain.offset(level.sites[other].place, level.sites[q].place));
                     let m = Vector(std::array::from_fn(|k| {
                         self.matches[other][k] + if level.pattern.base[k] { step[k] } else { 0.0 }
                     }));
@@ -296,7 +294,12 @@ impl<const D: usize> Growth<'_, '_, D> {
     }
 
     /// Looks around a match along each direction of the base, closer and closer.
-    fn refined(&self, start: (f64, Vector<D>), room: &Bounds<D>, rate: &impl Fn(&Vector<D>) -> f64) -> (f64, Vector<D>) {
+    fn refined(
+        &self,
+        start: (f64, Vector<D>),
+        room: &Bounds<D>,
+        rate: &impl Fn(&Vector<D>) -> f64,
+    ) -> (f64, Vector<D>) {
         let mut best = start;
         let mut step = 0.7 * self.level.tables.kernel.sigma;
         for _ in 0..4 {

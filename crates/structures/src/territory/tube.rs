@@ -216,7 +216,11 @@ impl<const D: usize> Territory<D> for Tube<D> {
                 }
                 stations.push(s);
                 s += plan.step * scale(s);
-                budget.within("quadrature points", stations.len(), ("output-elements", budget.limits().output_elements))?;
+                budget.within(
+                    "quadrature points",
+                    stations.len(),
+                    ("output-elements", budget.limits().output_elements),
+                )?;
             }
             // Spread what is left evenly.
             let stretch = (end - stations[0]) / (s - stations[0]);
@@ -224,7 +228,11 @@ impl<const D: usize> Territory<D> for Tube<D> {
             for s in stations.into_iter().map(|s| start + (s - start) * stretch) {
                 let (place, rotation, scale) = traced.at(s, along);
                 let weight = stretch;
-                let reach = if across.is_empty() { 0 } else { ((self.radius + plan.margin * scale) / (plan.step * scale)) as i64 };
+                let reach = if across.is_empty() {
+                    0
+                } else {
+                    ((self.radius + plan.margin * scale) / (plan.step * scale)) as i64
+                };
                 let side = 2 * reach + 1;
                 for n in 0..side.pow(across.len() as u32) {
                     let (mut rest, mut offset) = (n, Vector::<D>::ZERO);

@@ -31,8 +31,8 @@ mod text;
 
 pub use budget::{Budget, Cause, Held, Limits, Meter, Stopper};
 pub use curve::{
-    Cubic, Measured, Path, arc_lengths, cubic_at, cubic_part, net_line_spacing, parallel_line_spacing, polyline_length,
-    spans_inside, straight,
+    Cubic, Measured, Path, arc_lengths, carried, cubic_at, cubic_part, net_line_spacing, parallel_line_spacing,
+    polyline_length, spans_inside, straight, turned_about,
 };
 pub use error::{Error, Result};
 pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, Role, View};

@@ -1,6 +1,6 @@
 //! Ribbons along curves in space.
 
-use arabesque_core::{Path, Result, Vector};
+use arabesque_core::{Path, Result, Vector, carried};
 
 use crate::geometry::cage::{Cage, CagePlan, Form, Line, Rung};
 
@@ -20,40 +20,16 @@ impl Cage<3> {
     }
 }
 
-/// For each tangent the direction across the ribbon, carried along without twist; a closed ribbon spreads what is left over its length.
+/// For each tangent the direction across the ribbon, carried along without twist.
 fn downs(tangents: &[Vector<3>], closed: bool) -> Vec<Vector<3>> {
-    let mut down = first_down(tangents.iter().find(|t| t.norm() > 0.0).copied().unwrap_or(Vector([1.0, 0.0, 0.0])));
-    let mut carried = Vec::with_capacity(tangents.len());
-    for &tangent in tangents {
-        if let Some(t) = tangent.unit_if_longer(LEAST) {
-            down = (down - t * down.dot(t)).unit_if_longer(LEAST).unwrap_or(down);
-        }
-        carried.push(down);
-    }
-    let (Some(&first), Some(&last), true) = (carried.first(), carried.last(), closed) else { return carried };
-    let axis = tangents[0].unit_if_longer(LEAST).unwrap_or(Vector([1.0, 0.0, 0.0]));
-    let left = last.cross(first).dot(axis).atan2(last.dot(first));
-    let n = carried.len() as f64 - 1.0;
-    let turned = carried.iter().zip(tangents).enumerate().map(|(k, (&d, &t))| match t.unit_if_longer(LEAST) {
-        Some(t) => turn(d, t, left * k as f64 / n),
-        None => d,
-    });
-    let mut turned: Vec<_> = turned.collect();
-    if let Some(end) = turned.last_mut() {
-        *end = first;
-    }
-    turned
+    let first = tangents.iter().find(|t| t.norm() > 0.0).copied().unwrap_or(Vector([1.0, 0.0, 0.0]));
+    carried(tangents, first_down(first), closed)
 }
 
 /// Across the ribbon and level with the ground (z is up); for a curve that begins upright, along x.
 fn first_down(tangent: Vector<3>) -> Vector<3> {
     let level = Vector([0.0, 0.0, 1.0]).cross(tangent) * -1.0;
     level.unit_if_longer(LEAST).unwrap_or(Vector([1.0, 0.0, 0.0]))
-}
-
-/// `v`, which is square to the unit vector `axis`, turned about it.
-fn turn(v: Vector<3>, axis: Vector<3>, radians: f64) -> Vector<3> {
-    v * radians.cos() + axis.cross(v) * radians.sin()
 }
 
 /// The quadrilateral between two edges, laid flat: two triangles that keep the lengths of their sides.

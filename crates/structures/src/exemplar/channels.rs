@@ -1,0 +1,137 @@
+//! Attributes as weights of the Gaussians [Roveri 2015 §4.1, §4.4].
+//!
+//! Every point has mass 1; directions, colours, radii and whether it belongs to a rigid element are further channels, weighted so that
+//! none outweighs the place itself.
+
+use arabesque_core::{Matrix, PointSet, Vector};
+
+use crate::params::StructureParams;
+
+/// Most channels there are: mass, three of a direction, rigid or not, radius, three of a colour.
+pub(crate) const LANES: usize = 12;
+/// Channels are handled so many at a time.
+pub(crate) const BLOCK: usize = 4;
+/// Weight of belonging to a rigid element.
+const RIGID: f64 = 1.0;
+
+/// The weights of one point's Gaussian.
+pub(crate) type Weights = [f32; LANES];
+
+/// Which channel holds what.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Channels {
+    /// First of the channels of a direction, and its weight.
+    normal: Option<(usize, f64)>,
+    rigid: Option<usize>,
+    /// Channel, mean and weight over mean.
+    radius: Option<(usize, f64, f64)>,
+    /// First channel, means, weight.
+    colour: Option<(usize, [f64; 3], f64)>,
+    count: usize,
+}
+
+impl Channels {
+    /// The channels for the attributes that `points` have.
+    pub(crate) fn new<const D: usize>(points: &PointSet<D>, params: &StructureParams) -> Self {
+        let mut channels = Self { count: 1, ..Self::default() };
+        let mut take = |n: usize| {
+            channels.count += n;
+            channels.count - n
+        };
+        let n = points.len().max(1) as f64;
+        let normal = (points.normals.is_some() && params.normals > 0.0).then(|| (take(D), params.normals));
+        let mixed = |e: &Vec<i32>| e.iter().any(|&v| v >= 0) && e.iter().any(|&v| v < 0);
+        let rigid = points.elements.as_ref().is_some_and(mixed).then(|| take(1));
+        let radius = points.radii.as_ref().filter(|_| params.radii > 0.0).map(|radii| {
+            let mean = radii.iter().sum::<f64>() / n;
+            (take(1), mean, params.radii / mean.max(f64::MIN_POSITIVE))
+        });
+        let colour = points.colours.as_ref().filter(|_| params.colours > 0.0).map(|colours| {
+            let mean = std::array::from_fn(|k| colours.iter().map(|c| c[k]).sum::<f64>() / n);
+            (take(3), mean, 2.0 * params.colours)
+        });
+        Self { normal, rigid, radius, colour, ..channels }
+    }
+
+    /// Number of blocks of channels.
+    pub(crate) fn blocks(&self) -> usize {
+        self.count.div_ceil(BLOCK)
+    }
+
+    /// The weights of point `i`.
+    pub(crate) fn of<const D: usize>(&self, points: &PointSet<D>, i: usize) -> Weights {
+        let mut weights = [0.0; LANES];
+        weights[0] = 1.0;
+        if let (Some((at, w)), Some(normals)) = (self.normal, &points.normals) {
+            (0..D).for_each(|k| weights[at + k] = (w * normals[i][k]) as f32);
+        }
+        if let (Some(at), Some(elements)) = (self.rigid, &points.elements) {
+            weights[at] = if elements[i] >= 0 { RIGID as f32 } else { 0.0 };
+        }
+        if let (Some((at, mean, w)), Some(radii)) = (self.radius, &points.radii) {
+            weights[at] = (w * (radii[i] - mean)) as f32;
+        }
+        if let (Some((at, mean, w)), Some(colours)) = (self.colour, &points.colours) {
+            (0..3).for_each(|k| weights[at + k] = (w * (colours[i][k] - mean[k])) as f32);
+        }
+        weights
+    }
+
+    /// The weights with their direction turned.
+    pub(crate) fn turned<const D: usize>(&self, weights: &Weights, by: &Matrix<D>) -> Weights {
+        let mut turned = *weights;
+        if let Some((at, _)) = self.normal {
+            for r in 0..D {
+                turned[at + r] = (0..D).map(|c| by.0[r][c] as f32 * weights[at + c]).sum();
+            }
+        }
+        turned
+    }
+
+    /// The channel of the direction, where there is one.
+    pub(crate) fn normal(&self) -> Option<usize> {
+        self.normal.map(|n| n.0)
+    }
+
+    /// The direction in `weights`, of length 1; `None` where there is none.
+    pub(crate) fn direction<const D: usize>(&self, weights: &Weights) -> Option<Vector<D>> {
+        let (at, _) = self.normal?;
+        Vector::<D>(std::array::from_fn(|k| f64::from(weights[at + k]))).unit_if_longer(1e-9)
+    }
+
+    /// The weights with this direction.
+    pub(crate) fn directed<const D: usize>(&self, mut weights: Weights, direction: Vector<D>) -> Weights {
+        if let Some((at, w)) = self.normal {
+            (0..D).for_each(|k| weights[at + k] = (w * direction[k]) as f32);
+        }
+        weights
+    }
+
+    /// The radius in `weights`.
+    pub(crate) fn radius(&self, weights: &Weights) -> Option<f64> {
+        self.radius.map(|(at, mean, w)| mean + f64::from(weights[at]) / w)
+    }
+
+    /// The colour in `weights`.
+    pub(crate) fn colour(&self, weights: &Weights) -> Option<[f64; 3]> {
+        let (at, mean, w) = self.colour?;
+        Some(std::array::from_fn(|k| (mean[k] + f64::from(weights[at + k]) / w).clamp(0.0, 1.0)))
+    }
+
+    /// The channels of radius and colour.
+    pub(crate) fn scalars(&self) -> impl Iterator<Item = usize> {
+        let radius = self.radius.map(|r| r.0..r.0 + 1).unwrap_or(0..0);
+        radius.chain(self.colour.map(|c| c.0..c.0 + 3).unwrap_or(0..0))
+    }
+}
+
+/// Inner product of the weights of two Gaussians.
+pub(crate) fn inner(a: &Weights, b: &Weights) -> f32 {
+    let mut lanes = [0.0_f32; BLOCK];
+    for (a, b) in a.chunks_exact(BLOCK).zip(b.chunks_exact(BLOCK)) {
+        for k in 0..BLOCK {
+            lanes[k] += a[k] * b[k];
+        }
+    }
+    lanes[0] + lanes[1] + (lanes[2] + lanes[3])
+}

@@ -1,0 +1,136 @@
+//! The exemplar as it is prepared once.
+
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Budget, Domain, Error, GridIndex, PointSet, Result, Vector, Warning};
+
+use super::{
+    bodies::{Body, bodies},
+    channels::{Channels, Weights},
+    spacing::{base, spacing},
+};
+use crate::params::StructureParams;
+
+/// Fewest points that show anything that repeats.
+const FEWEST: usize = 10;
+/// Extents below this share of the largest one count as flat.
+const FLAT: f64 = 1e-6;
+
+/// What is known of the exemplar whatever the level.
+#[derive(Clone, Debug)]
+pub(crate) struct Pattern<const D: usize> {
+    /// The exemplar itself.
+    pub(crate) points: Arc<PointSet<D>>,
+    /// What each channel of the weights holds.
+    pub(crate) channels: Channels,
+    /// The weights of each point.
+    pub(crate) weights: Vec<Weights>,
+    /// Mean distance of a point from the nearest.
+    pub(crate) spacing: f64,
+    /// The coordinates along which the exemplar repeats.
+    pub(crate) base: [bool; D],
+    /// The box of what repeats; across it, that of all points.
+    pub(crate) bounds: Bounds<D>,
+    /// The place of the base across itself: the axis of a rope, the plane under a surface; zero along it.
+    pub(crate) axis: Vector<D>,
+    /// How far points are from the base.
+    pub(crate) thickness: f64,
+    /// Rigid elements.
+    pub(crate) bodies: Vec<Body<D>>,
+    /// For each point its rigid element.
+    pub(crate) body_of: Vec<u32>,
+    /// All points by place.
+    pub(crate) index: GridIndex<D>,
+}
+
+impl<const D: usize> Pattern<D> {
+    /// Checks and analyses an exemplar.
+    pub(crate) fn new(
+        points: Arc<PointSet<D>>,
+        params: &StructureParams,
+        budget: &Budget,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self> {
+        check(&points, budget)?;
+        let all = points.bounds();
+        budget.spend(points.len() as u64 * 2_000)?;
+        let spacing = spacing(&points.positions).ok_or_else(|| {
+            Error::input("the exemplar", "all points lie in one place", "give an exemplar in which points lie apart")
+        })?;
+        let (bodies, body_of) = bodies(&points);
+        let loose: Vec<Vector<D>> =
+            (0..points.len()).filter(|&i| body_of[i] as usize >= bodies.len()).map(|i| points.positions[i]).collect();
+        // Whole elements may stick out of the box that their middles fill.
+        let inner = if loose.len() * 5 > points.len() {
+            Bounds::around(loose)
+        } else {
+            Bounds::around(bodies.iter().map(|b| b.centre))
+        };
+        let base = base(&all, params.repeats);
+        let bounds = Bounds::new(
+            Vector(std::array::from_fn(|k| if base[k] { inner.min[k] } else { all.min[k] })),
+            Vector(std::array::from_fn(|k| if base[k] { inner.max[k] } else { all.max[k] })),
+        );
+        flatness(&all, base, warnings);
+        let axis = Vector(std::array::from_fn(|k| {
+            let holds_zero = all.min[k] <= spacing && all.max[k] >= -spacing;
+            if base[k] || holds_zero { 0.0 } else { 0.5 * (all.min[k] + all.max[k]) }
+        }));
+        let across = |p: &Vector<D>| (0..D).filter(|&k| !base[k]).map(|k| (p[k] - axis[k]).powi(2)).sum::<f64>().sqrt();
+        let thickness = points.positions.iter().map(across).fold(0.0, f64::max);
+        let channels = Channels::new(&points, params);
+        let weights = (0..points.len()).map(|i| channels.of(&points, i)).collect();
+        let index = GridIndex::new(&points.positions, 2.0 * spacing, &Domain::Box(all));
+        Ok(Self { channels, weights, spacing, base, bounds, axis, thickness, bodies, body_of, index, points })
+    }
+
+    /// Number of directions along which the exemplar repeats.
+    pub(crate) fn repeats(&self) -> usize {
+        self.base.iter().filter(|b| **b).count()
+    }
+
+    /// Side lengths of the box of what repeats, along the base.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = f64> {
+        let size = self.bounds.size();
+        (0..D).filter(|&k| self.base[k]).map(move |k| size[k])
+    }
+
+    /// Length, area or volume of what repeats.
+    pub(crate) fn measure(&self) -> f64 {
+        self.sides().map(|s| s + self.spacing).product()
+    }
+}
+
+fn check<const D: usize>(points: &PointSet<D>, budget: &Budget) -> Result<()> {
+    points.check("the exemplar")?;
+    budget.within("points of the exemplar", points.len(), ("elements", budget.limits().elements))?;
+    if points.len() < FEWEST {
+        return Err(Error::input(
+            "the exemplar",
+            format!("{} points", points.len()),
+            format!("give at least {FEWEST}, so that something can repeat"),
+        ));
+    }
+    match points.positions.iter().position(|p| !p.is_finite()) {
+        Some(i) => Err(Error::input(
+            "the exemplar",
+            format!("a coordinate of point {} is not a finite number", i + 1),
+            "leave the point out",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Tells what it means when all points lie in a plane or on a line.
+fn flatness<const D: usize>(all: &Bounds<D>, base: [bool; D], warnings: &mut Vec<Warning>) {
+    let size = all.size();
+    let largest = size.0.iter().copied().fold(0.0, f64::max);
+    let flat = size.0.iter().filter(|&&s| s < FLAT * largest).count();
+    if D == 3 && flat > 0 && base.iter().filter(|b| **b).count() <= 2 {
+        let what = if flat == 1 { "in one plane" } else { "on one line" };
+        warnings.push(Warning::new(
+            format!("all points of the exemplar lie {what}"),
+            "the result is as flat along its domain; give an exemplar with depth for more",
+        ));
+    }
+}

@@ -1,0 +1,4 @@
+//! The output while it is made, and what comes of it.
+
+pub(crate) mod finish;
+pub(crate) mod state;

@@ -1,0 +1,110 @@
+//! An exemplar that is understood once and continued as often as wanted.
+
+use std::sync::Arc;
+
+use arabesque_core::{Budget, Error, PointSet, Result, Warning};
+
+use crate::{
+    energy::kernel::Kernel,
+    exemplar::{
+        field::Field,
+        pattern::Pattern,
+        repetition::{Repetition, repetition},
+    },
+    params::StructureParams,
+    territory::SitePlan,
+};
+
+/// Share of what repeats that the window is by itself.
+const WINDOW: f64 = 0.7;
+/// Smallest window, in spacings.
+const SMALLEST: f64 = 3.0;
+/// Largest share of the exemplar's length that the window is by itself.
+const LARGEST: f64 = 0.22;
+/// Largest share that it may be.
+const MOST: f64 = 0.5;
+/// Windows at most from one site to the next, when they are smallest.
+const STEP: f64 = 1.0;
+
+/// A prepared exemplar.
+#[derive(Clone, Debug)]
+pub struct Prepared<const D: usize> {
+    pub(crate) pattern: Arc<Pattern<D>>,
+    pub(crate) params: StructureParams,
+    /// The window at first, in the units of the exemplar.
+    pub(crate) window: f64,
+    pub(crate) repetition: Repetition<D>,
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl<const D: usize> Prepared<D> {
+    /// Understands an exemplar: how densely its points lie, along which directions it repeats and how far.
+    ///
+    /// # Errors
+    /// When there are too few points or some are no numbers, when a parameter is out of range, or when the budget is used up.
+    pub fn new(points: Arc<PointSet<D>>, params: &StructureParams, budget: &Budget) -> Result<Self> {
+        params.check()?;
+        let budget = budget.stage("preparing the exemplar");
+        let mut warnings = Vec::new();
+        let pattern = Pattern::new(points, params, &budget, &mut warnings)?;
+        let sigma = params.sigma * pattern.spacing;
+        let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
+        let kernel = Kernel::new(sigma, 1e3 * shortest.max(sigma), pattern.base, params.shape);
+        let places = &pattern.points.positions;
+        let field = Field::new(places, &pattern.weights, pattern.channels.blocks(), &kernel, &budget)?;
+        let step = if pattern.repeats() > 2 { sigma } else { 0.6 * sigma };
+        let repetition = repetition(&pattern, &field, step.max(shortest / 150.0), &budget)?;
+        let found = WINDOW * repetition.length.unwrap_or(2.0 * LARGEST * shortest);
+        let window = params.window.map_or_else(
+            || found.min(LARGEST * shortest).max(SMALLEST * pattern.spacing),
+            |window| window * pattern.spacing,
+        );
+        if window > MOST * shortest {
+            let least = shortest * MOST / pattern.spacing;
+            return Err(Error::parameter(
+                "window",
+                format!("{:.1}", window / pattern.spacing),
+                format!(
+                    "at most {least:.1} spacings, half the length of the exemplar, or an exemplar that shows more of the structure"
+                ),
+            ));
+        }
+        Ok(Self { pattern: Arc::new(pattern), params: params.clone(), window, repetition, warnings })
+    }
+
+    /// Mean distance of a point of the exemplar from the nearest.
+    pub fn spacing(&self) -> f64 {
+        self.pattern.spacing
+    }
+
+    /// Size of the window at first, in the units of the exemplar.
+    pub fn window(&self) -> f64 {
+        self.window
+    }
+
+    /// How far the exemplar is from where it looks like itself again, where that was looked for and found.
+    pub fn repetition(&self) -> Option<f64> {
+        self.repetition.length
+    }
+
+    /// Along how many directions the exemplar repeats: 1 for ropes, 2 for surfaces, 3 for volumes.
+    pub fn repeats(&self) -> usize {
+        self.pattern.repeats()
+    }
+
+    /// Distance between sites, in the units of the exemplar.
+    pub(crate) fn step(&self) -> f64 {
+        STEP * 0.5 * self.window
+    }
+
+    /// What territories are asked for.
+    pub fn plan(&self) -> SitePlan<D> {
+        SitePlan {
+            step: self.step(),
+            margin: self.window,
+            base: self.pattern.base,
+            axis: self.pattern.axis,
+            thickness: self.pattern.thickness,
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! The multi-scale loop [Roveri 2015, algorithm 1].
+
+use std::ops::ControlFlow;
+
+use arabesque_core::{Budget, Domain, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
+
+use crate::{
+    energy::{
+        kernel::Kernel,
+        level::{Level, Matches, Tables},
+        links::{Lists, SiteIndex, neighbours},
+    },
+    output::{
+        finish::{Finished, finish, groups, kept, sources},
+        state::Output,
+    },
+    params::Start,
+    prepared::Prepared,
+    request::{StructureOutcome, StructureRequest},
+    solve::{
+        attributes::attributes,
+        matching::{Round, anywhere, matching, room},
+        merging::merge,
+        sampling::control,
+    },
+    start::{grow::grow, noise::noise, patches::patches, shake::shake},
+    territory::Site,
+};
+
+/// The smallest window, in units of the first one.
+const SMALLEST: f64 = 0.5;
+/// Points that move less than this in the mean, in spacings, have settled.
+const SETTLED: f64 = 1e-3;
+/// Rounds for the first matches, where the start brings none along.
+const FIRST: u64 = 4;
+/// Windows of neighbours: sites within so many steps.
+const AROUND: f64 = 1.25;
+
+/// Window and width of the Gaussians of one level.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    delta: f64,
+    sigma: f64,
+}
+
+/// What all levels share.
+struct Stage<'a, const D: usize> {
+    prepared: &'a Prepared<D>,
+    request: &'a StructureRequest<D>,
+    budget: Budget,
+    sites: Vec<Site<D>>,
+    index: SiteIndex<D>,
+    around: Lists,
+    domain: Domain<D>,
+    scales: Vec<Scale>,
+}
+
+/// How far a run is.
+struct State<const D: usize> {
+    output: Output<D>,
+    matches: Vec<arabesque_core::Vector<D>>,
+    energy: Vec<EnergyPoint>,
+    stopped: StopReason,
+}
+
+impl<const D: usize> Prepared<D> {
+    /// Makes as much as the request wants. Stopped early, it gives the best so far.
+    ///
+    /// # Errors
+    /// When the territory has no room, when a kept point is no number, or when the budget is used up before there are points.
+    pub fn run(
+        &self,
+        request: &StructureRequest<D>,
+        watch: &mut dyn Watch<PointSet<D>>,
+    ) -> Result<StructureOutcome<D>> {
+        let stage = Stage::new(self, request)?;
+        let start = kept(&self.pattern, &request.kept)?;
+        let mut state = State { output: start, matches: Vec::new(), energy: Vec::new(), stopped: StopReason::Finished };
+        for n in 0..stage.scales.len() {
+            match stage.level(n, &mut state, watch) {
+                Ok(ControlFlow::Continue(())) => {}
+                Ok(ControlFlow::Break(())) => {
+                    state.stopped = StopReason::Stopped;
+                    break;
+                }
+                Err(error) if state.matches.is_empty() => return Err(error),
+                Err(Error::Limit { .. }) => {
+                    state.stopped = StopReason::Limit;
+                    break;
+                }
+                Err(Error::Stopped { .. }) => {
+                    state.stopped = StopReason::Stopped;
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        stage.outcome(state)
+    }
+}
+
+impl<'a, const D: usize> Stage<'a, D> {
+    fn new(prepared: &'a Prepared<D>, request: &'a StructureRequest<D>) -> Result<Self> {
+        let budget = request.budget.stage("making the structure");
+        let (plan, pattern) = (prepared.plan(), &prepared.pattern);
+        let sites = request.territory.sites(&plan, &budget)?;
+        if sites.is_empty() {
+            return Err(Error::no_result(
+                "the domain is too small for the structure",
+                "make the domain larger, or the scale smaller",
+            ));
+        }
+        let expected = sites.iter().map(|s| s.weight).sum::<f64>() * plan.step.powi(pattern.repeats() as i32)
+            / pattern.measure()
+            * pattern.points.len() as f64;
+        budget.within(
+            "points of the result",
+            expected as usize,
+            ("output-elements", budget.limits().output_elements),
+        )?;
+        budget.allow_elements(expected);
+        let domain = request.territory.surroundings();
+        let index = SiteIndex::new(&sites, plan.step, &domain);
+        let places: Vec<_> = sites.iter().map(|s| s.place).collect();
+        let largest = sites.iter().map(|s| s.scale).fold(0.0, f64::max);
+        let around = neighbours(&places, AROUND * plan.step * largest, &domain, &budget)?;
+        let mut scales = Vec::new();
+        let (mut delta, sigma) = (prepared.window, prepared.params.sigma * pattern.spacing);
+        while delta > SMALLEST * prepared.window * 1.001 {
+            scales.push(Scale { delta, sigma });
+            delta *= prepared.params.shrink;
+        }
+        let delta = SMALLEST * prepared.window;
+        scales.push(Scale { delta, sigma });
+        let fine = prepared.params.fine * pattern.spacing;
+        if fine < sigma {
+            scales.push(Scale { delta, sigma: fine });
+        }
+        Ok(Self { prepared, request, budget, sites, index, around, domain, scales })
+    }
+
+    fn level(&self, n: usize, state: &mut State<D>, watch: &mut dyn Watch<PointSet<D>>) -> Result<ControlFlow<()>> {
+        let scale = self.scales[n];
+        let pattern = &*self.prepared.pattern;
+        let params = &self.prepared.params;
+        let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
+        let tables = Tables::new(pattern, kernel, &self.budget)?;
+        let level = Level {
+            pattern,
+            tables: &tables,
+            sites: &self.sites,
+            index: &self.index,
+            domain: &self.domain,
+            shifts: &self.prepared.repetition.shifts,
+        };
+        if n == 0 {
+            self.start(&level, state)?;
+            if std::env::var("INIT").is_ok() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        let room = room(&level);
+        let mut matches = Matches::new(&level, state.matches.iter().map(|&m| room.clamp(m)).collect());
+        for round in 0..params.rounds {
+            let number = (n * 1000 + round) as u64 + 10;
+            let near = level.near(&state.output, &self.budget)?;
+            let draw = Round { seed: self.request.seed, number, tries: params.tries };
+            let matched = matching(&level, &state.output, &near, &matches, &self.around, (draw, &self.budget))?;
+            debug_assert!(matched.energy.1 <= matched.energy.0 + 1e-9 * matched.energy.0.abs());
+            matches = matched.matches;
+            let mut pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
+            let mut settled = 0.0;
+            let mut energy = 0.0;
+            for _ in 0..params.steps {
+                let moved = merge(&level, &mut state.output, &near, &matches, &mut pulls, &self.budget)?;
+                (settled, energy) = (moved.distance, moved.energy);
+                if moved.distance < SETTLED * pattern.spacing {
+                    break;
+                }
+            }
+            attributes(&level, &mut state.output, &near, &matches, &mut pulls);
+            let near = level.near(&state.output, &self.budget)?;
+            let pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
+            let changed = control(&level, &mut state.output, &near, &matches, &pulls, &self.budget)?;
+            state.matches.clone_from(&matches.places);
+            let elements = state.output.places.len();
+            let energy = energy / self.sites.len() as f64;
+            state.energy.push(EnergyPoint { level: n, iteration: round, energy, elements });
+            let done = n * params.rounds + round + 1;
+            let total = self.scales.len() * params.rounds;
+            let progress = Progress {
+                stage: format!("level {} of {}", n + 1, self.scales.len()).into(),
+                done: round + 1,
+                total: params.rounds,
+                fraction: done as f64 / total as f64,
+                energy: Some(energy),
+                count: elements,
+            };
+            let output = &state.output;
+            if watch.step(&progress, &|| self.preview(output)).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+            if settled < SETTLED * pattern.spacing && changed == (0, 0) {
+                break;
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Lays out the first points and matches.
+    fn start(&self, level: &Level<'_, D>, state: &mut State<D>) -> Result<()> {
+        let (params, seed) = (&self.prepared.params, self.request.seed);
+        let step = self.prepared.step();
+        let kept = std::mem::take(&mut state.output);
+        let spacing = self.prepared.pattern.spacing;
+        let (mut output, matches) = match params.start {
+            Start::Grow => grow(level, kept, &self.around, step, seed, &self.budget)?,
+            Start::Patches => patches(level, kept, (step, params.patch * spacing), seed),
+            Start::Noise => {
+                let output = noise(level, kept, step, seed);
+                let room = room(level);
+                let first = |q| {
+                    anywhere(&room, &mut arabesque_core::Stream::new(seed, arabesque_core::Stage::new(46), q as u64))
+                };
+                let mut matches = Matches::new(level, (0..self.sites.len()).map(first).collect());
+                let near = level.near(&output, &self.budget)?;
+                for number in 0..FIRST {
+                    let draw = Round { seed, number, tries: 8 };
+                    matches = matching(level, &output, &near, &matches, &self.around, (draw, &self.budget))?.matches;
+                }
+                (output, matches.places)
+            }
+        };
+        if params.start != Start::Noise {
+            shake(&mut output, params.shake * spacing, seed);
+        }
+        (state.output, state.matches) = (output, matches);
+        Ok(())
+    }
+
+    fn preview(&self, output: &Output<D>) -> PointSet<D> {
+        let nearest = vec![0; output.places.len()];
+        self.cut(output, &nearest, None).points
+    }
+
+    fn cut(&self, output: &Output<D>, sources: &[usize], groups: Option<&[i32]>) -> Finished<D> {
+        let plan = self.prepared.plan();
+        let inside = |p| self.request.territory.contains(self.domain.wrap(p), &plan);
+        let mut finished = finish(&self.prepared.pattern, output, sources, groups, inside);
+        finished.points.positions.iter_mut().for_each(|p| *p = self.domain.wrap(*p));
+        finished
+    }
+
+    fn outcome(&self, state: State<D>) -> Result<StructureOutcome<D>> {
+        // What is still to be done with the best so far has an account of its own.
+        let budget = self.budget.fresh();
+        let Some(&scale) = self.scales.last() else { return Err(Error::no_result("no level", "allow a window")) };
+        let pattern = &*self.prepared.pattern;
+        let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);
+        let tables = Tables::new(pattern, kernel, &budget)?;
+        let level = Level {
+            pattern,
+            tables: &tables,
+            sites: &self.sites,
+            index: &self.index,
+            domain: &self.domain,
+            shifts: &self.prepared.repetition.shifts,
+        };
+        let matches = Matches::new(&level, state.matches);
+        let near = level.near(&state.output, &budget)?;
+        let sources = sources(&level, &state.output, &near, &matches);
+        let groups = groups(&level, &state.output, &near, &matches);
+        let finished = self.cut(&state.output, &sources, groups.as_deref());
+        let mut warnings = self.prepared.warnings.clone();
+        if finished.points.is_empty() {
+            return Err(Error::no_result(
+                "no point lies in the domain",
+                "make the domain larger, or the scale smaller",
+            ));
+        }
+        if state.stopped == StopReason::Limit {
+            warnings.push(Warning::new("the limit of work was reached", "raise it with --limit work=N"));
+        }
+        Ok(StructureOutcome {
+            points: finished.points,
+            sources: finished.sources,
+            elements: finished.elements,
+            energy: state.energy,
+            warnings,
+            stopped: state.stopped,
+        })
+    }
+}

@@ -1,0 +1,7 @@
+//! The local-global solver [Roveri 2015 §5.1, algorithm 1].
+
+pub(crate) mod attributes;
+pub(crate) mod matching;
+pub(crate) mod merging;
+pub(crate) mod newton;
+pub(crate) mod sampling;

@@ -1,0 +1,224 @@
+//! A direction downhill for all points at once.
+//!
+//! `T` is a sum of squares of fields, so the product of their slopes stands in for its second derivatives [Gauss-Newton]; points of
+//! one rigid element move as one. The equations are solved roughly, by conjugate gradients.
+
+use arabesque_core::{Matrix, Vector};
+use rayon::prelude::*;
+
+use crate::{
+    energy::{
+        exp::exp,
+        level::{Level, Near, Pull},
+    },
+    exemplar::channels::inner,
+    output::state::Output,
+};
+
+/// Steps of conjugate gradients.
+const STEPS: usize = 12;
+/// Share of its diagonal that is added to the matrix: the energy hardly tells how points lie along a line or a surface.
+const DAMPING: f64 = 0.02;
+
+/// Slopes of `T` by the places of the points; zero for those that stay.
+pub(crate) fn slopes<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    near: &Near,
+    pulls: &[Pull<D>],
+) -> Vec<Vector<D>> {
+    let sigma = level.tables.kernel.sigma;
+    (0..output.places.len())
+        .into_par_iter()
+        .with_min_len(128)
+        .map(|i| {
+            if output.is_kept(i) {
+                return Vector::ZERO;
+            }
+            let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
+            let mut own = f64::from(inner(a, a));
+            let mut slope = Vector::ZERO;
+            for &j in near.pairs.of(i) {
+                let j = j as usize;
+                let r = level.domain.offset(output.places[j], x);
+                let width = sigma * 0.5 * (here.scale + pulls[j].scale);
+                let h = f64::from(exp((-0.5 * r.norm2() / (width * width)) as f32))
+                    * f64::from(inner(a, &output.weights[j]));
+                own += h;
+                slope += r * (-h / (width * width) * (here.cover + pulls[j].cover));
+            }
+            slope + here.cover_slope * own - here.wanted_slope * 2.0
+        })
+        .collect()
+}
+
+/// Rows of the matrix: for each point its neighbours in the order of the lists.
+struct System<const D: usize> {
+    diagonal: Vec<f64>,
+    rows: Vec<Vec<(u32, f32, [f32; D])>>,
+}
+
+impl<const D: usize> System<D> {
+    fn new(level: &Level<'_, D>, output: &Output<D>, near: &Near, pulls: &[Pull<D>]) -> Self {
+        let sigma = level.tables.kernel.sigma;
+        let diagonal = (0..output.places.len())
+            .map(|i| {
+                let width = sigma * pulls[i].scale;
+                2.0 * f64::from(inner(&output.weights[i], &output.weights[i])) * pulls[i].cover / (width * width)
+            })
+            .collect();
+        let rows = (0..output.places.len())
+            .into_par_iter()
+            .with_min_len(128)
+            .map(|i| {
+                let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
+                let entry = |&j: &u32| {
+                    let n = j as usize;
+                    let r = level.domain.offset(output.places[n], x);
+                    let width = sigma * 0.5 * (here.scale + pulls[n].scale);
+                    let h = f64::from(exp((-0.5 * r.norm2() / (width * width)) as f32))
+                        * f64::from(inner(a, &output.weights[n]));
+                    let cover = (here.cover * pulls[n].cover).max(0.0).sqrt();
+                    let weight = 2.0 * cover * h / (width * width);
+                    (j, weight as f32, r.0.map(|c| (c / width) as f32))
+                };
+                near.pairs.of(i).iter().map(entry).collect()
+            })
+            .collect();
+        Self { diagonal, rows }
+    }
+
+    fn product(&self, x: &[Vector<D>]) -> Vec<Vector<D>> {
+        (0..x.len())
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|i| {
+                let mut sum = x[i] * (self.diagonal[i] * (1.0 + DAMPING));
+                for (j, weight, r) in &self.rows[i] {
+                    let other = x[*j as usize];
+                    let along: f64 = (0..D).map(|k| f64::from(r[k]) * other[k]).sum();
+                    let w = f64::from(*weight);
+                    for k in 0..D {
+                        sum[k] += w * (other[k] - along * f64::from(r[k]));
+                    }
+                }
+                sum
+            })
+            .collect()
+    }
+}
+
+/// The direction for these slopes: `T` falls along it at first.
+pub(crate) fn direction<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    near: &Near,
+    pulls: &[Pull<D>],
+    slopes: &[Vector<D>],
+) -> Vec<Vector<D>> {
+    let system = System::new(level, output, near, pulls);
+    let precondition = |r: &[Vector<D>]| -> Vec<Vector<D>> {
+        let mut z: Vec<_> = r.iter().zip(&system.diagonal).map(|(r, d)| *r * (1.0 / d.max(1e-30))).collect();
+        admissible(output, &mut z);
+        z
+    };
+    let mut x = vec![Vector::ZERO; slopes.len()];
+    let mut r: Vec<Vector<D>> = slopes.iter().map(|&g| -g).collect();
+    admissible(output, &mut r);
+    let mut z = precondition(&r);
+    let mut p = z.clone();
+    let mut rz = dot(&r, &z);
+    let stop = 1e-4 * rz;
+    for _ in 0..STEPS {
+        if rz <= stop || rz <= 0.0 {
+            break;
+        }
+        let mut product = system.product(&p);
+        admissible(output, &mut product);
+        let curve = dot(&p, &product);
+        if curve <= 0.0 {
+            break;
+        }
+        let step = rz / curve;
+        for i in 0..x.len() {
+            x[i] += p[i] * step;
+            r[i] += product[i] * -step;
+        }
+        z = precondition(&r);
+        let next = dot(&r, &z);
+        let beta = next / rz;
+        rz = next;
+        for i in 0..p.len() {
+            p[i] = z[i] + p[i] * beta;
+        }
+    }
+    x
+}
+
+fn dot<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+}
+
+/// The nearest movement in which rigid elements stay rigid, at first order, and kept points stay.
+pub(crate) fn admissible<const D: usize>(output: &Output<D>, moves: &mut [Vector<D>]) {
+    moves[..output.kept].fill(Vector::ZERO);
+    for body in output.bodies.iter().filter(|b| b.first >= output.kept) {
+        let range = body.first..body.first + body.count;
+        let places = &output.places[range.clone()];
+        let n = 1.0 / body.count.max(1) as f64;
+        let mean = |v: &[Vector<D>]| v.iter().fold(Vector::ZERO, |s, &p| s + p) * n;
+        let (centre, shift) = (mean(places), mean(&moves[range.clone()]));
+        let spin = spin(places, centre, &moves[range.clone()]);
+        for i in range {
+            moves[i] = shift + spin.apply(output.places[i] - centre);
+        }
+    }
+}
+
+/// The skew matrix that best explains `moves` of `places` as a turn about `centre`.
+pub(crate) fn spin<const D: usize>(places: &[Vector<D>], centre: Vector<D>, moves: &[Vector<D>]) -> Matrix<D> {
+    let mut spin = Matrix::zero();
+    // Moment of the movements, and the inertia of the points, in the planes of two coordinates.
+    let planes: Vec<(usize, usize)> = (0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b))).collect();
+    let mut moment = [0.0; 3];
+    let mut inertia = [[0.0; 3]; 3];
+    for (&p, &v) in places.iter().zip(moves) {
+        let r = p - centre;
+        // Rows: the movement at r for a unit turn in each plane.
+        let unit = |(a, b): (usize, usize)| {
+            let mut u = Vector::<D>::ZERO;
+            (u[a], u[b]) = (-r[b], r[a]);
+            u
+        };
+        for (s, &plane) in planes.iter().enumerate() {
+            let u = unit(plane);
+            moment[s] += u.dot(v);
+            for (t, &other) in planes.iter().enumerate() {
+                inertia[s][t] += u.dot(unit(other));
+            }
+        }
+    }
+    let trace: f64 = (0..planes.len()).map(|s| inertia[s][s]).sum();
+    if trace <= 0.0 {
+        return spin;
+    }
+    for (s, row) in inertia.iter_mut().enumerate() {
+        // Thin rods and single points do not turn about themselves.
+        row[s] += if s < planes.len() { 1e-6 * trace } else { 1.0 };
+    }
+    let turn = solve(inertia, moment);
+    for (s, (a, b)) in planes.into_iter().enumerate() {
+        spin.0[a][b] = -turn[s];
+        spin.0[b][a] = turn[s];
+    }
+    spin
+}
+
+/// Solves three equations of a positive definite matrix.
+fn solve(m: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    let cross = |a: [f64; 3], b: [f64; 3]| Vector(a).cross(Vector(b));
+    let (x, y, z) = (cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1]));
+    let determinant = Vector(m[0]).dot(x);
+    let sum = x * v[0] + y * v[1] + z * v[2];
+    (sum * (1.0 / determinant)).0
+}

@@ -1,0 +1,261 @@
+//! Sampling control [Roveri 2015 §5.1, eq. 7]: points are added where the output has less than the exemplar, and removed where it has more.
+//!
+//! Adding a point with weights `b` at `x` changes `T` by `P(x) |b|^2 - 2 b.r(x)`, where `r` is what the matches want there beyond what all
+//! points give; removing one of weights `a` changes it by `2 a.r' - P |a|^2` with `r'` the same without the point. So a point is worth its place
+//! when it makes up at least half of itself, and every change is kept only if `T` falls by it.
+
+use arabesque_core::{Budget, GridIndex, Result, Similarity, Vector};
+use rayon::prelude::*;
+
+use crate::{
+    energy::level::{Level, Matches, Near, Pull},
+    exemplar::{
+        bodies::LOOSE,
+        channels::{LANES, Weights, inner},
+    },
+    output::state::Output,
+};
+
+/// A change must lower the energy by this share of what one point weighs.
+const WORTH: f64 = 0.04;
+/// What is added is no nearer to a point like it than this, in units of the spacing.
+const APART: f64 = 0.45;
+
+/// Adds and removes; how many of each.
+pub(crate) fn control<const D: usize>(
+    level: &Level<'_, D>,
+    output: &mut Output<D>,
+    near: &Near,
+    matches: &Matches<D>,
+    pulls: &[Pull<D>],
+    budget: &Budget,
+) -> Result<(usize, usize)> {
+    let removed = remove(level, output, near, pulls);
+    let before = output.places.len();
+    budget.spend(near.pairs.total() as u64 * 20)?;
+    let gone = removed.iter().filter(|r| **r).count();
+    if gone > 0 {
+        *output = output.filtered(level.pattern, |i| !removed[i]);
+    }
+    let added = add(level, output, matches, budget)?;
+    debug_assert!(output.places.len() + gone >= before);
+    Ok((added, gone))
+}
+
+/// Which points go, the most superfluous first, each with the ones before it gone.
+fn remove<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, pulls: &[Pull<D>]) -> Vec<bool> {
+    let n = output.places.len();
+    let pair = |i: usize, j: usize| {
+        let r2 = level.domain.offset(output.places[i], output.places[j]).norm2();
+        level.pair(r2, pulls[i].scale, pulls[j].scale)
+            * 0.5
+            * (pulls[i].cover + pulls[j].cover)
+            * f64::from(inner(&output.weights[i], &output.weights[j]))
+    };
+    // T without a point, less T with it, per point; elements sum over theirs.
+    let mut change: Vec<f64> = (0..n)
+        .into_par_iter()
+        .with_min_len(128)
+        .map(|i| {
+            let own = f64::from(inner(&output.weights[i], &output.weights[i])) * pulls[i].cover;
+            2.0 * pulls[i].wanted - 2.0 * near.pairs.of(i).iter().map(|&j| pair(i, j as usize)).sum::<f64>() - own
+        })
+        .collect();
+    let members = |i: usize| match output.bodies.get(output.body_of[i] as usize) {
+        Some(b) => b.first..b.first + b.count,
+        None => i..i + 1,
+    };
+    let worth = |change: &[f64], i: usize| {
+        let all = members(i);
+        let mut sum: f64 = all.clone().map(|k| change[k]).sum();
+        // Pairs within an element go once, not twice.
+        for a in all.clone().filter(|_| all.len() > 1) {
+            sum += near
+                .pairs
+                .of(a)
+                .iter()
+                .filter(|j| all.contains(&(**j as usize)))
+                .map(|&j| pair(a, j as usize))
+                .sum::<f64>();
+        }
+        let weight: f64 = all.map(|k| f64::from(inner(&output.weights[k], &output.weights[k])) * pulls[k].cover).sum();
+        sum / weight.max(1e-30)
+    };
+    let heads: Vec<usize> = (output.kept..n).filter(|&i| members(i).start == i).collect();
+    let mut order: Vec<(f64, usize)> =
+        heads.into_iter().map(|i| (worth(&change, i), i)).filter(|c| c.0 < -WORTH).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut removed = vec![false; n];
+    for (_, i) in order {
+        if worth(&change, i) >= -WORTH {
+            continue;
+        }
+        for a in members(i) {
+            removed[a] = true;
+            for &j in near.pairs.of(a) {
+                if !removed[j as usize] {
+                    change[j as usize] += 2.0 * pair(a, j as usize);
+                }
+            }
+        }
+    }
+    removed
+}
+
+/// Something of the exemplar that could be added.
+struct Offer<const D: usize> {
+    place: Vector<D>,
+    weights: Weights,
+    /// The element it stands for, where it is one, with its pose.
+    body: Option<(usize, Similarity<D>)>,
+    worth: f64,
+}
+
+/// Adds what is missing, the most wanted first, each with the ones before it there. Returns how many points.
+fn add<const D: usize>(
+    level: &Level<'_, D>,
+    output: &mut Output<D>,
+    matches: &Matches<D>,
+    budget: &Budget,
+) -> Result<usize> {
+    let before = output.places.len();
+    let radius = level.tables.kernel.pairs() * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
+    let index = GridIndex::new(&output.places, radius, level.domain);
+    let offers: Result<Vec<Vec<Offer<D>>>> = (0..level.sites.len())
+        .into_par_iter()
+        .with_min_len(8)
+        .map(|q| {
+            let offers = offers(level, output, matches, &index, q);
+            budget.spend(500)?;
+            Ok(offers)
+        })
+        .collect();
+    let mut offers: Vec<Offer<D>> = offers?.into_iter().flatten().collect();
+    offers.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+    // What was added, in cells, for those that come after.
+    let mut fresh: Vec<(Vector<D>, Weights)> = Vec::new();
+    let mut cells: std::collections::HashMap<[i64; D], Vec<u32>> = std::collections::HashMap::new();
+    let cell = |p: Vector<D>| -> [i64; D] { std::array::from_fn(|k| (p[k] / radius).floor() as i64) };
+    for offer in offers {
+        let members = members(level, &offer);
+        let mut sum = 0.0;
+        let mut weight = 0.0;
+        let mut crowded = false;
+        for (place, weights) in &members {
+            let place = level.domain.wrap(*place);
+            let mut given = 0.0;
+            let home = cell(place);
+            for n in 0..3_usize.pow(D as u32) {
+                let mut rest = n;
+                let at: [i64; D] = std::array::from_fn(|k| {
+                    let off = (rest % 3) as i64 - 1;
+                    rest /= 3;
+                    home[k] + off
+                });
+                for &f in cells.get(&at).into_iter().flatten() {
+                    let (p, w) = &fresh[f as usize];
+                    let r2 = level.domain.offset(place, *p).norm2();
+                    given += level.pair(r2, 1.0, 1.0) * f64::from(inner(weights, w));
+                    crowded |= members.len() == 1 && r2.sqrt() < APART * level.pattern.spacing;
+                }
+            }
+            let own = f64::from(inner(weights, weights));
+            sum += given;
+            weight += own;
+        }
+        if crowded || offer.worth - 2.0 * sum / weight.max(1e-30) < WORTH {
+            continue;
+        }
+        for (place, weights) in &members {
+            let place = level.domain.wrap(*place);
+            cells.entry(cell(place)).or_default().push(fresh.len() as u32);
+            fresh.push((place, *weights));
+        }
+        match offer.body {
+            Some((source, pose)) => output.add_body(level.pattern, source, pose),
+            None => output.add(offer.place, offer.weights),
+        }
+    }
+    Ok(output.places.len() - before)
+}
+
+/// The points that an offer consists of.
+fn members<const D: usize>(level: &Level<'_, D>, offer: &Offer<D>) -> Vec<(Vector<D>, Weights)> {
+    match &offer.body {
+        None => vec![(offer.place, offer.weights)],
+        Some((source, pose)) => level.pattern.bodies[*source]
+            .members
+            .iter()
+            .map(|&i| {
+                let weights = level.pattern.channels.turned(&level.pattern.weights[i], &pose.rotation);
+                (pose.apply(level.pattern.points.positions[i]), weights)
+            })
+            .collect(),
+    }
+}
+
+/// What site `q` would add near itself: points of the exemplar under its match that the output does not make up for.
+fn offers<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    matches: &Matches<D>,
+    index: &GridIndex<D>,
+    q: usize,
+) -> Vec<Offer<D>> {
+    let (pattern, site, m) = (level.pattern, &level.sites[q], matches.places[q]);
+    let own = 0.75 * level.tables.kernel.delta;
+    let mut offers = Vec::new();
+    let reach = (own * own * pattern.repeats() as f64 + 1.7 * pattern.thickness * pattern.thickness).sqrt();
+    pattern.index.within(m, reach, |j, offset| {
+        let near = (0..D).all(|k| !pattern.base[k] || offset[k].abs() <= own);
+        if !near {
+            return;
+        }
+        let body = pattern.body_of[j];
+        if body != LOOSE {
+            let body = body as usize;
+            if pattern.bodies[body].members[0] != j {
+                return;
+            }
+            let pose = Similarity::about(m, site.place, site.rotation, site.scale);
+            offers.push(Offer { place: Vector::ZERO, weights: [0.0; LANES], body: Some((body, pose)), worth: 0.0 });
+        } else {
+            let place = site.place + site.shown(offset);
+            let weights = pattern.channels.turned(&pattern.weights[j], &site.rotation);
+            offers.push(Offer { place, weights, body: None, worth: 0.0 });
+        }
+    });
+    offers.retain_mut(|offer| {
+        let members = members(level, offer);
+        let apart = APART * pattern.spacing * site.scale;
+        if let [(place, weights)] = &members[..] {
+            let mut crowded = false;
+            index.within(*place, apart, |i, _| crowded |= inner(weights, &output.weights[i]) > 0.0);
+            if crowded {
+                return false;
+            }
+        }
+        let (mut wanted, mut weight) = (0.0, 0.0);
+        for (n, (place, weights)) in members.iter().enumerate() {
+            let mut windows = Vec::new();
+            level.index.windows(level.sites, *place, &level.tables.reach, |q, _| windows.push(q as u32));
+            let (field, cover) = level.wanted(*place, &windows, matches);
+            let mut rest = f64::from(inner(weights, &field));
+            index.within(*place, level.tables.kernel.pairs() * site.scale, |i, r| {
+                let h = level.pair(r.norm2(), site.scale, site.scale) * cover;
+                rest -= h * f64::from(inner(weights, &output.weights[i]));
+            });
+            // Pairs within an element.
+            for (other, w) in &members[..n] {
+                let r2 = level.domain.offset(*place, *other).norm2();
+                rest -= level.pair(r2, site.scale, site.scale) * cover * f64::from(inner(weights, w));
+            }
+            let own = f64::from(inner(weights, weights)) * cover;
+            wanted += 2.0 * rest - own;
+            weight += own;
+        }
+        offer.worth = wanted / weight.max(1e-30);
+        weight > 0.0 && offer.worth > WORTH
+    });
+    offers
+}

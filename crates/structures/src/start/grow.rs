@@ -1,0 +1,387 @@
+//! Grown from a seed: one site after the other, outwards; each looks for the match that goes best with what is there already, and adds what
+//! the match has nearest to it.
+
+use std::collections::VecDeque;
+
+use arabesque_core::{Bounds, Budget, Result, Similarity, Stage, Stream, Vector};
+use rayon::prelude::*;
+
+use super::cells::Cells;
+use crate::{
+    energy::{level::Level, links::Lists},
+    exemplar::{
+        bodies::LOOSE,
+        channels::{Weights, inner},
+    },
+    output::state::Output,
+    solve::matching::{anywhere, room},
+};
+
+/// Random matches of each site.
+const TRIES: Stage = Stage::new(42);
+/// How many of them.
+const RANDOM: usize = 28;
+/// What it costs to go on elsewhere in the exemplar, as a share of all that a window holds.
+const JUMP: f64 = 0.1;
+/// How far a site looks at what is there, in units of the window.
+const LOOK: f64 = 1.8;
+/// Cells of the map of what is there, in one step of the sites.
+const CELLS: f64 = 2.5;
+/// A new point is no nearer to one like it than this, in spacings.
+const APART: f64 = 0.5;
+
+/// The output while it grows.
+struct Growth<'a, 'b, const D: usize> {
+    level: &'a Level<'b, D>,
+    output: Output<D>,
+    cells: Cells<D>,
+    /// For each point the sum over its pairs.
+    own: Vec<f64>,
+    /// The same for the points of the exemplar.
+    own_exemplar: Vec<f64>,
+    done: Vec<bool>,
+    matches: Vec<Vector<D>>,
+    step: f64,
+}
+
+/// Grows an output from the `kept` points; and the match of each site.
+pub(crate) fn grow<const D: usize>(
+    level: &Level<'_, D>,
+    kept: Output<D>,
+    around: &Lists,
+    step: f64,
+    seed: u64,
+    budget: &Budget,
+) -> Result<(Output<D>, Vec<Vector<D>>)> {
+    let radius = level.tables.kernel.pairs();
+    let mut growth = Growth {
+        level,
+        output: Output::default(),
+        cells: Cells::new(radius, level.domain),
+        own: Vec::new(),
+        own_exemplar: own_exemplar(level),
+        done: vec![false; level.sites.len()],
+        matches: vec![Vector::ZERO; level.sites.len()],
+        step,
+    };
+    for (place, weights) in kept.places.iter().zip(&kept.weights) {
+        growth.add(*place, *weights);
+    }
+    growth.output.kept = kept.kept;
+    let room = room(level);
+    for q in order(level, around, seed) {
+        growth.site(q, around.of(q), &room, seed, budget)?;
+    }
+    Ok((growth.output, growth.matches))
+}
+
+/// The sites from one in the middle outwards.
+fn order<const D: usize>(level: &Level<'_, D>, around: &Lists, seed: u64) -> Vec<usize> {
+    let n = level.sites.len();
+    let first = Stream::new(seed, TRIES, u64::MAX).below(n);
+    let mut seen = vec![false; n];
+    let mut order = Vec::with_capacity(n);
+    for start in (first..n).chain(0..first) {
+        if seen[start] {
+            continue;
+        }
+        seen[start] = true;
+        let mut queue = VecDeque::from([start]);
+        while let Some(q) = queue.pop_front() {
+            order.push(q);
+            for &next in around.of(q) {
+                if !std::mem::replace(&mut seen[next as usize], true) {
+                    queue.push_back(next as usize);
+                }
+            }
+        }
+    }
+    order
+}
+
+/// For each point of the exemplar the sum over its pairs.
+fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
+    let pattern = level.pattern;
+    (0..pattern.points.len())
+        .into_par_iter()
+        .map(|i| {
+            let mut sum = 0.0;
+            pattern.index.within(pattern.points.positions[i], level.tables.kernel.pairs(), |j, r| {
+                sum += level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(&pattern.weights[i], &pattern.weights[j]));
+            });
+            sum
+        })
+        .collect()
+}
+
+/// A point that is there already, as a site sees it.
+struct There<const D: usize> {
+    u: [f64; D],
+    weights: Weights,
+    own: f32,
+    outer: f32,
+}
+
+/// Which cells around a site belong to sites that are done.
+struct Map<const D: usize> {
+    half: i64,
+    cell: f64,
+    base: [bool; D],
+    done: Vec<bool>,
+}
+
+impl<const D: usize> Map<D> {
+    /// The map without cells next to one that is not done: what lies there has neighbours in the exemplar that are still to come.
+    fn eroded(mut self) -> Self {
+        let side = 2 * self.half + 1;
+        let mut stride = 1;
+        for _ in (0..D).filter(|&k| self.base[k]) {
+            let before = self.done.clone();
+            for (n, done) in self.done.iter_mut().enumerate() {
+                let at = n as i64 / stride % side;
+                *done &= at == 0 || before[(n as i64 - stride) as usize];
+                *done &= at == side - 1 || before[(n as i64 + stride) as usize];
+            }
+            stride *= side;
+        }
+        self
+    }
+
+    fn at(&self, v: &[f64; D]) -> bool {
+        let (mut index, mut stride) = (0_i64, 1);
+        for k in 0..D {
+            if self.base[k] {
+                let c = (v[k] / self.cell).round() as i64;
+                if c.abs() > self.half {
+                    return false;
+                }
+                index += (c + self.half) * stride;
+                stride *= 2 * self.half + 1;
+            }
+        }
+        self.done[index as usize]
+    }
+}
+
+impl<const D: usize> Growth<'_, '_, D> {
+    fn add(&mut self, place: Vector<D>, weights: Weights) {
+        self.enter(place, &weights);
+        self.output.add(place, weights);
+    }
+
+    /// Takes note of a point that comes next in the output.
+    fn enter(&mut self, place: Vector<D>, weights: &Weights) {
+        let level = self.level;
+        let mut own = f64::from(inner(weights, weights));
+        let (output, others) = (&self.output, &mut self.own);
+        self.cells.within(level.domain, place, level.tables.kernel.pairs(), |i, r| {
+            if i < output.weights.len() {
+                let h = level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(weights, &output.weights[i]));
+                own += h;
+                others[i] += h;
+            }
+        });
+        self.own.push(own);
+        self.cells.add(place);
+    }
+
+    fn map(&self, q: usize) -> Map<D> {
+        let level = self.level;
+        let site = &level.sites[q];
+        let cell = self.step / CELLS;
+        let half = (LOOK * level.tables.kernel.delta / cell).ceil() as i64;
+        let base = level.pattern.base;
+        let side = 2 * half + 1;
+        let count = side.pow(base.iter().filter(|b| **b).count() as u32);
+        let done = (0..count)
+            .map(|n| {
+                let mut rest = n;
+                let offset = Vector(std::array::from_fn(|k| {
+                    if !base[k] {
+                        return 0.0;
+                    }
+                    let c = rest % side - half;
+                    rest /= side;
+                    c as f64 * cell
+                }));
+                let p = site.place + site.shown(offset);
+                level.index.nearest(p, 1.6 * self.step * site.scale).is_some_and(|s| self.done[s])
+            })
+            .collect();
+        Map { half, cell, base, done }.eroded()
+    }
+
+    /// What is there around site `q`.
+    fn there(&self, q: usize, map: &Map<D>) -> Vec<There<D>> {
+        let (level, site) = (self.level, &self.level.sites[q]);
+        let look = LOOK * level.tables.kernel.delta;
+        let across = 1.3 * level.pattern.thickness + level.pattern.spacing;
+        let radius = (look * look * level.pattern.repeats() as f64 + across * across).sqrt() * site.scale;
+        let back = site.rotation.transpose();
+        let mut there = Vec::new();
+        self.cells.within(level.domain, site.place, radius, |i, offset| {
+            let u = site.seen(offset);
+            let near = (0..D).all(|k| u[k].abs() <= if level.pattern.base[k] { look } else { across });
+            let (pair, outer) = level.tables.kernel.weights(&u);
+            if near && pair > 0.0 && map.at(&u) {
+                let weights = level.pattern.channels.turned(&self.output.weights[i], &back);
+                there.push(There { u, weights, own: (pair * self.own[i]) as f32, outer: outer as f32 });
+            }
+        });
+        there
+    }
+
+    /// How badly a match goes with what is there.
+    fn error(&self, there: &[There<D>], map: &Map<D>, m: &Vector<D>) -> f64 {
+        let (tables, pattern) = (self.level.tables, self.level.pattern);
+        let mut sum = 0.0_f64;
+        for p in there {
+            let known = tables.known.at(&std::array::from_fn(|k| (m[k] + p.u[k]) as f32));
+            if known > 0.0 {
+                let y = std::array::from_fn(|k| (m[k] + tables.kernel.inward[k] * p.u[k]) as f32);
+                sum += f64::from(known * (p.own - 2.0 * p.outer * tables.field.project(&y, &p.weights)));
+            }
+        }
+        let look = LOOK * tables.kernel.delta;
+        let radius = (look * look * pattern.repeats() as f64 + pattern.thickness * pattern.thickness * 1.1).sqrt();
+        pattern.index.within(*m, radius, |j, v| {
+            if map.at(&v.0) {
+                let known = tables.known.at(&pattern.points.positions[j].0.map(|x| x as f32));
+                sum += f64::from(known) * tables.kernel.weights(&v.0).0 * self.own_exemplar[j];
+            }
+        });
+        sum / tables.known.share(&m.0).max(0.05)
+    }
+
+    fn site(&mut self, q: usize, around: &[u32], room: &Bounds<D>, seed: u64, budget: &Budget) -> Result<()> {
+        let level = self.level;
+        let map = self.map(q);
+        let there = self.there(q, &map);
+        let mut stream = Stream::new(seed, TRIES, q as u64);
+        let mut best = anywhere(room, &mut stream);
+        if around.iter().any(|&o| self.done[o as usize]) {
+            let mut random: Vec<Vector<D>> = (0..RANDOM).map(|_| anywhere(room, &mut stream)).collect();
+            let mut carried = Vec::new();
+            for &other in around {
+                let other = other as usize;
+                if self.done[other] {
+                    let step =
+                        level.sites[other].seen(level.domain.offset(level.sites[other].place, level.sites[q].place));
+                    let m = Vector(std::array::from_fn(|k| {
+                        self.matches[other][k] + if level.pattern.base[k] { step[k] } else { 0.0 }
+                    }));
+                    if room.contains(m) {
+                        carried.push(m);
+                    }
+                    random.extend(level.shifts.iter().map(|&t| m + t).filter(|m| room.contains(*m)));
+                }
+            }
+            budget.spend(((RANDOM + 20) * (there.len() * 30 + 1000)) as u64)?;
+            let rate = |m: &Vector<D>| self.error(&there, &map, m);
+            let jump = JUMP * level.tables.back.at(&level.pattern.bounds.centre().0).0;
+            let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rate(m), *m)).collect();
+            rated.sort_by(|a, b| a.0.total_cmp(&b.0));
+            rated.truncate(8);
+            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate)).map(|(e, m)| (e + jump, m));
+            let carried = carried.into_iter().map(|m| (rate(&m), m));
+            let first = carried.chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
+            best = first.map_or(best, |b| b.1);
+        }
+        self.matches[q] = best;
+        self.done[q] = true;
+        self.lay(q, best);
+        Ok(())
+    }
+
+    /// Looks around a match along each direction of the base, closer and closer.
+    fn refined(
+        &self,
+        start: (f64, Vector<D>),
+        room: &Bounds<D>,
+        rate: &impl Fn(&Vector<D>) -> f64,
+    ) -> (f64, Vector<D>) {
+        let mut best = start;
+        let mut step = 0.7 * self.level.tables.kernel.sigma;
+        for _ in 0..4 {
+            for k in (0..D).filter(|&k| self.level.pattern.base[k]) {
+                for sign in [-1.0, 1.0] {
+                    let mut m = best.1;
+                    m[k] += sign * step;
+                    if room.contains(m) {
+                        let error = rate(&m);
+                        if error < best.0 {
+                            best = (error, m);
+                        }
+                    }
+                }
+            }
+            step *= 0.5;
+        }
+        best
+    }
+
+    /// Adds what the match of site `q` has nearest to it and nothing is there for yet.
+    fn lay(&mut self, q: usize, m: Vector<D>) {
+        let (level, pattern) = (self.level, self.level.pattern);
+        let site = &level.sites[q];
+        let own = self.step;
+        let radius = (own * own * pattern.repeats() as f64 + 1.1 * pattern.thickness * pattern.thickness).sqrt();
+        let mut new: Vec<usize> = Vec::new();
+        pattern.index.within(m, radius, |j, _| new.push(j));
+        for j in new {
+            let body = pattern.body_of[j] as usize;
+            let middle = pattern.bodies.get(body).map_or(pattern.points.positions[j], |b| b.centre);
+            if pattern.body_of[j] != LOOSE && pattern.bodies[body].members[0] != j {
+                continue;
+            }
+            let offset = middle - m;
+            let along = Vector(std::array::from_fn(|k| if pattern.base[k] { offset[k] } else { 0.0 }));
+            let foot = site.place + site.shown(along);
+            if level.index.nearest(foot, 1.6 * self.step * site.scale) != Some(q) {
+                continue;
+            }
+            if pattern.body_of[j] == LOOSE {
+                let place = site.place + site.shown(offset);
+                let weights = pattern.channels.turned(&pattern.weights[j], &site.rotation);
+                if self.is_free(place, &weights, APART * pattern.spacing * site.scale) {
+                    self.add(place, weights);
+                }
+            } else {
+                self.lay_body(body, Similarity::about(m, site.place, site.rotation, site.scale));
+            }
+        }
+    }
+
+    fn is_free(&self, place: Vector<D>, weights: &Weights, radius: f64) -> bool {
+        let mut free = true;
+        self.cells.within(self.level.domain, place, radius, |i, _| {
+            free &= inner(weights, &self.output.weights[i]) <= 0.0;
+        });
+        free
+    }
+
+    fn lay_body(&mut self, source: usize, pose: Similarity<D>) {
+        let pattern = self.level.pattern;
+        let members = &pattern.bodies[source].members;
+        let radius = APART * pattern.spacing * pose.scale;
+        let blocked = members.iter().any(|&i| {
+            let mut blocked = false;
+            self.cells.within(self.level.domain, pose.apply(pattern.points.positions[i]), radius, |n, _| {
+                blocked |= self.output.body_of[n] != LOOSE;
+            });
+            blocked
+        });
+        if !blocked {
+            let first = self.output.places.len();
+            self.output.add_body(pattern, source, pose);
+            // Points are entered one by one, so that they know of each other.
+            let all = std::mem::take(&mut self.output.weights);
+            self.output.weights = all[..first].to_vec();
+            for (n, weights) in all.iter().enumerate().skip(first) {
+                let place = self.output.places[n];
+                self.enter(place, weights);
+                self.output.weights.push(*weights);
+            }
+        }
+    }
+}

@@ -183,7 +183,7 @@ where
                 if !self.library.view.contains(place) {
                     continue;
                 }
-                let alike = self.library.alike(class, place, &self.library.feature[to.source], meter)?[0];
+                let alike = self.library.alike(to.source, place, meter)?[0];
                 let most = self.library.outlier[class].powi(2);
                 sum += alike.map_or(1.0, |(_, cost)| f64::from(cost) / most);
                 all += 1.0;
@@ -304,9 +304,9 @@ where
         let now = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
         let mine = self.disagreement(&body.pose, Some(b), meter)?;
         let mut rated = Vec::new();
-        let own = &self.library.feature[body.pose.source];
         let same = (SAME * self.library.spacing).powi(2) as f32;
-        let differs = |e: &&u32| self.library.copyable[**e] && self.library.feature[**e].distance2(own) > same;
+        let differs =
+            |e: &&u32| self.library.copyable[**e] && self.library.differences.of(**e, body.pose.source) > same;
         for &source in members.iter().step_by(step).filter(differs) {
             let pose = self.page.pose(source, body.pose.centre, &Matrix::identity());
             let price = self.price(&scene, Some(&pose), now + HOPELESS, meter)?;

@@ -152,8 +152,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
 
     /// Of very many elements, some of those that are most like `element`.
     fn most_alike(&self, mut members: Vec<u32>, element: u32, random: &mut Stream) -> Vec<u32> {
-        let feature = &self.source.library.feature;
-        members.sort_by_cached_key(|&i| feature[i].distance2(&feature[element]).to_bits());
+        let differences = &self.source.library.differences;
+        members.sort_by_cached_key(|&i| differences.of(i, element).to_bits());
         members.truncate((members.len() / 4).max(MEMBERS));
         while members.len() > MEMBERS {
             members.swap_remove(random.below(members.len()));
@@ -179,7 +179,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 continue;
             }
             let class = library.class[element];
-            let alike = library.alike(class, p, &library.feature[element], meter)?;
+            let alike = library.alike(element, p, meter)?;
             meter.spend(COMPARISON * taken.len() as u64)?;
             match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
                 Some((i, c)) => {
@@ -231,8 +231,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         let library = self.source.library;
         let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
         for &Around { element, offset, weight } in &self.around {
-            let class = library.class[element];
-            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[element], meter)?[0] {
+            if let Some((i, _)) = library.alike(element, centre + offset, meter)?[0] {
                 shift += (library.centre[i] - centre - offset) * weight;
                 weights += weight;
             }
@@ -245,8 +244,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         let (library, params) = (self.source.library, self.source.params);
         let mut taken = Vec::new();
         for &Around { element, offset, .. } in &self.around {
-            let class = library.class[element];
-            let alike = library.alike(class, centre + offset, &library.feature[element], meter)?;
+            let alike = library.alike(element, centre + offset, meter)?;
             meter.spend(COMPARISON * taken.len() as u64)?;
             taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
         }

@@ -47,10 +47,7 @@ const NOISE_FLOOR: f64 = 0.3;
 const FLOOR: f64 = 0.95;
 
 /// Moves below this share of the mean spacing do not make the neighbours search again.
-const NOTICEABLE: f64 = 0.01;
-
-/// The same where there are curves, whose samples are never quite still.
-const NOTICEABLE_STROKES: f64 = 0.04;
+const NOTICEABLE: f64 = 0.04;
 
 /// A level, with what it means for the request.
 pub(crate) struct LevelContext<'a, const D: usize> {
@@ -226,7 +223,8 @@ where
 
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
         let params = self.params;
-        let first = iteration.is_multiple_of(self.iterations);
+        let done = iteration % self.iterations.max(1);
+        let first = done == 0;
         SearchParams {
             search: params.search,
             matching: params.matching,
@@ -238,6 +236,7 @@ where
                 (Search::PatchMatch, false) => 2,
                 _ => 1,
             },
+            thorough: done < 2 || params.search != Search::KCoherence,
             step: (k * 10_000 + iteration) as u64,
         }
     }
@@ -420,8 +419,7 @@ where
         let joined;
         (*votes, joined) = edges::assign(state)?;
         tangents::assign(state)?;
-        let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
-        let moved = state.announce_moves(noticeable * state.library.spacing * context.extent.smallest_spacing_scale);
+        let moved = state.announce_moves(NOTICEABLE * state.library.spacing * context.extent.smallest_spacing_scale);
         state.reindex();
         Ok(moved || exchanged + joined > 0 || changes != Changes::default())
     }

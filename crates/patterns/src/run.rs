@@ -46,6 +46,9 @@ const NOISE_FLOOR: f64 = 0.3;
 /// Elements are never removed below this share of their number at the end, and not at all below it after patch copy.
 const FLOOR: f64 = 0.95;
 
+/// Iterations of a level before it may be at rest.
+const SETTLING: usize = 2;
+
 /// Moves below this share of the mean spacing do not make the neighbours search again.
 const NOTICEABLE: f64 = 0.04;
 
@@ -384,15 +387,22 @@ where
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<()> {
         let k = steps.k;
+        // What starts in disorder gains and loses elements for a while.
+        let is_ordered = self.params.initialisation != Initialisation::WhiteNoise && self.params.rest > 0.0;
+        let rest = if is_ordered { self.params.rest } else { f64::NEG_INFINITY };
+        let mut before = f64::INFINITY;
         for iteration in steps.before..steps.before + self.iterations {
             let searched = search::search(state, &self.search_params(k, iteration))?;
-            steps.trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
+            let energy = state.energy();
+            steps.trace.push(EnergyPoint { level: k, iteration, energy, elements: state.count() });
             let changed = self.assign(state, &self.contexts[k], self.floor(k, iteration), steps.votes)?;
             let progress = self.progress(k, iteration + 1, state);
             heard(watch.step(&progress, &|| self.snapshot(&self.contexts[k], state)), &progress)?;
-            if !changed || searched == 0 {
+            let is_at_rest = iteration >= steps.before + SETTLING && energy > (1.0 - rest) * before;
+            if !changed || searched == 0 || is_at_rest {
                 break;
             }
+            before = energy;
         }
         Ok(())
     }

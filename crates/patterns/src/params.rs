@@ -120,8 +120,11 @@ params! {
         clearance "clearance": Clearance = Clearance::Repaired;
         /// Levels of the hierarchy.
         levels "levels": usize = 3, in 1..=5;
-        /// Iterations of search and assignment per level.
+        /// Iterations of search and assignment per level, at most.
         iterations "iterations": usize = 7, in 0..=1000;
+        /// Share by which an iteration must lower the energy for another one to follow.
+        /// 0 for all iterations.
+        rest "rest": f64 = 0.02, in 0.0..=1.0;
         /// Neighbourhood radius, the same at every level.
         radius "radius": Option<f64> = None, in 1e-9..=1e9, auto "chosen from the numbers of neighbours", unit "exemplar units";
         /// Samples in an average neighbourhood at the coarsest level.
@@ -202,6 +205,7 @@ impl Params {
             clearance: Clearance::Ignored,
             regrowth: Switch::Off,
             even: Switch::Off,
+            rest: 0.0,
             ..Self::default()
         };
         match name {
@@ -294,6 +298,6 @@ mod tests {
             let is_chosen = spec.default == "auto" && !matches!(spec.kind, Kind::Choice(_));
             assert_eq!(is_chosen, told.contains(", "), "{told}");
         }
-        assert_eq!(Params::specs().len(), 34);
+        assert_eq!(Params::specs().len(), 35);
     }
 }

@@ -46,11 +46,11 @@ const NOISE_FLOOR: f64 = 0.3;
 /// Elements are never removed below this share of their number at the end, and not at all below it after patch copy.
 const FLOOR: f64 = 0.95;
 
-/// Moves below this share of the mean spacing do not make the neighbours search again.
-const NOTICEABLE: f64 = 0.01;
+/// Iterations of a level before it may be at rest.
+const SETTLING: usize = 2;
 
-/// The same where there are curves, whose samples are never quite still.
-const NOTICEABLE_STROKES: f64 = 0.04;
+/// Moves below this share of the mean spacing do not make the neighbours search again.
+const NOTICEABLE: f64 = 0.04;
 
 /// A level, with what it means for the request.
 pub(crate) struct LevelContext<'a, const D: usize> {
@@ -226,7 +226,8 @@ where
 
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
         let params = self.params;
-        let first = iteration.is_multiple_of(self.iterations);
+        let done = iteration % self.iterations.max(1);
+        let first = done == 0;
         SearchParams {
             search: params.search,
             matching: params.matching,
@@ -238,6 +239,7 @@ where
                 (Search::PatchMatch, false) => 2,
                 _ => 1,
             },
+            thorough: done < 2 || params.search != Search::KCoherence,
             step: (k * 10_000 + iteration) as u64,
         }
     }
@@ -385,15 +387,22 @@ where
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<()> {
         let k = steps.k;
+        // What starts in disorder gains and loses elements for a while.
+        let is_ordered = self.params.initialisation != Initialisation::WhiteNoise && self.params.rest > 0.0;
+        let rest = if is_ordered { self.params.rest } else { f64::NEG_INFINITY };
+        let mut before = f64::INFINITY;
         for iteration in steps.before..steps.before + self.iterations {
             let searched = search::search(state, &self.search_params(k, iteration))?;
-            steps.trace.push(EnergyPoint { level: k, iteration, energy: state.energy(), elements: state.count() });
+            let energy = state.energy();
+            steps.trace.push(EnergyPoint { level: k, iteration, energy, elements: state.count() });
             let changed = self.assign(state, &self.contexts[k], self.floor(k, iteration), steps.votes)?;
             let progress = self.progress(k, iteration + 1, state);
             heard(watch.step(&progress, &|| self.snapshot(&self.contexts[k], state)), &progress)?;
-            if !changed || searched == 0 {
+            let is_at_rest = iteration >= steps.before + SETTLING && energy > (1.0 - rest) * before;
+            if !changed || searched == 0 || is_at_rest {
                 break;
             }
+            before = energy;
         }
         Ok(())
     }
@@ -420,8 +429,7 @@ where
         let joined;
         (*votes, joined) = edges::assign(state)?;
         tangents::assign(state)?;
-        let noticeable = if state.level.net.is_some() { NOTICEABLE_STROKES } else { NOTICEABLE };
-        let moved = state.announce_moves(noticeable * state.library.spacing * context.extent.smallest_spacing_scale);
+        let moved = state.announce_moves(NOTICEABLE * state.library.spacing * context.extent.smallest_spacing_scale);
         state.reindex();
         Ok(moved || exchanged + joined > 0 || changes != Changes::default())
     }

@@ -268,6 +268,7 @@ fn first_search(params: &Params) -> SearchParams {
         prices: Prices { missing: params.missing as f32, outside: params.boundary as f32 },
         coherence: params.coherence,
         random: 8,
+        thorough: true,
         rounds: 1,
         step: 0,
     }

@@ -266,6 +266,7 @@ impl<'a> Meter<'a> {
     ///
     /// # Errors
     /// As [`Budget::spend`].
+    #[inline]
     pub fn spend(&mut self, units: u64) -> Result<()> {
         self.owed = self.owed.saturating_add(units);
         if self.owed < INSTALMENT { Ok(()) } else { self.budget.spend(std::mem::take(&mut self.owed)) }

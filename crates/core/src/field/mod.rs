@@ -91,10 +91,12 @@ impl<const D: usize> Fields<D> {
     /// The local frame at `p`: rotation of the pattern, size of an element, and size of the gaps between elements.
     pub fn frame(&self, p: Vector<D>) -> Frame<D> {
         let element_scale = self.scale.at(p);
+        let density = self.density.at(p);
+        let sparser = if density == 1.0 { 1.0 } else { density.powf(-1.0 / D as f64) };
         Frame {
             rotation: self.orientation.as_ref().map_or_else(Matrix::identity, |o| o.at(p)),
             element_scale,
-            spacing_scale: element_scale * self.density.at(p).powf(-1.0 / D as f64),
+            spacing_scale: element_scale * sparser,
         }
     }
 

@@ -66,12 +66,14 @@ impl<const D: usize> GridIndex<D> {
     /// points and cells were looked at, within the radius or not: what the query cost.
     pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) -> u64 {
         let mut looked = 0;
+        let most = radius * radius;
         self.lattice.around(p, radius, |cell, _| {
-            looked += 1 + u64::from(self.starts[cell + 1] - self.starts[cell]);
-            for slot in self.starts[cell] as usize..self.starts[cell + 1] as usize {
-                let offset = periodic::offset(p, self.points[slot], self.period);
-                if offset.norm2() <= radius * radius {
-                    visit(self.order[slot] as usize, offset);
+            let (start, end) = (self.starts[cell] as usize, self.starts[cell + 1] as usize);
+            looked += 1 + (end - start) as u64;
+            for (&i, &point) in self.order[start..end].iter().zip(&self.points[start..end]) {
+                let offset = periodic::offset(p, point, self.period);
+                if offset.norm2() <= most {
+                    visit(i as usize, offset);
                 }
             }
         });

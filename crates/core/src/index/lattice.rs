@@ -51,18 +51,22 @@ impl<const D: usize> Lattice<D> {
     }
 
     /// Number of the cell at `p`; `None` outside the box, which a period does not have.
+    #[inline]
     pub fn at(&self, p: Vector<D>) -> Option<usize> {
-        let mut place = [0; D];
+        let (mut index, mut stride) = (0, 1);
         for k in 0..D {
-            let n = self.counts[k] as isize;
-            let i = ((p[k] - self.origin[k]) / self.cell[k]).floor() as isize;
-            let i = if self.is_periodic { i.rem_euclid(n) } else { i };
-            if !(0..n).contains(&i) {
-                return None;
+            let n = self.counts[k];
+            let mut i = floor((p[k] - self.origin[k]) / self.cell[k]);
+            if i < 0 || i >= n as isize {
+                if !self.is_periodic {
+                    return None;
+                }
+                i = i.rem_euclid(n as isize);
             }
-            place[k] = i as usize;
+            index += i as usize * stride;
+            stride *= n;
         }
-        Some(cell_index(place, &self.counts))
+        Some(index)
     }
 
     /// Number of the cell of the box that is nearest to `p`, whether there is a period or not.
@@ -74,31 +78,50 @@ impl<const D: usize> Lattice<D> {
     /// Calls `visit(index, place)` for the cells that the box around a ball touches, each once and in a fixed order. Without a period
     /// these are cells of the lattice alone, the outermost ones for what lies beyond them. With one, a `place` beyond the box is
     /// where the cell comes to lie around the back.
+    #[inline]
     pub fn around(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, [isize; D])) {
         let mut low = [0_isize; D];
         let mut count = [0_usize; D];
         for k in 0..D {
-            let at = |v: f64| ((v - self.origin[k]) / self.cell[k]).floor();
+            let at = |v: f64| floor((v - self.origin[k]) / self.cell[k]);
             let (mut a, mut b) = (at(p[k] - radius), at(p[k] + radius));
             if !self.is_periodic {
-                a = a.clamp(0.0, (self.counts[k] - 1) as f64);
-                b = b.clamp(0.0, (self.counts[k] - 1) as f64);
+                let last = self.counts[k] as isize - 1;
+                (a, b) = (a.clamp(0, last), b.clamp(0, last));
             }
-            low[k] = a as isize;
-            count[k] = (((b - a) as usize).saturating_add(1)).min(self.counts[k]);
+            low[k] = a;
+            count[k] = (b.saturating_sub(a).max(0) as usize).saturating_add(1).min(self.counts[k]);
         }
-        for step in 0..count.iter().product() {
-            let (mut rest, mut index, mut stride) = (step, 0, 1);
-            let mut place = [0; D];
-            for k in 0..D {
-                place[k] = low[k] + (rest % count[k]) as isize;
+        let row = self.counts[0];
+        let first = low[0].rem_euclid(row as isize) as usize;
+        for step in 0..count.iter().skip(1).product() {
+            let (mut rest, mut start, mut stride) = (step, 0, row);
+            let mut place = low;
+            for k in 1..D {
+                place[k] = place[k].wrapping_add((rest % count[k]) as isize);
                 rest /= count[k];
-                index += place[k].rem_euclid(self.counts[k] as isize) as usize * stride;
+                start += place[k].rem_euclid(self.counts[k] as isize) as usize * stride;
                 stride *= self.counts[k];
             }
-            visit(index, place);
+            let mut x = first;
+            for _ in 0..count[0] {
+                visit(start + x, place);
+                place[0] = place[0].wrapping_add(1);
+                x += 1;
+                // Around the back, where there is a period; else this was the last one.
+                if x == row {
+                    x = 0;
+                }
+            }
         }
     }
+}
+
+/// The largest integer that is no larger; by conversion, since the rounding of floats is a call on plain x86-64.
+#[inline]
+fn floor(x: f64) -> isize {
+    let i = x as isize;
+    if i as f64 > x { i.saturating_sub(1) } else { i }
 }
 
 #[cfg(test)]

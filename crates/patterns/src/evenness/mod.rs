@@ -103,7 +103,8 @@ where
         let page = self.page(state, bodies, &budget)?;
         let targets = wanted(state.library, page.room(self.natural.tolerated), targets);
         let known = (&self.natural, state.library);
-        let mut work = Work::new((page, shares), known, state.extent, (counts(state), targets), moves);
+        let mut work =
+            Work::new((page, shares), known, (state.extent, budget.clone()), (counts(state), targets), moves);
         let ended = rounds::run(&mut work, &budget, &mut |bodies| tell(&items(state, &numbers, bodies)));
         if ended.is_err() {
             work.undo(&mut state.budget.fresh().meter())?;

@@ -1,6 +1,7 @@
 //! The moves that even a page out; each is kept only if the price falls.
 
 use arabesque_core::{Matrix, Meter, Result, Vector};
+use rayon::prelude::*;
 
 use crate::{
     dimension::Dimension,
@@ -48,6 +49,9 @@ const SAME: f64 = 0.03;
 /// Weight of how little an element agrees with its neighbours.
 const AGREEMENT: f64 = 0.15;
 
+/// Elements that one thread looks at by itself.
+const ALONE: usize = 4;
+
 /// Numbers of elements of a class stay within this share of what they should be.
 const COUNT: f64 = 0.01;
 
@@ -62,6 +66,21 @@ where
 
     fn admits(&self, pose: &Pose<D>) -> bool {
         self.extent.admits(pose.source, pose.centre)
+    }
+
+    /// Those of some elements that pay enough to look for a better place.
+    pub(crate) fn unsettled(&self, bodies: &[u32]) -> Result<Vec<u32>> {
+        let pays = |&b: &u32| {
+            let body = self.page.body(b);
+            if body.fixed || !body.alive || !self.moves.shift {
+                return Ok(None);
+            }
+            let mut meter = self.budget.meter();
+            let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), &mut meter)?;
+            Ok((self.price_of_space(&scene, Some(&body.pose), QUIET, &mut meter)? >= QUIET).then_some(b))
+        };
+        let found = bodies.par_iter().with_min_len(ALONE).map(pays).collect::<Result<Vec<_>>>()?;
+        Ok(found.into_iter().flatten().collect())
     }
 
     /// Moves an element to where the price is lowest nearby. Returns by how much it fell.
@@ -183,7 +202,7 @@ where
                 if !self.library.view.contains(place) {
                     continue;
                 }
-                let alike = self.library.alike(class, place, &self.library.feature[to.source], meter)?[0];
+                let alike = self.library.alike(to.source, place, meter)?[0];
                 let most = self.library.outlier[class].powi(2);
                 sum += alike.map_or(1.0, |(_, cost)| f64::from(cost) / most);
                 all += 1.0;
@@ -220,27 +239,35 @@ where
         let largest = largest * self.page.request.fields.frame(p).element_scale;
         let scene = self.scene(None, p, (largest, far), meter)?;
         let before = self.price(&scene, None, f64::INFINITY, meter)?;
-        let mut sorted = Vec::new();
-        for source in candidates {
+        let is_wanted = |&source: &u32| {
             let class = self.library.class[source];
-            if self.counts[class] + 1.0 <= (1.0 + COUNT) * self.targets[class] + 0.5 {
-                let pose = self.page.pose(source, p, &Matrix::identity());
-                let price = self.price(&scene, Some(&pose), before + HOPELESS, meter)?;
-                if price <= before + HOPELESS {
-                    sorted.push((price, pose));
-                }
+            self.counts[class] + 1.0 <= (1.0 + COUNT) * self.targets[class] + 0.5
+        };
+        let wanted: Vec<u32> = candidates.into_iter().filter(is_wanted).collect();
+        let sorted = self.priced(&scene, &wanted, p, before + HOPELESS)?;
+        let rate = |(start, pose): &(f64, Pose<D>)| {
+            let mut meter = self.budget.meter();
+            let (pose, price) = self.descend(&scene, *pose, *start, far, &mut meter)?;
+            if !self.admits(&pose) {
+                return Ok(None);
             }
-        }
-        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
-        let mut rated = Vec::new();
-        for (start, pose) in sorted.into_iter().take(CANDIDATES.1) {
-            let (pose, price) = self.descend(&scene, pose, start, far, meter)?;
-            if self.admits(&pose) {
-                let rise = price - before;
-                rated.push((rise + AGREEMENT * self.disagreement(&pose, None, meter)?, rise, pose));
-            }
-        }
-        Ok(rated)
+            let rise = price - before;
+            Ok(Some((rise + AGREEMENT * self.disagreement(&pose, None, &mut meter)?, rise, pose)))
+        };
+        let rated = sorted.par_iter().take(CANDIDATES.1).map(rate).collect::<Result<Vec<_>>>()?;
+        Ok(rated.into_iter().flatten().collect())
+    }
+
+    /// Elements as they would lie at `p` without being moved, with the price there, the cheapest first; none dearer than `most`.
+    fn priced(&self, scene: &Scene<D>, sources: &[u32], p: Vector<D>, most: f64) -> Result<Vec<(f64, Pose<D>)>> {
+        let price = |&source: &u32| {
+            let pose = self.page.pose(source, p, &Matrix::identity());
+            Ok((self.price(scene, Some(&pose), most, &mut self.budget.meter())?, pose))
+        };
+        let mut priced: Vec<_> = sources.par_iter().with_min_len(ALONE).map(price).collect::<Result<_>>()?;
+        priced.retain(|(price, _)| *price <= most);
+        priced.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
+        Ok(priced)
     }
 
     /// The place farthest from ink around `p`.
@@ -302,29 +329,32 @@ where
         let largest = members.iter().map(|&e| self.library.radius[e]).fold(0.0, f64::max) * body.pose.scale;
         let scene = self.scene(Some(b), body.pose.centre, (largest, far), meter)?;
         let now = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
-        let mine = self.disagreement(&body.pose, Some(b), meter)?;
-        let mut rated = Vec::new();
-        let own = &self.library.feature[body.pose.source];
         let same = (SAME * self.library.spacing).powi(2) as f32;
-        let differs = |e: &&u32| self.library.copyable[**e] && self.library.feature[**e].distance2(own) > same;
-        for &source in members.iter().step_by(step).filter(differs) {
-            let pose = self.page.pose(source, body.pose.centre, &Matrix::identity());
-            let price = self.price(&scene, Some(&pose), now + HOPELESS, meter)?;
-            if price <= now + HOPELESS {
-                rated.push((price, pose));
+        let differs =
+            |e: &&u32| self.library.copyable[**e] && self.library.differences.of(**e, body.pose.source) > same;
+        let others: Vec<u32> = members.iter().step_by(step).filter(differs).copied().collect();
+        let rated = self.priced(&scene, &others, body.pose.centre, now + HOPELESS)?;
+        let better = |(start, pose): &(f64, Pose<D>)| {
+            let mut meter = self.budget.meter();
+            let (pose, price) = self.descend(&scene, *pose, *start, far, &mut meter)?;
+            if now - price <= WORTH || !self.admits(&pose) {
+                return Ok(None);
             }
+            let mine = self.disagreement(&body.pose, Some(b), &mut meter)?;
+            let worse = self.disagreement(&pose, Some(b), &mut meter)? - mine;
+            Ok((now - price > WORTH + AGREEMENT * worse.max(0.0)).then_some(pose))
+        };
+        // The cheapest one is mostly it.
+        let Some((first, rest)) = rated.split_first() else { return Ok(false) };
+        let mut found = better(first)?;
+        if found.is_none() {
+            let rest = rest.par_iter().take(CANDIDATES.1 - 1).map(better).collect::<Result<Vec<_>>>()?;
+            found = rest.into_iter().flatten().next();
         }
-        rated.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
-        for (start, pose) in rated.into_iter().take(CANDIDATES.1) {
-            let (pose, price) = self.descend(&scene, pose, start, far, meter)?;
-            let worse = self.disagreement(&pose, Some(b), meter)? - mine;
-            if now - price > WORTH + AGREEMENT * worse.max(0.0) && self.admits(&pose) {
-                self.change(b, pose, meter)?;
-                self.keep();
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        let Some(pose) = found else { return Ok(false) };
+        self.change(b, pose, meter)?;
+        self.keep();
+        Ok(true)
     }
 
     /// Takes an element out of a clump, where others may close up.

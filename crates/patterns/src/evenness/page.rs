@@ -78,6 +78,10 @@ pub(crate) struct Page<'a, const D: usize> {
     pub(crate) lattice: Lattice<D>,
     /// For each part of the page, the elements that are nearer to a place in it than the reach.
     lists: Vec<Vec<u32>>,
+    /// The same for the elements that have their centre in it.
+    homes: Vec<Vec<u32>>,
+    /// Radius of the largest element.
+    largest: f64,
     parts: Lattice<D>,
     /// Whether the pattern is turned and scaled as in the exemplar everywhere.
     is_neutral: bool,
@@ -118,10 +122,23 @@ where
             meter.spend(20 * PRICE.0)?;
             cells.push(still(extent, lattice.centre(c), &measures));
         }
-        let lists = vec![Vec::new(); parts.count()];
+        let (lists, homes) = (vec![Vec::new(); parts.count()], vec![Vec::new(); parts.count()]);
         let reach = measures.reach;
         let is_neutral = request.fields.are_neutral();
-        let mut page = Self { request, inks, bodies, cells, lattice, lists, parts, is_neutral, reach, _held: held };
+        let mut page = Self {
+            request,
+            inks,
+            bodies,
+            cells,
+            lattice,
+            lists,
+            homes,
+            largest: 0.0,
+            parts,
+            is_neutral,
+            reach,
+            _held: held,
+        };
         for &(place, radius) in strokes {
             page.draw(place, radius, &mut meter)?;
         }
@@ -230,12 +247,18 @@ impl<const D: usize> Page<'_, D> {
 
     fn enter(&mut self, b: u32) {
         let (pose, lists) = (self.bodies[b as usize].pose, &mut self.lists);
-        self.parts.around(pose.centre, self.inks.radius(&pose) + self.reach, |part, _| lists[part].push(b));
+        let radius = self.inks.radius(&pose);
+        self.parts.around(pose.centre, radius + self.reach, |part, _| lists[part].push(b));
+        self.largest = self.largest.max(radius);
+        let home = self.part(pose.centre);
+        self.homes[home].push(b);
     }
 
     fn leave(&mut self, b: u32) {
         let (pose, lists) = (self.bodies[b as usize].pose, &mut self.lists);
         self.parts.around(pose.centre, self.inks.radius(&pose) + self.reach, |part, _| lists[part].retain(|&o| o != b));
+        let home = self.part(pose.centre);
+        self.homes[home].retain(|&o| o != b);
     }
 
     /// Number of parts.
@@ -260,15 +283,22 @@ impl<const D: usize> Page<'_, D> {
 
     /// Living elements whose circle comes nearer than `gap` to a circle, ascending.
     pub(crate) fn neighbours(&self, centre: Vector<D>, radius: f64, except: u32) -> Vec<u32> {
-        let mut found = Vec::new();
-        self.parts
-            .around(centre, radius, |part, _| found.extend(self.lists[part].iter().copied().filter(|&o| o != except)));
-        found.sort_unstable();
-        found.dedup();
-        found.retain(|&o| {
+        let is_near = |&o: &u32| {
             let pose = &self.body(o).pose;
-            self.domain().offset(centre, pose.centre).norm() < radius + self.inks.radius(pose)
-        });
+            let reach = radius + self.inks.radius(pose);
+            o != except && self.domain().offset(centre, pose.centre).norm2() < reach * reach
+        };
+        let mut found = Vec::new();
+        if self.largest <= self.reach {
+            let meet = |part: usize, _| found.extend(self.homes[part].iter().copied().filter(is_near));
+            self.parts.around(centre, radius + self.largest, meet);
+            found.sort_unstable();
+        } else {
+            // One large element does not make all look far.
+            self.parts.around(centre, radius, |part, _| found.extend(self.lists[part].iter().copied().filter(is_near)));
+            found.sort_unstable();
+            found.dedup();
+        }
         found
     }
 

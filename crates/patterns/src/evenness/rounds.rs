@@ -2,6 +2,7 @@
 //! the worst first.
 
 use arabesque_core::{Budget, Meter, Result, Vector};
+use rayon::prelude::*;
 
 use crate::{
     dimension::Dimension,
@@ -78,7 +79,7 @@ where
         let mut open: Vec<u32> = (0..self.work.page.bodies.len() as u32).collect();
         for _ in 0..SWEEPS {
             let mut next = Vec::new();
-            for b in open {
+            for b in self.work.unsettled(&open)? {
                 if self.work.settle(b, meter)? > 0.0 {
                     let centre = self.work.page.body(b).pose.centre;
                     next.extend(self.work.group(centre, NEXT));
@@ -94,13 +95,12 @@ where
 
     /// Works on elements that are too near each other, the nearest first.
     fn clumps(&mut self, round: u32, meter: &mut Meter<'_>) -> Result<usize> {
-        let mut clumps = Vec::new();
-        for b in 0..self.work.page.bodies.len() as u32 {
-            let missing = self.work.worst(b, meter)?;
-            if missing > NEAR && self.work.has_changed(self.work.page.body(b).pose.centre, round) {
-                clumps.push((missing, b));
-            }
-        }
+        let work = &*self.work;
+        let is_new = |b: &u32| work.has_changed(work.page.body(*b).pose.centre, round);
+        let open: Vec<u32> = (0..work.page.bodies.len() as u32).filter(is_new).collect();
+        let missing = |&b: &u32| Ok((work.worst(b, &mut work.budget.meter())?, b));
+        let mut clumps: Vec<(f64, u32)> = open.par_iter().with_min_len(16).map(missing).collect::<Result<_>>()?;
+        clumps.retain(|(missing, _)| *missing > NEAR);
         clumps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut moves = 0;
         for (_, b) in clumps {

@@ -244,7 +244,9 @@ where
     let shares = evenness.shares(&state, &bodies, moves, &budget).unwrap();
     let page = evenness.page(&state, bodies, &budget).unwrap();
     let known = (&evenness.natural, &*sampled.library);
-    Work::new((page, shares), known, &extent, (counts(&state), work), moves).total(&mut budget.meter()).unwrap()
+    Work::new((page, shares), known, (&extent, budget.clone()), (counts(&state), work), moves)
+        .total(&mut budget.meter())
+        .unwrap()
 }
 
 fn dots_in_space() -> Arc<Exemplar<3>> {

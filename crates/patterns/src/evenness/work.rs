@@ -4,7 +4,7 @@
 //! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square;
 //! and so do places where there is more or less ink around than usual. Lengths are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
 
-use arabesque_core::{Meter, Numbered, Result, Vector};
+use arabesque_core::{Budget, Meter, Numbered, Result, Vector};
 
 use crate::{
     border::Extent,
@@ -44,6 +44,8 @@ pub(crate) struct Work<'a, const D: usize> {
     pub(crate) counts: Numbered<f64>,
     pub(crate) targets: Numbered<f64>,
     pub(crate) moves: Moves,
+    /// What is tried at the same time draws on it.
+    pub(crate) budget: Budget,
     steps: Vec<Undo<D>>,
     /// When elements last changed, by the part of the page; and now.
     changed: Vec<u32>,
@@ -83,6 +85,8 @@ struct Held<const D: usize> {
     tolerated: f64,
     /// Its size, in squares or cubes of what is tolerated.
     weight: f64,
+    /// What it costs without the element.
+    alone: f64,
 }
 
 /// What the price of an element depends on, around where it is or may go.
@@ -96,13 +100,13 @@ impl<'a, const D: usize> Work<'a, D> {
     pub(crate) fn new(
         (page, shares): (Page<'a, D>, Option<Shares<'a, D>>),
         (natural, library): (&'a Natural, &'a Library<D>),
-        extent: &'a Extent<'a, D>,
+        (extent, budget): (&'a Extent<'a, D>, Budget),
         (counts, targets): (Numbered<f64>, Numbered<f64>),
         moves: Moves,
     ) -> Self {
         let changed = vec![1; page.parts()];
         let steps = Vec::new();
-        Self { page, shares, natural, library, extent, counts, targets, moves, steps, changed, now: 1 }
+        Self { page, shares, natural, library, extent, counts, targets, moves, budget, steps, changed, now: 1 }
     }
 
     /// Whether anything has changed around `p` since some time.
@@ -139,7 +143,9 @@ impl<'a, const D: usize> Work<'a, D> {
                 let place = page.lattice.centre_at(at);
                 let tolerated = f64::from(cell.tolerated);
                 let weight = measure * tolerated.powi(-(D as i32));
-                held.push(Held { place, without: f64::from(without), tolerated, weight });
+                let without = f64::from(without);
+                let alone = Self::price_at(without, tolerated) * weight;
+                held.push(Held { place, without, tolerated, weight, alone });
             }
         });
         let scale = page.spacing_scale(centre);
@@ -187,9 +193,19 @@ impl<'a, const D: usize> Work<'a, D> {
             }
         }
         meter.spend(PRICE.1 * scene.held.len() as u64)?;
+        let Some(pose) = pose else { return Ok(sum + scene.held.iter().map(|held| held.alone).sum::<f64>()) };
+        let radius = self.page.inks.radius(pose);
         for held in &scene.held {
-            let own = pose.map_or(f64::INFINITY, |pose| self.page.inks.distance(pose, held.place - pose.centre));
-            sum += Self::price_at(own.min(held.without), held.tolerated) * held.weight;
+            let (offset, far) = (held.place - pose.centre, held.without + radius);
+            sum += if offset.norm2() >= far * far {
+                held.alone
+            } else {
+                let own = self.page.inks.distance(pose, offset);
+                Self::price_at(own.min(held.without), held.tolerated) * held.weight
+            };
+            if sum > limit {
+                break;
+            }
         }
         Ok(sum)
     }

@@ -34,6 +34,11 @@ impl Feature {
         Self(values)
     }
 
+    /// Equal for features that are the same.
+    pub(crate) fn key(&self) -> [u32; LENGTH] {
+        self.0.map(f32::to_bits)
+    }
+
     /// Squared distance, in squared units of the exemplar.
     pub(crate) fn distance2(&self, other: &Self) -> f32 {
         self.0.iter().zip(&other.0).map(|(a, b)| (a - b) * (a - b)).sum()

@@ -31,6 +31,9 @@ const SAMPLE: usize = 256;
 /// Neighbours whose memory is held together.
 const BLOCK: usize = 1 << 18;
 
+/// Neighbours that are compared in one step.
+const LANES: usize = 8;
+
 /// Samples whose similar ones may be looked for at the same time.
 const SEARCHED: usize = 64;
 
@@ -74,6 +77,9 @@ pub(crate) struct Level<const D: usize> {
     pub(crate) outlier2: Numbered<f32>,
     starts: Numbered<u32>,
     near: Vec<Near<D>>,
+    /// The offsets of these once more, each coordinate by itself, so that several are compared in one step; and a few more, as many as
+    /// are compared in one.
+    across: [Vec<f32>; D],
     run_starts: Numbered<u32>,
     runs: Vec<Run>,
     /// Most similar samples of each sample, best first [Ma 2011 §4.2]; found when they are first asked for.
@@ -132,6 +138,7 @@ impl<const D: usize> Level<D> {
             outlier2: (0..keys).map(|k| (library.outlier[k / most] as f32).powi(2)).collect(),
             starts: Numbered::filled(0, 1),
             near: Vec::new(),
+            across: std::array::from_fn(|_| Vec::new()),
             run_starts: Numbered::filled(0, 1),
             runs: Vec::new(),
             alike: Numbered::new(),
@@ -176,12 +183,16 @@ impl<const D: usize> Level<D> {
             meter.spend(3 * looked + 40 * found.len() as u64)?;
             if self.near.len() + found.len() > held.len() * BLOCK {
                 // A list that grows takes up to twice what is in it.
-                let block = budget.hold("neighbourhoods of the exemplar", 2 * BLOCK * size_of::<Near<D>>())?;
+                let block = budget.hold(
+                    "neighbourhoods of the exemplar",
+                    2 * BLOCK * (size_of::<Near<D>>() + D * size_of::<f32>()),
+                )?;
                 held.push(block);
             }
             found.sort_by_key(|(key, near)| (*key, near.sample));
             self.push_runs(&found);
         }
+        self.across.iter_mut().for_each(|across| across.extend([f32::INFINITY; LANES]));
         held.extend(Arc::into_inner(std::mem::take(&mut self.held)).unwrap_or_default());
         self.held = Arc::new(held);
         Ok(())
@@ -191,6 +202,9 @@ impl<const D: usize> Level<D> {
         for group in found.chunk_by(|a, b| a.0 == b.0) {
             let start = self.near.len() as u32;
             self.near.extend(group.iter().map(|(_, near)| *near));
+            for (k, across) in self.across.iter_mut().enumerate() {
+                across.extend(group.iter().map(|(_, near)| near.offset[k]));
+            }
             self.runs.push(Run { key: group[0].0, start, end: self.near.len() as u32 });
         }
         self.starts.push(self.near.len() as u32);
@@ -237,6 +251,36 @@ impl<const D: usize> Level<D> {
     /// Neighbours of sample `i`, sorted by key.
     pub(crate) fn neighbours(&self, i: u32) -> &[Near<D>] {
         &self.near[range(&self.starts, i)]
+    }
+
+    /// Calls `visit(n, distance2)` for the neighbours of sample `i` of a key that are nearer to an offset from it than the root of
+    /// `most`, by their number in [`Level::neighbours`], ascending. Returns how many were looked at.
+    #[inline]
+    pub(crate) fn near_offset(
+        &self,
+        i: u32,
+        key: u32,
+        offset: [f32; D],
+        most: f32,
+        mut visit: impl FnMut(usize, f32),
+    ) -> usize {
+        let of_key = self.neighbours_of_key(i, key);
+        let base = self.starts[i] as usize;
+        for first in of_key.clone().step_by(LANES) {
+            let mut distance2 = [0.0_f32; LANES];
+            for (across, &own) in self.across.iter().zip(&offset) {
+                let Some(several) = across[base + first..].first_chunk::<LANES>() else { continue };
+                for (sum, &x) in distance2.iter_mut().zip(several) {
+                    *sum += (own - x) * (own - x);
+                }
+            }
+            if distance2.iter().fold(false, |any, &d2| any | (d2 < most)) {
+                // Those of the next key may come along.
+                let own = distance2.iter().take(of_key.end - first);
+                own.zip(first..).filter(|(d2, _)| **d2 < most).for_each(|(&d2, n)| visit(n, d2));
+            }
+        }
+        of_key.len()
     }
 
     /// Those of a key, as a range into [`Level::neighbours`].

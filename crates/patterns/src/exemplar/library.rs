@@ -4,7 +4,13 @@ use arabesque_core::{
     Bounds, Budget, Domain, Exemplar, GridIndex, Meter, Numbered, Result, Role, Stream, Vector, View,
 };
 
-use crate::exemplar::{closest::ClosestDistances, features::Feature, kinds::kinds};
+use crate::exemplar::{
+    closest::ClosestDistances,
+    differences::Differences,
+    features::Feature,
+    kinds::kinds,
+    places::{Placed, Places},
+};
 
 /// Random places that are tried where most of the window is a hole.
 const TRIES: usize = 64;
@@ -21,14 +27,6 @@ const DOUBLINGS: (u32, u32) = (6, 8);
 /// Nanoseconds for a corner of an outline that is described.
 const CORNER: u64 = 60;
 
-/// Elements of one class, for look-ups by place.
-#[derive(Clone, Debug)]
-struct ClassIndex<const D: usize> {
-    /// Element numbers, parallel to the points of `grid`.
-    members: Vec<u32>,
-    grid: GridIndex<D>,
-}
-
 /// The analysed exemplar.
 #[derive(Clone, Debug)]
 pub(crate) struct Library<const D: usize> {
@@ -37,8 +35,8 @@ pub(crate) struct Library<const D: usize> {
     /// Kind of each element: its class, divided by colour where the class comes in several. What this crate calls a
     /// class of the library.
     pub(crate) class: Numbered<u32>,
-    /// Attributes of each element.
-    pub(crate) feature: Numbered<Feature>,
+    /// How the attributes of the elements differ.
+    pub(crate) differences: Differences,
     /// Distance from the centre to the farthest ink of each element.
     pub(crate) radius: Numbered<f64>,
     /// Whether each element may be copied.
@@ -60,7 +58,9 @@ pub(crate) struct Library<const D: usize> {
     /// Smallest distance between the centres of two classes; as far as the elements are looked for when they never come
     /// close.
     closest: ClosestDistances,
-    by_class: Numbered<ClassIndex<D>>,
+    members: Numbered<Vec<u32>>,
+    /// The elements of each class by place, within their outlier distance.
+    places: Numbered<Places<D>>,
     all: GridIndex<D>,
 }
 
@@ -84,21 +84,19 @@ impl<const D: usize> Library<D> {
             let of_strokes = exemplar.elements.iter().zip(&class).filter(|(e, _)| e.class >= first);
             of_strokes.for_each(|(_, &c)| outlier[c] = distance);
         }
-        let mut members_of = Numbered::filled(Vec::new(), classes);
-        class.iter().zip(0..).for_each(|(&c, i)| members_of[c].push(i));
-        let by_class = members_of
-            .into_iter()
-            .enumerate()
-            .map(|(c, members): (usize, Vec<u32>)| {
-                let points: Vec<_> = members.iter().map(|&i| centre[i]).collect();
-                ClassIndex { grid: GridIndex::new(&points, outlier[c], &plane), members }
-            })
-            .collect();
+        let mut members = Numbered::filled(Vec::new(), classes);
+        class.iter().zip(0..).for_each(|(&c, i)| members[c].push(i));
+        let mut meter = budget.meter();
+        let places = members.iter().zip(&outlier).map(|(m, &k)| Places::new(m, |i| centre[i], k, &mut meter));
+        let places = places.collect::<Result<_>>()?;
         let elements = &exemplar.elements;
         let radius: Numbered<_> = elements.iter().map(|e| e.outline.radius(e.centre)).collect();
         let far = farthest(&exemplar.window);
         Ok(Self {
-            feature: elements.iter().map(|e| Feature::of(e, spacing)).collect(),
+            differences: Differences::new(
+                elements.iter().map(|e| Feature::of(e, spacing)).collect(),
+                members.iter().map(Vec::as_slice),
+            ),
             copyable: elements.iter().zip(&radius).map(|(e, r)| e.role == Role::Source && *r <= far).collect(),
             reach: radius.iter().copied().filter(|r| *r <= far).fold(0.0, f64::max),
             giants: elements.iter().zip(&radius).filter(|(e, r)| e.role == Role::Source && **r > far).count(),
@@ -111,7 +109,8 @@ impl<const D: usize> Library<D> {
             nearest,
             closest,
             emptiness: emptiness(&exemplar.view(), &all, spacing, budget)?,
-            by_class,
+            members,
+            places,
             all,
         })
     }
@@ -137,12 +136,12 @@ impl<const D: usize> Library<D> {
 
     /// The members of a class.
     pub(crate) fn members(&self, class: u32) -> &[u32] {
-        &self.by_class[class].members
+        &self.members[class]
     }
 
     /// Number of classes.
     pub(crate) fn classes(&self) -> usize {
-        self.by_class.len()
+        self.members.len()
     }
 
     /// Calls `visit(element, offset)` for the elements within `radius` of `p`. Returns about how many nanoseconds it took.
@@ -150,33 +149,32 @@ impl<const D: usize> Library<D> {
         self.all.within(p, radius, |i, offset| visit(i as u32, offset)) * LOOK
     }
 
-    /// The elements of `class` nearer to `p` than its outlier distance, position and attributes together: best first of
-    /// at most two, with the squared distance.
-    pub(crate) fn alike(
-        &self,
-        class: u32,
-        p: Vector<D>,
-        feature: &Feature,
-        meter: &mut Meter<'_>,
-    ) -> Result<[Option<(u32, f32)>; 2]> {
-        let index = &self.by_class[class];
-        let k = self.outlier[class];
-        let k2 = (k * k) as f32;
+    /// The elements of the class of element `like` nearer to `p` than its outlier distance, position and attributes together: best first
+    /// of at most two, with the squared distance.
+    #[inline]
+    pub(crate) fn alike(&self, like: u32, p: Vector<D>, meter: &mut Meter<'_>) -> Result<[Option<(u32, f32)>; 2]> {
+        let class = self.class[like];
+        let k2 = self.outlier[class] * self.outlier[class];
+        let most = k2 as f32;
         let mut best = [None::<(u32, f32)>; 2];
-        let looked = index.grid.within(p, k, |slot, offset| {
-            let i = index.members[slot];
-            let cost = offset.norm2() as f32 + self.feature[i].distance2(feature);
-            if cost >= k2 {
-                return;
+        let near = self.places[class].near(p);
+        for &Placed { place, element } in near {
+            let d2 = (place - p).norm2();
+            if d2 > k2 {
+                continue;
             }
-            let ahead = |other: Option<(u32, f32)>| other.is_none_or(|(j, c)| (cost, i) < (c, j));
+            let cost = d2 as f32 + self.differences.of(like, element);
+            if cost >= most {
+                continue;
+            }
+            let ahead = |other: Option<(u32, f32)>| other.is_none_or(|(j, c)| (cost, element) < (c, j));
             if ahead(best[0]) {
-                best = [Some((i, cost)), best[0]];
+                best = [Some((element, cost)), best[0]];
             } else if ahead(best[1]) {
-                best[1] = Some((i, cost));
+                best[1] = Some((element, cost));
             }
-        });
-        meter.spend(LOOK * (4 + looked))?;
+        }
+        meter.spend(LOOK * (2 + near.len() as u64))?;
         Ok(best)
     }
 

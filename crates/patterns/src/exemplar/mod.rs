@@ -5,10 +5,12 @@
 
 pub(crate) mod checks;
 pub(crate) mod closest;
+pub(crate) mod differences;
 pub(crate) mod features;
 pub(crate) mod graph;
 pub(crate) mod kinds;
 pub(crate) mod level;
 pub(crate) mod level_exemplar;
 pub(crate) mod library;
+pub(crate) mod places;
 pub(crate) mod samples;

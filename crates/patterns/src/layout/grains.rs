@@ -123,6 +123,7 @@ mod tests {
             prices: Prices { missing: 0.35, outside: 0.35 },
             coherence: 0,
             random: 0,
+            thorough: true,
             rounds: 1,
             step: 0,
         };

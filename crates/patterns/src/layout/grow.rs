@@ -17,7 +17,7 @@ use crate::{
     exemplar::library::Library,
     layout::{
         coverage::{Cell, Coverage},
-        patch_site::{GrowParams, PatchSite, PatchSource},
+        patch_site::{GrowParams, PatchSite, PatchSource, SLACK},
     },
     output::{canvas::Canvas, draft::Item},
     streams,
@@ -34,7 +34,10 @@ const NOISE: f64 = 0.02;
 
 /// Candidates that are priced at a time, at first and then.
 const FIRST_GROUP: usize = 8;
-const GROUP: usize = 64;
+const GROUP: usize = 32;
+
+/// Candidates that one thread rates, and prices, by itself.
+const ALONE: (usize, usize) = (64, 16);
 
 /// A patch that was chosen for a site.
 #[derive(Clone, Debug)]
@@ -185,26 +188,35 @@ impl<'a, const D: usize> Grower<'a, D> {
         Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
     }
 
-    /// The first of the candidates that cost least, noise included. Most of the others are dropped as soon as they are sure to cost
-    /// more than the best of the groups before theirs.
+    /// The first of the candidates that cost least, noise included. All are rated by the elements nearest to them, and then priced the
+    /// most promising first, until none of the others can cost less.
     fn cheapest(&self, here: &PatchSite<'_, D>, candidates: &[(Vector<D>, f64)]) -> Result<Option<Vector<D>>> {
-        let mut best: Option<(Vector<D>, f64)> = None;
+        // Also in parallel within a site: at seams and in holes there are few sites at a time.
+        let least = |taken: &mut Vec<u32>, (k, (centre, noise)): (usize, &(Vector<D>, f64))| {
+            Ok((here.bound(*centre, taken, &mut self.budget.meter())? + noise, k))
+        };
+        let rated = candidates.par_iter().enumerate().with_min_len(ALONE.0).map_init(Vec::new, least);
+        let mut rated: Vec<(f64, usize)> = rated.collect::<Result<_>>()?;
+        rated.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut best = (f64::INFINITY, None);
         let (mut first, mut group) = (0, FIRST_GROUP);
-        while first < candidates.len() {
-            let tried = &candidates[first..candidates.len().min(first + group)];
-            let limit = best.map_or(f64::INFINITY, |b| b.1);
-            // Also in parallel within a site: at seams and in holes there are few sites at a time.
-            let cost =
-                |(c, noise): &(Vector<D>, f64)| Ok(here.cost(*c, limit - noise, &mut self.budget.meter())? + noise);
-            let costs: Vec<f64> = tried.par_iter().with_min_len(16).map(cost).collect::<Result<_>>()?;
-            for ((centre, _), cost) in tried.iter().zip(costs) {
-                if best.is_none_or(|b| cost < b.1) {
-                    best = Some((*centre, cost));
+        while let Some(tried) = rated.get(first..).and_then(|rest| rest.get(..group.min(rest.len()))) {
+            if tried.first().is_none_or(|(least, _)| *least > best.0 + SLACK) {
+                break;
+            }
+            let cost = |taken: &mut Vec<u32>, (_, k): &(f64, usize)| {
+                let (centre, noise) = candidates[*k];
+                Ok((here.cost(centre, best.0 - noise, taken, &mut self.budget.meter())? + noise, *k))
+            };
+            let costs = tried.par_iter().with_min_len(ALONE.1).map_init(Vec::new, cost);
+            for (cost, k) in costs.collect::<Result<Vec<_>>>()? {
+                if best.1.is_none_or(|known| (cost, k) < (best.0, known)) {
+                    best = (cost, Some(k));
                 }
             }
             (first, group) = (first + tried.len(), GROUP);
         }
-        Ok(best.map(|b| b.0))
+        Ok(best.1.map(|k| candidates[k].0))
     }
 
     fn paste(&mut self, patch: &Patch<D>, canvas: &mut Canvas<D>, coverage: &mut Coverage<D>) -> Result<()> {

@@ -37,7 +37,10 @@ const ELEMENTS: usize = 192;
 const COMPARISON: u64 = 1;
 
 /// By how much rounding may make two ways of adding the same costs differ, at most.
-const SLACK: f64 = 1e-9;
+pub(crate) const SLACK: f64 = 1e-9;
+
+/// One in so many of the elements around, the nearest, tells what a patch costs at least.
+const NEAREST: usize = 3;
 
 /// Candidates where there is nothing to register on.
 const FREE_CANDIDATES: usize = 24;
@@ -152,8 +155,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
 
     /// Of very many elements, some of those that are most like `element`.
     fn most_alike(&self, mut members: Vec<u32>, element: u32, random: &mut Stream) -> Vec<u32> {
-        let feature = &self.source.library.feature;
-        members.sort_by_cached_key(|&i| feature[i].distance2(&feature[element]).to_bits());
+        let differences = &self.source.library.differences;
+        members.sort_by_cached_key(|&i| differences.of(i, element).to_bits());
         members.truncate((members.len() / 4).max(MEMBERS));
         while members.len() > MEMBERS {
             members.swap_remove(random.below(members.len()));
@@ -161,17 +164,66 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         members
     }
 
+    /// What the patch around exemplar point `centre` costs at least, by the nearest elements alone. `taken` is room to work in.
+    pub(crate) fn bound(&self, centre: Vector<D>, taken: &mut Vec<u32>, meter: &mut Meter<'_>) -> Result<f64> {
+        let near = self.around.get(..self.around.len().div_ceil(NEAREST)).unwrap_or_default();
+        let disagreement = self.disagreement(centre, near, f64::INFINITY, taken, meter)?;
+        Ok(self.least(centre, &disagreement))
+    }
+
     /// Disagreement of the patch around exemplar point `centre` with what is there, or infinity once it is sure to exceed `limit`.
-    pub(crate) fn cost(&self, centre: Vector<D>, limit: f64, meter: &mut Meter<'_>) -> Result<f64> {
-        let (library, params) = (self.source.library, self.source.params);
-        let known = library.view.signed_distance(centre).min(params.patch) / params.patch;
-        let rim = RIM * (1.0 - known);
-        let mut taken: Vec<u32> = Vec::with_capacity(self.around.len());
+    /// `taken` is room to work in.
+    pub(crate) fn cost(
+        &self,
+        centre: Vector<D>,
+        limit: f64,
+        taken: &mut Vec<u32>,
+        meter: &mut Meter<'_>,
+    ) -> Result<f64> {
+        let params = self.source.params;
+        let disagreement = self.disagreement(centre, &self.around, limit, taken, meter)?;
+        if self.least(centre, &disagreement) > limit + SLACK {
+            return Ok(f64::INFINITY);
+        }
+        let Disagreement { cost, repeated } = disagreement;
+        let Missing { cost: missing, weights: missing_weights, usage } = self.missing(centre, taken, meter)?;
+        let total = self.weights + missing_weights;
+        let copied = params.repeat * repeated / self.weights;
+        Ok((cost + missing) / total + copied + params.balance * usage + self.rim(centre))
+    }
+
+    /// Cost of a centre near the frame of the exemplar.
+    fn rim(&self, centre: Vector<D>) -> f64 {
+        let patch = self.source.params.patch;
+        RIM * (1.0 - self.source.library.view.signed_distance(centre).min(patch) / patch)
+    }
+
+    /// What a patch costs at least that disagrees so far: what is missing adds as much to what is charged as to all that could be, so
+    /// that the share does not fall below this, or below 1.
+    fn least(&self, centre: Vector<D>, disagreement: &Disagreement) -> f64 {
+        let copied = self.source.params.repeat * disagreement.repeated / self.weights;
+        (disagreement.cost / self.weights).min(1.0) + copied + self.rim(centre)
+    }
+
+    /// How far the patch around `centre` disagrees with elements of those `around`, as far as it takes to exceed `limit`; `taken` are
+    /// then the elements of the patch that were found there.
+    fn disagreement(
+        &self,
+        centre: Vector<D>,
+        around: &[Around<D>],
+        limit: f64,
+        taken: &mut Vec<u32>,
+        meter: &mut Meter<'_>,
+    ) -> Result<Disagreement> {
+        let library = self.source.library;
+        // Beyond this share of the weights it is too much.
+        let most = (limit + SLACK - self.rim(centre)) * self.weights;
+        let most = if most > self.weights { f64::INFINITY } else { most };
+        taken.clear();
         let (mut cost, mut repeated) = (0.0, 0.0);
-        for &Around { element, offset, weight } in &self.around {
-            // What is missing adds as much to what is charged as to all that could be: the share does not fall below this, or below 1.
-            if (cost / self.weights).min(1.0) + rim > limit + SLACK {
-                return Ok(f64::INFINITY);
+        for &Around { element, offset, weight } in around {
+            if cost > most {
+                break;
             }
             let p = centre + offset;
             if !library.view.contains(p) {
@@ -179,7 +231,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 continue;
             }
             let class = library.class[element];
-            let alike = library.alike(class, p, &library.feature[element], meter)?;
+            let alike = library.alike(element, p, meter)?;
             meter.spend(COMPARISON * taken.len() as u64)?;
             match alike.into_iter().flatten().find(|(i, _)| !taken.contains(i)) {
                 Some((i, c)) => {
@@ -190,10 +242,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 None => cost += weight,
             }
         }
-        let Missing { cost: missing, weights: missing_weights, usage } = self.missing(centre, &taken, meter)?;
-        let total = self.weights + missing_weights;
-        let copied = params.repeat * repeated / self.weights;
-        Ok((cost + missing) / total + copied + params.balance * usage + rim)
+        Ok(Disagreement { cost, repeated })
     }
 
     /// What the patch has that is not there, except the elements `taken`.
@@ -231,8 +280,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         let library = self.source.library;
         let (mut shift, mut weights) = (Vector::ZERO, 1e-9);
         for &Around { element, offset, weight } in &self.around {
-            let class = library.class[element];
-            if let Some((i, _)) = library.alike(class, centre + offset, &library.feature[element], meter)?[0] {
+            if let Some((i, _)) = library.alike(element, centre + offset, meter)?[0] {
                 shift += (library.centre[i] - centre - offset) * weight;
                 weights += weight;
             }
@@ -245,8 +293,7 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         let (library, params) = (self.source.library, self.source.params);
         let mut taken = Vec::new();
         for &Around { element, offset, .. } in &self.around {
-            let class = library.class[element];
-            let alike = library.alike(class, centre + offset, &library.feature[element], meter)?;
+            let alike = library.alike(element, centre + offset, meter)?;
             meter.spend(COMPARISON * taken.len() as u64)?;
             taken.extend(alike.into_iter().flatten().map(|(i, _)| i).find(|i| !taken.contains(i)));
         }
@@ -294,6 +341,14 @@ impl<'a, const D: usize> PatchSite<'a, D> {
             Cell::Outside => false,
         })
     }
+}
+
+/// What is there and not in a patch.
+struct Disagreement {
+    /// Weight of it.
+    cost: f64,
+    /// Weight of what the patch would go on copying.
+    repeated: f64,
 }
 
 /// Elements of a patch without a counterpart in its surroundings.

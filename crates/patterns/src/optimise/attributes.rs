@@ -42,11 +42,11 @@ fn better_source<const D: usize>(
     if !live.alive || live.item.frozen.is_some() {
         return Ok(None);
     }
-    let spread = |source: u32| -> f32 {
-        let feature = &library.feature[source];
-        votes.iter().map(|&v| feature.distance2(&library.feature[v])).sum()
-    };
+    let spread = |source: u32| -> f32 { votes.iter().map(|&v| library.differences.of(source, v)).sum() };
     let present = spread(live.item.source);
+    if present <= 0.0 {
+        return Ok(None);
+    }
     // Many vote for the same few.
     let mut asked: Vec<u32> = votes.iter().copied().filter(|&v| library.copyable[v]).collect();
     asked.sort_unstable();

@@ -363,10 +363,7 @@ fn covering<const D: usize>(state: &State<'_, D>, p: Vector<D>, meter: &mut Mete
 
 /// The copyable element with the smallest sum of attribute distances to the votes.
 fn source<const D: usize>(state: &State<'_, D>, votes: &[u32], meter: &mut Meter<'_>) -> Result<Option<u32>> {
-    let spread = |e: u32| -> f32 {
-        let feature = &state.library.feature[e];
-        votes.iter().map(|&v| feature.distance2(&state.library.feature[v])).sum()
-    };
+    let spread = |e: u32| -> f32 { votes.iter().map(|&v| state.library.differences.of(e, v)).sum() };
     let mut asked: Vec<u32> = votes.iter().copied().filter(|&e| state.library.copyable[e]).collect();
     asked.sort_unstable();
     asked.dedup();

@@ -98,7 +98,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         wanted: &dyn Fn(Vector<D>) -> bool,
         meter: &mut Meter<'_>,
     ) -> Result<f32> {
-        let centre = self.difference(around.source, &around.star, i);
+        let centre = difference(self.level, self.library, (around.source, &around.star), i);
         let pairs = match self.matching {
             Matching::Robust => self.robust(around, i, limit - centre, meter)?,
             Matching::Hard => self.hard(around, i, limit - centre, meter)?,
@@ -109,16 +109,6 @@ impl<'a, const D: usize> Matcher<'a, D> {
         }
         meter.spend(PRICE.1 * self.level.neighbours(i).len() as u64)?;
         Ok(cost + self.missing_cost(i, wanted) + self.outside_cost(i, wanted))
-    }
-
-    /// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an
-    /// element.
-    fn difference(&self, source: u32, star: &Star<D>, i: u32) -> f32 {
-        let element = self.level.element[i];
-        if element >= self.level.base {
-            return star.distance2(&self.level.stars[i], self.level.single2);
-        }
-        self.library.feature[source].distance2(&self.library.feature[element])
     }
 
     fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32, meter: &mut Meter<'_>) -> Result<f32> {
@@ -133,16 +123,14 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let alone = if seen { outlier2 } else { 0.5 * outlier2 };
             self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
             let offset = row.offset.0.map(|v| v as f32);
-            let columns = level.neighbours_of_key(i, row.key);
-            meter.spend(PRICE.0 + PRICE.1 * columns.len() as u64)?;
-            for column in columns {
-                let other = &near[column];
-                let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                if d2 < outlier2 || row.frozen {
-                    let d2 = d2 + self.difference(row.source, &row.star, other.sample);
-                    self.assignment.pair(column as u32, row.weight * d2);
-                }
-            }
+            // A frozen element may find its partner anywhere.
+            let most = if row.frozen { f32::INFINITY } else { outlier2 };
+            let assignment = &mut self.assignment;
+            let looked = level.near_offset(i, row.key, offset, most, |column, d2| {
+                let d2 = d2 + difference(level, library, (row.source, &row.star), near[column].sample);
+                assignment.pair(column as u32, row.weight * d2);
+            });
+            meter.spend(PRICE.0 + PRICE.1 * looked as u64)?;
             if self.assignment.end_row() > limit {
                 return Ok(f32::INFINITY);
             }
@@ -166,7 +154,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                let d2 = d2 + self.difference(row.source, &row.star, other.sample);
+                let d2 = d2 + difference(level, self.library, (row.source, &row.star), other.sample);
                 self.assignment.pair(column as u32, d2);
                 least = least.min(d2);
             }
@@ -235,4 +223,14 @@ impl<'a, const D: usize> Matcher<'a, D> {
             .collect();
         Ok(Correspondence { pairs, missing })
     }
+}
+
+/// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
+#[inline]
+fn difference<const D: usize>(level: &Level<D>, library: &Library<D>, (source, star): (u32, &Star<D>), i: u32) -> f32 {
+    let element = level.element[i];
+    if element >= level.base {
+        return star.distance2(&level.stars[i], level.single2);
+    }
+    library.differences.of(source, element)
 }

@@ -32,6 +32,8 @@ pub(crate) struct Match {
     pub(crate) members: Vec<u32>,
     /// Exemplar samples that should be there and are not.
     pub(crate) missing: Vec<u32>,
+    /// Whether it was matched with another one before, or with none.
+    pub(crate) is_new: bool,
 }
 
 impl Match {

@@ -1,0 +1,111 @@
+//! Differences of the attributes of elements, worked out once.
+//!
+//! Two elements of one class are compared for every pair of every neighbourhood that is priced. Most exemplars have few elements that
+//! differ, or few elements; then a table answers. Where there are too many, their attributes are compared each time.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::Numbered;
+
+use crate::exemplar::features::Feature;
+
+/// Most entries of the table.
+const MOST: usize = 1 << 21;
+
+/// No row of the table.
+const NONE: u32 = u32::MAX;
+
+/// How elements of one class differ.
+#[derive(Clone, Debug)]
+pub(crate) struct Differences {
+    feature: Numbered<Feature>,
+    /// Which of the different ones of its class each element is.
+    column: Numbered<u32>,
+    /// Where the row of each element starts.
+    row: Numbered<u32>,
+    table: Vec<f32>,
+}
+
+impl Differences {
+    /// Compares the members of each class.
+    pub(crate) fn new<'m>(feature: Numbered<Feature>, classes: impl Iterator<Item = &'m [u32]>) -> Self {
+        let mut column = Numbered::filled(0, feature.len());
+        let mut row = Numbered::filled(NONE, feature.len());
+        let mut table: Vec<f32> = Vec::new();
+        for members in classes {
+            let mut known = BTreeMap::new();
+            let mut shown: Vec<u32> = Vec::new();
+            for &e in members {
+                column[e] = *known.entry(feature[e].key()).or_insert_with(|| {
+                    shown.push(e);
+                    shown.len() as u32 - 1
+                });
+            }
+            if table.len() + shown.len() * shown.len() > MOST {
+                continue;
+            }
+            let start = table.len();
+            for a in &shown {
+                table.extend(shown.iter().map(|b| feature[*a].distance2(&feature[*b])));
+            }
+            members.iter().for_each(|&e| row[e] = start as u32 + column[e] * shown.len() as u32);
+        }
+        Self { feature, column, row, table }
+    }
+
+    /// Squared difference of the attributes of two elements of one class.
+    #[inline]
+    pub(crate) fn of(&self, a: u32, b: u32) -> f32 {
+        let row = self.row[a];
+        if row == NONE {
+            return self.feature[a].distance2(&self.feature[b]);
+        }
+        self.table[(row + self.column[b]) as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Element, Outline, Role, Similarity, Vector};
+
+    use super::*;
+
+    fn features(sizes: &[f64]) -> Numbered<Feature> {
+        let of = |&size: &f64| {
+            let ring = [(0.0, 0.0), (size, 0.0), (0.0, size)].map(|(x, y)| Vector::xy(x, y)).to_vec();
+            let element = Element {
+                class: 0,
+                centre: Vector::ZERO,
+                pose: Similarity::identity(),
+                outline: Outline { rings: vec![ring] },
+                colour: [0.0; 3],
+                lean: [Vector::ZERO; 3],
+                role: Role::Source,
+            };
+            Feature::of(&element, 1.0)
+        };
+        sizes.iter().map(of).collect()
+    }
+
+    #[test]
+    fn the_table_says_what_a_comparison_would() {
+        let feature = features(&[1.0, 2.0, 1.0, 5.0, 3.0, 1.5]);
+        let classes: [&[u32]; 2] = [&[0, 2, 5, 1], &[3, 4]];
+        let differences = Differences::new(feature.clone(), classes.into_iter());
+        assert_eq!(differences.table.len(), 3 * 3 + 2 * 2);
+        for members in classes {
+            for (&a, &b) in members.iter().flat_map(|a| members.iter().map(move |b| (a, b))) {
+                assert_eq!(differences.of(a, b), feature[a].distance2(&feature[b]));
+            }
+        }
+    }
+
+    #[test]
+    fn of_too_many_different_ones_each_pair_is_compared() {
+        let feature = features(&(0..1500).map(f64::from).collect::<Vec<_>>());
+        let members: Vec<u32> = (0..1500).collect();
+        let differences = Differences::new(feature.clone(), [&members[..]].into_iter());
+        assert!(differences.table.is_empty());
+        assert_eq!(differences.of(3, 1400), feature[3_u32].distance2(&feature[1400_u32]));
+    }
+}

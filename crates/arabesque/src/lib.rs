@@ -50,7 +50,7 @@
 //! ```
 //!
 //! Whoever watches a run gets [`Progress`] and, when wanted, the present state as an [`Artwork`]; see [`Watch`]. Files that carry a recipe
-//! are read by [`recipe_in`]. The methods and their vocabulary are re-exported as [`core`], [`patterns`], [`ribbons`] and [`surfaces`], the file formats
+//! are read by [`recipe_in`]. The methods and their vocabulary are re-exported as [`core`], [`patterns`], [`ribbons`], [`structures`] and [`surfaces`], the file formats
 //! as [`io`].
 
 mod artwork;
@@ -67,12 +67,14 @@ mod ribbon;
 mod solid;
 mod space;
 mod spacing;
+mod structure;
 mod surface;
 
 pub use arabesque_core as core;
 pub use arabesque_io as io;
 pub use arabesque_patterns as patterns;
 pub use arabesque_ribbons as ribbons;
+pub use arabesque_structures as structures;
 pub use arabesque_surface as surfaces;
 
 pub use arabesque_core::suggest::nearest;
@@ -89,7 +91,7 @@ pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
     Carrier, Cuboid, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
-    OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, Surface, Tile, WidthSource,
-    carried_recipe, is_result, recipe_in, ribbon_options,
+    OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, Structures, Surface, Tile,
+    WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

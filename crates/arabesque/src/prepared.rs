@@ -10,7 +10,7 @@ use crate::{
     plane,
     recipe::{Job, Recipe},
     resources::{Files, Resources},
-    ribbon, space, surface,
+    ribbon, space, structure, surface,
 };
 
 /// What one run is to make from what is prepared: everything but the exemplar and how it is analysed.
@@ -73,6 +73,7 @@ impl Recipe {
             Job::Redo(job) => Arc::new(plane::prepare_region(job, &mut preparation)?),
             Job::Space(job) => Arc::new(space::prepare(job, &mut preparation)?),
             Job::Ribbon(job) => Arc::new(ribbon::prepare(job, &mut preparation)?),
+            Job::Structures(job) => Arc::new(structure::prepare(job, &mut preparation)?),
             Job::Surface(job) => Arc::new(surface::prepare(job, &mut preparation)?),
         };
         let Preparation { exemplar, job, warnings, .. } = preparation;

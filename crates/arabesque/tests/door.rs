@@ -140,6 +140,8 @@ fn one_watch_draws_the_previews_of_every_method() {
             Geometry::Plane(snapshot) => snapshot.placements.len() + snapshot.curves.len() + snapshot.patches.len(),
             Geometry::Space(snapshot) => snapshot.placements.len() + snapshot.curves.len() + snapshot.patches.len(),
             Geometry::Mesh(mesh) => mesh.triangles.len(),
+            Geometry::PlanePoints(points) => points.len(),
+            Geometry::SpacePoints(points) => points.len(),
         };
         assert!(placed > 0, "{progress}");
         assert_eq!(preview.points().len(), preview.summary().elements, "{progress}");

@@ -290,8 +290,13 @@ fn counted(made: &Summary) -> String {
     if let Some(r) = &made.ribbons {
         return format!("{} in {}", many(r.pieces, "piece"), many(r.ribbons, "ribbon"));
     }
-    let kinds =
-        [(made.triangles, "triangle"), (made.areas, "area"), (made.curves, "curve"), (made.elements, "element")];
+    let kinds = [
+        (made.points, "point"),
+        (made.triangles, "triangle"),
+        (made.areas, "area"),
+        (made.curves, "curve"),
+        (made.elements, "element"),
+    ];
     let said: Vec<String> = kinds.iter().filter(|(n, _)| *n > 0).map(|&(n, what)| many(n, what)).collect();
     match said.as_slice() {
         [] => many(0, "element"),

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use arabesque_core::{Budget, EnergyPoint, Result, Snapshot, StopReason, TriangleMesh, Warning};
+use arabesque_core::{Budget, EnergyPoint, PointSet, Result, Snapshot, StopReason, TriangleMesh, Warning};
 
 use crate::{
     artwork::{points::PlacedPoint, summary::Summary},
@@ -68,6 +68,10 @@ pub enum Geometry {
     Space(Snapshot<3>),
     /// A mesh.
     Mesh(TriangleMesh),
+    /// Points with attributes in the plane.
+    PlanePoints(PointSet<2>),
+    /// Points with attributes in space.
+    SpacePoints(PointSet<3>),
 }
 
 impl Encoded {

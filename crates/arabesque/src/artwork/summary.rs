@@ -19,6 +19,9 @@ pub struct Summary {
     /// Number of filled areas that run through the result.
     #[serde(skip_serializing_if = "is_zero")]
     pub areas: usize,
+    /// Number of points of a structure.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub points: usize,
     /// Number of triangles of a surface.
     #[serde(skip_serializing_if = "is_zero")]
     pub triangles: usize,
@@ -54,6 +57,7 @@ impl Summary {
             curves: outcome.curves.len(),
             styles: counts(styles),
             areas: outcome.areas.len(),
+            points: 0,
             triangles: 0,
             tile: None,
             ribbons: None,

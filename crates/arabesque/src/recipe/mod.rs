@@ -20,7 +20,8 @@ pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
 pub use job::{
-    ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, Surface, WidthSource, ribbon_options,
+    ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, Structures, Surface, WidthSource,
+    ribbon_options,
 };
 pub use output::OutputOptions;
 pub use region::Region;
@@ -67,7 +68,7 @@ struct Document {
     seed: u64,
     /// The exemplar.
     exemplar: Input,
-    /// Fill a part of the plane. One of `fill`, `redo`, `space`, `ribbon` and `surface` may be there; with none of them the
+    /// Fill a part of the plane. One of `fill`, `redo`, `space`, `ribbon`, `surface` and `structures` may be there; with none of them the
     /// layer Domain of the exemplar is filled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fill: Option<Fill>,
@@ -83,6 +84,9 @@ struct Document {
     /// Make a surface of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     surface: Option<Surface>,
+    /// Continue a repetitive structure that is given as points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    structures: Option<Structures>,
     /// What to write.
     #[serde(default)]
     output: OutputOptions,
@@ -92,9 +96,12 @@ impl TryFrom<Document> for Recipe {
     type Error = String;
 
     fn try_from(document: Document) -> std::result::Result<Self, String> {
-        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, output } = document;
+        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, output } = document;
         let plane = [fill.map(Job::Fill), redo.map(Job::Redo), ribbon.map(Job::Ribbon)];
-        let mut jobs = plane.into_iter().chain([space.map(Job::Space), surface.map(Job::Surface)]).flatten();
+        let mut jobs = plane
+            .into_iter()
+            .chain([space.map(Job::Space), surface.map(Job::Surface), structures.map(Job::from)])
+            .flatten();
         match (jobs.next(), jobs.next()) {
             (Some(job), None) => Ok(Self { arabesque, seed, exemplar, job, output }),
             (None, _) => Ok(Self { arabesque, seed, exemplar, job: Job::Fill(Fill::default()), output }),
@@ -106,15 +113,17 @@ impl TryFrom<Document> for Recipe {
 impl From<Recipe> for Document {
     fn from(recipe: Recipe) -> Self {
         let Recipe { arabesque, seed, exemplar, job, output } = recipe;
-        let (mut fill, mut redo, mut space, mut ribbon, mut surface) = (None, None, None, None, None);
+        let (mut fill, mut redo, mut space, mut ribbon, mut surface, mut structures) =
+            (None, None, None, None, None, None);
         match job {
             Job::Surface(job) => surface = Some(job),
+            Job::Structures(job) => structures = Some(*job),
             Job::Fill(job) => fill = Some(job),
             Job::Redo(job) => redo = Some(job),
             Job::Space(job) => space = Some(job),
             Job::Ribbon(job) => ribbon = Some(job),
         }
-        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, output }
+        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, output }
     }
 }
 
@@ -239,6 +248,7 @@ mod tests {
         for job in [
             Job::from(Redo::of(Region::Own("hole".into()))),
             Job::from(Space::new("5x5x5".parse().unwrap())),
+            Job::from(Structures::along(Input::file("curve.obj"))),
             Job::from(Surface { trim: Some(Input::file("hull.ply")), ..Surface::default() }),
             Job::from(ribbon),
         ] {

@@ -25,6 +25,9 @@ pub struct OutputOptions {
     /// PNG: pixels per user unit, instead of `dpi`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels_per_unit: Option<f64>,
+    /// PNG of what lies in space: from where it is seen, as `azimuth,elevation` in degrees. Default: -60,30.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<String>,
     /// Leave the recipe out of the file. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub bare: bool,

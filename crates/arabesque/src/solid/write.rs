@@ -8,6 +8,7 @@ use arabesque_io::{
         obj,
         ply::{PlyFile, write_ply},
     },
+    render::{Item, Look, write_picture},
     table::points,
 };
 
@@ -42,35 +43,57 @@ pub(crate) fn encode_mesh(mesh: &TriangleMesh, sheet: &Sheet<'_>, said: Said<'_>
         Format::Obj => obj::write_mesh(mesh, recipe, budget)?.into_bytes(),
         Format::Glb => gltf::write_scene(&Scene::of_mesh("surface", mesh), recipe, budget)?,
         Format::Json => json::write_mesh(mesh, &said.report(recipe), budget)?.into_bytes(),
-        Format::Svg | Format::Png | Format::Csv | Format::Toml => {
-            return Err(refused("a surface", sheet.format, "write ply, obj, glb or json"));
+        Format::Png => picture(Item::Mesh(mesh), sheet)?,
+        Format::Svg | Format::Csv | Format::Toml => {
+            return Err(refused("a surface", sheet.format, "write ply, obj, glb, json or png"));
         }
     };
     Ok(Encoded { bytes, warnings: Vec::new() })
 }
 
-/// Writes points in space.
-#[allow(dead_code, reason = "structures come next")]
-pub(crate) fn encode_points(points: &PointSet<3>, sheet: &Sheet<'_>, said: Said<'_>) -> Result<Encoded> {
+/// Writes points; `item` is how they are drawn.
+pub(crate) fn encode_points<const D: usize>(
+    points: &PointSet<D>,
+    item: Item<'_>,
+    sheet: &Sheet<'_>,
+    said: Said<'_>,
+) -> Result<Encoded> {
     let (recipe, budget) = (sheet.recipe, sheet.budget);
     let mut warnings = Vec::new();
     let bytes = match sheet.format {
         Format::Ply => write_ply(&PlyFile::of_points(points).with_recipe(recipe), budget)?,
-        Format::Obj => {
-            if points.radii.is_some() || points.groups.is_some() || points.elements.is_some() {
-                let message = "an OBJ file holds no radii, groups and elements of points: left out";
-                warnings.push(Warning::new(message, "write ply, csv or json"));
+        Format::Obj | Format::Glb => {
+            let Item::Points(points) = item else {
+                return Err(refused("points in the plane", sheet.format, "write csv, json, ply or png"));
+            };
+            if sheet.format == Format::Glb {
+                gltf::write_scene(&Scene::of_points(points.clone()), recipe, budget)?
+            } else {
+                if points.radii.is_some() || points.groups.is_some() || points.elements.is_some() {
+                    let message = "an OBJ file holds no radii, groups and elements of points: left out";
+                    warnings.push(Warning::new(message, "write ply, csv or json"));
+                }
+                obj::write_cloud(points, recipe, budget)?.into_bytes()
             }
-            obj::write_cloud(points, recipe, budget)?.into_bytes()
         }
-        Format::Glb => gltf::write_scene(&Scene::of_points(points.clone()), recipe, budget)?,
         Format::Csv => points::write_table(points, recipe, budget)?.into_bytes(),
         Format::Json => json::write_cloud(points, &said.report(recipe), budget)?.into_bytes(),
-        Format::Svg | Format::Png | Format::Toml => {
-            return Err(refused("points in space", sheet.format, "write ply, csv, obj, glb or json"));
+        Format::Png => picture(item, sheet)?,
+        Format::Svg | Format::Toml => {
+            return Err(refused("points with attributes", sheet.format, "write ply, csv, obj, glb, json or png"));
         }
     };
     Ok(Encoded { bytes, warnings })
+}
+
+/// A shaded picture.
+fn picture(item: Item<'_>, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
+    if sheet.output.dpi.is_some() || sheet.output.pixels_per_unit.is_some() {
+        let what = "a resolution for a picture of what lies in space".into();
+        return Err(Error::Unsupported { what, advice: "leave dpi and pixels-per-unit out".into() });
+    }
+    let view = sheet.output.view.as_deref().map(str::parse).transpose()?;
+    write_picture(&[item], &Look { view, ..Look::default() }, sheet.recipe, sheet.budget)
 }
 
 /// A format that cannot hold what was made.

@@ -4,9 +4,10 @@ use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
     Border, Cuboid, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo,
-    Region, Space,
+    Region, Space, Structures,
     core::options::{Choice, help_list, preset_list},
     patterns::Params,
+    structures::StructureParams,
 };
 use clap::{
     Args,
@@ -23,9 +24,10 @@ use crate::{
 #[derive(Args, Debug)]
 #[command(after_long_help = parameters(), allow_negative_numbers = true)]
 pub(crate) struct Fill {
-    /// The example: an SVG drawing, points as CSV, or curves in space as OBJ; - is standard input
+    /// The example: an SVG drawing, points as CSV, curves in space as OBJ, or a structure of points with attributes as PLY or XYZ; - is
+    /// standard input
     exemplar: String,
-    /// Where to write; the extension chooses SVG, PNG, JSON, CSV, OBJ or TOML (the recipe alone); - is standard output
+    /// Where to write; the extension chooses SVG, PNG, JSON, CSV, OBJ, PLY, GLB or TOML (the recipe alone); - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: String,
     #[command(flatten)]
@@ -58,11 +60,20 @@ struct Place {
     /// Fill a box in space, in the units of the exemplar: curves (OBJ) or points (CSV with a column z)
     #[arg(long = "box", value_name = "XxYxZ", group = "where")]
     cuboid: Option<String>,
+    /// Structures: follow the lines of an OBJ file, or the paths of an SVG file
+    #[arg(long, value_name = "CURVE[#ID]", group = "where")]
+    along: Option<String>,
+    /// Structures: cover a mesh
+    #[arg(long, value_name = "MESH", group = "where")]
+    on: Option<String>,
+    /// Structures: fill a closed mesh
+    #[arg(long, value_name = "MESH", group = "where")]
+    inside: Option<String>,
     /// Keep these shapes free; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
-    /// Elements and strokes that stay exactly where this file has them; the rest is fitted around them and joined to them
-    #[arg(long, value_name = "FILE.svg")]
+    /// Elements and strokes, or points, that stay exactly where this file has them; the rest is fitted around them and joined to them
+    #[arg(long, value_name = "FILE")]
     keep: Option<String>,
     /// Fill a region of the exemplar's own file again and leave the rest as it is: x,y,w,h, or #ID of a shape in the file
     #[arg(long, value_name = "REGION", group = "where", allow_hyphen_values = true, value_parser = Region::parse)]
@@ -91,6 +102,15 @@ struct Fields {
     /// Elements per area: a factor, or a PNG picture from black (0.2) to white (1); PICTURE.png@0.5..1 for another range
     #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = FieldSource::parse)]
     density: Option<FieldSource>,
+    /// Along curves: size from start to end, as 1..0.5, or at shares of the length, as 0:1,0.5:2,1:1
+    #[arg(long, value_name = "FACTORS")]
+    taper: Option<String>,
+    /// Along curves: degrees by which the structure turns about the curve from start to end
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    twist: Option<f64>,
+    /// Along curves: how far from the curve points may lie that repeat across it too
+    #[arg(long, value_name = "R")]
+    tube: Option<f64>,
 }
 
 #[derive(Args, Debug)]
@@ -132,6 +152,15 @@ struct Writing {
     /// PNG: pixels per user unit of the page
     #[arg(long, value_name = "N")]
     pixels_per_unit: Option<f64>,
+    /// PNG of a structure in space: azimuth and elevation of the eye in degrees [default: -60,30]
+    #[arg(long, value_name = "A,E", allow_hyphen_values = true)]
+    view: Option<String>,
+    /// Structures: write the surface of the points instead of the points
+    #[arg(long)]
+    mesh: bool,
+    /// With --mesh: set a parameter of the surface by its name (listed under surface --help); may be given several times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = pair, requires = "mesh")]
+    surface: Vec<(String, String)>,
 }
 
 /// Reads the names of an enumeration of the library, and lists them in the help.
@@ -143,7 +172,10 @@ pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value =
 /// The parameters that `--set` knows, for the long help.
 fn parameters() -> String {
     let (list, presets) = (help_list(&Params::specs()), preset_list(Params::PRESETS));
-    format!("Parameters for --set, by name:\n{list}\nPresets:\n{presets}")
+    let structures = help_list(&StructureParams::specs());
+    format!(
+        "Parameters for --set, by name:\n{list}\nPresets:\n{presets}\nParameters for --set of structures:\n{structures}"
+    )
 }
 
 impl Engine {
@@ -164,13 +196,97 @@ impl Fill {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
         let exemplar = Input::file(&self.exemplar);
         let (seed, run, path) = (self.seed, self.run, self.output);
-        let mut recipe = Recipe::new(exemplar, job(self.place, self.fields, self.engine)?);
+        let writing = self.writing;
+        let is_structure = match self.engine.method {
+            Method::Structures => true,
+            Method::Auto => is_structure(&self.exemplar),
+            Method::Elements | Method::Curves => false,
+        };
+        let job = if is_structure {
+            structures(self.place, self.fields, self.engine, &writing)?
+        } else {
+            not_for_structures(&self.place, &self.fields, &writing)?;
+            job(self.place, self.fields, self.engine)?
+        };
+        let mut recipe = Recipe::new(exemplar, job);
         recipe.seed = seed;
-        recipe.output.expand = self.writing.expand;
-        recipe.output.dpi = self.writing.dpi;
-        recipe.output.pixels_per_unit = self.writing.pixels_per_unit;
+        recipe.output.expand = writing.expand;
+        recipe.output.dpi = writing.dpi;
+        recipe.output.pixels_per_unit = writing.pixels_per_unit;
+        recipe.output.view = writing.view;
         produce(recipe, None, &path, &run)
     }
+}
+
+/// Whether a file holds points with attributes, by its ending.
+fn is_structure(exemplar: &str) -> bool {
+    let lower = exemplar.to_ascii_lowercase();
+    [".ply", ".xyz"].iter().any(|ending| lower.ends_with(ending))
+}
+
+/// Refuses what drawings and elements do not have.
+fn not_for_structures(place: &Place, fields: &Fields, writing: &Writing) -> Result<(), Error> {
+    let given = [
+        ("along", place.along.is_some()),
+        ("on", place.on.is_some()),
+        ("inside", place.inside.is_some()),
+        ("taper", fields.taper.is_some()),
+        ("twist", fields.twist.is_some()),
+        ("tube", fields.tube.is_some()),
+        ("view", writing.view.is_some()),
+        ("mesh", writing.mesh),
+    ];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        None => Ok(()),
+        Some((name, _)) => {
+            let advice = "leave it out, or give points as PLY, or as CSV with --method structures";
+            Err(Error::Unsupported {
+                what: format!("{name} for an exemplar that is no structure of points"),
+                advice: advice.into(),
+            })
+        }
+    }
+}
+
+/// The job that the options mean for a structure of points.
+fn structures(place: Place, fields: Fields, engine: Engine, writing: &Writing) -> Result<Job, Error> {
+    let given = [
+        ("avoid", !place.avoid.is_empty()),
+        ("redo", place.redo.is_some()),
+        ("from", place.from.is_some()),
+        ("to", place.to.is_some()),
+        ("border", place.border.is_some()),
+        ("density", fields.density.is_some()),
+        ("exemplar-tile", engine.exemplar_tile == ExemplarTile::Yes),
+        ("radius", engine.radius.is_some()),
+        ("levels", engine.levels.is_some()),
+        ("preset", engine.preset != "default"),
+        ("expand", writing.expand),
+    ];
+    if let Some((name, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+        let advice = "leave it out; --set sets the parameters of structures, as --help lists them";
+        return Err(Error::Unsupported { what: format!("{name} for a structure of points"), advice: advice.into() });
+    }
+    let mut params: BTreeMap<String, String> = engine.set.into_iter().collect();
+    params.extend(engine.iterations.map(|n| ("rounds".to_owned(), n.to_string())));
+    Ok(Job::from(Structures {
+        size: place.size.map(|text| text.parse()).transpose()?,
+        tile: place.tile.map(|text| text.parse()).transpose()?,
+        domain: place.domain.as_deref().map(Input::shape),
+        cuboid: place.cuboid.map(|text| text.parse()).transpose()?,
+        along: place.along.as_deref().map(Input::shape),
+        on: place.on.map(Input::file),
+        inside: place.inside.map(Input::file),
+        keep: place.keep.map(Input::file),
+        orient: fields.orient,
+        scale: fields.scale,
+        radius: fields.tube,
+        taper: fields.taper,
+        twist: fields.twist,
+        mesh: writing.mesh,
+        params,
+        surface: writing.surface.iter().cloned().collect(),
+    }))
 }
 
 /// The job that the options mean.
@@ -191,7 +307,7 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
             advice: advice.into(),
         });
     }
-    let Fields { orient, scale, density } = fields;
+    let Fields { orient, scale, density, .. } = fields;
     if let Some(cuboid) = place.cuboid {
         let plane_only =
             [("keep", place.keep.is_some()), ("orient", orient.is_some()), ("avoid", !place.avoid.is_empty())];

@@ -25,7 +25,7 @@ use crate::{
 pub(crate) struct Surface {
     /// The points: PLY, XYZ or CSV, or those of an OBJ or GLB file; - is standard input
     points: String,
-    /// Where to write; the extension chooses PLY, OBJ, GLB, JSON or TOML (the recipe alone); - is standard output
+    /// Where to write; the extension chooses PLY, OBJ, GLB, JSON, PNG or TOML (the recipe alone); - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: String,
     /// How the points become a surface
@@ -40,6 +40,9 @@ pub(crate) struct Surface {
     /// Cut off what is outside of this closed mesh
     #[arg(long, value_name = "MESH")]
     trim: Option<String>,
+    /// PNG: azimuth and elevation of the eye in degrees [default: -60,30]
+    #[arg(long, value_name = "A,E", allow_hyphen_values = true)]
+    view: Option<String>,
     /// Set one parameter by its name (listed under --help); may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
     set: Vec<(String, String)>,
@@ -62,6 +65,8 @@ impl Surface {
             ("cells", self.cells.map(|v| v.to_string())),
         ];
         job.params.extend(shortcuts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))));
-        produce(Recipe::new(Input::file(&self.points), job), None, &self.output, &self.run)
+        let mut recipe = Recipe::new(Input::file(&self.points), job);
+        recipe.output.view = self.view;
+        produce(recipe, None, &self.output, &self.run)
     }
 }

@@ -144,7 +144,7 @@ choices! {
         Elements = "elements",
         /// Every stroke without a fill is a curve; what is filled is an element.
         Curves = "curves",
-        /// Repetitive structures; not yet handled.
+        /// Repetitive structures, given as points with attributes.
         Structures = "structures",
     }
 }
@@ -164,7 +164,7 @@ impl Method {
             Self::Elements => Ok(svg::Method::Elements),
             Self::Curves => Ok(svg::Method::Curves),
             Self::Structures => {
-                let expected = "auto, elements or curves; structures are not handled yet";
+                let expected = "auto, elements or curves; structures are points: PLY, XYZ or CSV";
                 Err(Error::parameter("method", "structures", expected))
             }
         }

@@ -36,6 +36,15 @@ impl Job {
                 wanted.extend(job.then.iter().map(|input| ("exemplar", input)));
                 wanted.extend(avoided(&job.avoid));
             }
+            Self::Structures(job) => {
+                wanted.extend(job.domain.iter().map(|input| ("--domain", input)));
+                wanted.extend(job.along.iter().map(|input| ("--along", input)));
+                wanted.extend(job.on.iter().map(|input| ("--on", input)));
+                wanted.extend(job.inside.iter().map(|input| ("--inside", input)));
+                wanted.extend(job.keep.iter().map(|input| ("--keep", input)));
+                wanted.extend(field("--orient", job.orient.as_ref()));
+                wanted.extend(field("--scale", job.scale.as_ref()));
+            }
             Self::Surface(job) => wanted.extend(job.trim.iter().map(|input| ("--trim", input))),
         }
         wanted

@@ -6,6 +6,7 @@ mod parameters;
 mod redo;
 mod ribbon;
 mod space;
+mod structures;
 mod surface;
 
 pub use fill::{ExemplarTile, Fill, Method, Reading};
@@ -13,6 +14,7 @@ pub use parameters::Parameters;
 pub use redo::Redo;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};
 pub use space::Space;
+pub use structures::Structures;
 pub use surface::Surface;
 
 pub(super) use parameters::plain_values;
@@ -32,6 +34,8 @@ pub enum Job {
     Ribbon(Ribbon),
     /// Make a surface of points.
     Surface(Surface),
+    /// Continue a repetitive structure that is given as points.
+    Structures(Box<Structures>),
 }
 
 impl Job {
@@ -43,11 +47,12 @@ impl Job {
             Self::Space(_) => "space",
             Self::Ribbon(_) => "ribbon",
             Self::Surface(_) => "surface",
+            Self::Structures(_) => "structures",
         }
     }
 
     /// The file format where nobody says which: SVG for the plane, OBJ for curves and CSV for points in space, PNG for ribbons, GLB
-    /// for ribbons in space, PLY for surfaces.
+    /// for ribbons in space, PLY for surfaces and structures, CSV for structures from a table.
     pub(crate) fn usual_format(&self, exemplar: &Input) -> Format {
         let is = |input: &Input, format| Format::of_path(&input.path).ok().flatten() == Some(format);
         match self {
@@ -56,7 +61,8 @@ impl Job {
             Self::Space(_) => Format::Obj,
             Self::Ribbon(ribbon) if is(&ribbon.along, Format::Obj) => Format::Glb,
             Self::Ribbon(_) => Format::Png,
-            Self::Surface(_) => Format::Ply,
+            Self::Structures(_) if is(exemplar, Format::Csv) => Format::Csv,
+            Self::Surface(_) | Self::Structures(_) => Format::Ply,
         }
     }
 
@@ -82,6 +88,7 @@ impl Job {
             Self::Space(job) => Self::Space(job.prepared_part()),
             Self::Ribbon(job) => Self::Ribbon(job.prepared_part()),
             Self::Surface(job) => Self::Surface(job.prepared_part()),
+            Self::Structures(job) => Self::Structures(Box::new(job.prepared_part())),
         }
     }
 }
@@ -101,6 +108,12 @@ impl From<Redo> for Job {
 impl From<Space> for Job {
     fn from(job: Space) -> Self {
         Self::Space(job)
+    }
+}
+
+impl From<Structures> for Job {
+    fn from(job: Structures) -> Self {
+        Self::Structures(Box::new(job))
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use arabesque_core::options::{Kind, ParamSpec};
 use arabesque_patterns::Params;
 use arabesque_ribbons::RibbonParams;
+use arabesque_structures::StructureParams;
 use arabesque_surface::SurfaceParams;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -78,6 +79,11 @@ pub(super) fn of_patterns(_: &mut SchemaGenerator) -> Schema {
 /// The schema of the parameters of ribbons.
 pub(super) fn of_ribbons(_: &mut SchemaGenerator) -> Schema {
     table(RibbonParams::specs().into_iter().filter(|spec| !spec.own_option), [])
+}
+
+/// The schema of the parameters of structures.
+pub(super) fn of_structures(_: &mut SchemaGenerator) -> Schema {
+    table(StructureParams::specs(), [])
 }
 
 /// The schema of the parameters of surfaces.

@@ -90,8 +90,8 @@ pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, M
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
-    Carrier, Cuboid, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input, Job, Method,
-    OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, Structures, Surface, Tile,
-    WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
+    Carrier, Cuboid, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input,
+    Job, Method, OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, Structures, Surface,
+    Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

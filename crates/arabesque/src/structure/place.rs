@@ -6,13 +6,14 @@ use arabesque_core::{
     Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, ScalarField, Vector,
 };
 use arabesque_io::{file, geometry::Cloud, mesh::obj, svg};
-use arabesque_structures::{Along, Flat, Territory, Thread, Tube};
+use arabesque_structures::{Along, Flat, Hollow, Shell, Territory, Thread, Tube};
+use arabesque_surface::{Bend, DirectionField, Directions, MeshReport};
 
 use crate::{
     method::RunContext,
     plane::{constant_factor, options},
-    recipe::{FieldSource, Format, Input, Size, Structures},
-    solid::read::cloud,
+    recipe::{Direction, FieldSource, Format, Input, Size, Structures},
+    solid::read::{cloud, indexed_mesh},
 };
 
 /// How far a line may lie from its curve, as a share of its extent.
@@ -88,6 +89,26 @@ pub(super) fn in_space(
             let across = height.size().0.into_iter().fold(f64::INFINITY, f64::min);
             return Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?));
         }
+        ("on", Structures { on: Some(input), direction, scale, radius, .. }) => {
+            let scale = constant_size(scale.as_ref())?;
+            let (index, warnings) = indexed_mesh(input, context.files)?;
+            context.warnings.extend(warnings);
+            let report = MeshReport::new(&index, context.budget())?;
+            context.warnings.extend(report.surface_of(input.name())?);
+            let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
+            context.warnings.extend(field.warnings().iter().cloned());
+            let thick = height.size()[2].max(1e-3 * height.size().norm());
+            let radius = radius.unwrap_or(0.5 * thick * scale);
+            return Ok(Arc::new(Shell::new(index, &report, field, [scale, radius])?));
+        }
+        ("inside", Structures { inside: Some(input), scale, .. }) => {
+            let scale = constant_size(scale.as_ref())?;
+            let (index, warnings) = indexed_mesh(input, context.files)?;
+            context.warnings.extend(warnings);
+            let report = MeshReport::new(&index, context.budget())?;
+            context.warnings.extend(report.volume_of(input.name())?);
+            return Ok(Arc::new(Hollow::new(index, &report, about_z, scale)?));
+        }
         (other, _) => {
             return Err(elsewhere(
                 other,
@@ -126,6 +147,35 @@ fn degrees(job: &Structures) -> Result<f64> {
 
 fn factor<const D: usize>(job: &Structures) -> Result<ScalarField<D>> {
     constant_factor("scale", job.scale.as_ref())
+}
+
+/// The size of a pattern on or in a mesh.
+fn constant_size(source: Option<&FieldSource>) -> Result<f64> {
+    match source {
+        None => Ok(1.0),
+        Some(FieldSource::Constant(v)) => Ok(*v),
+        Some(FieldSource::File(_)) => {
+            Err(Error::Unsupported { what: "scale from a file, on a mesh".into(), advice: "give a number".into() })
+        }
+    }
+}
+
+/// Where the pattern runs on a mesh; strokes are embedded.
+fn directions(source: &mut Option<Direction>, context: &mut RunContext<'_>) -> Result<Directions> {
+    Ok(match source {
+        None => Directions::Curvature(Bend::Least),
+        Some(Direction::Bend(bend)) => Directions::Curvature(*bend),
+        Some(Direction::Towards(way)) => Directions::Constant(Vector(*way)),
+        Some(Direction::Strokes(input)) => {
+            let strokes = match curves(input, context)? {
+                Curves::Space(paths) => paths,
+                Curves::Plane(_) => {
+                    return Err(elsewhere("direction", "curves in the plane", "a mesh", "give lines of an OBJ file"));
+                }
+            };
+            Directions::Strokes(strokes.iter().map(|path| path.flatten(CHORD * path.bounds().size().norm())).collect())
+        }
+    })
 }
 
 /// The lines of a file, which is embedded.

@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
-    Border, Cuboid, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo,
-    Region, Space, Structures,
+    Border, Cuboid, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters,
+    Recipe, Redo, Region, Space, Structures,
     core::options::{Choice, help_list, preset_list},
     patterns::Params,
     structures::StructureParams,
@@ -102,13 +102,17 @@ struct Fields {
     /// Elements per area: a factor, or a PNG picture from black (0.2) to white (1); PICTURE.png@0.5..1 for another range
     #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = FieldSource::parse)]
     density: Option<FieldSource>,
+    /// On meshes: where the structure runs: least or most (along which the mesh bends so), a direction in space such as 0,0,1, or the
+    /// lines of an OBJ file as strokes on the mesh [default: least]
+    #[arg(long, value_name = "DIRECTION", allow_hyphen_values = true)]
+    direction: Option<String>,
     /// Along curves: size from start to end, as 1..0.5, or at shares of the length, as 0:1,0.5:2,1:1
     #[arg(long, value_name = "FACTORS")]
     taper: Option<String>,
     /// Along curves: degrees by which the structure turns about the curve from start to end
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
     twist: Option<f64>,
-    /// Along curves: how far from the curve points may lie that repeat across it too
+    /// Along curves and on meshes: how far from these points may lie that repeat across them too
     #[arg(long, value_name = "R")]
     tube: Option<f64>,
 }
@@ -230,6 +234,7 @@ fn not_for_structures(place: &Place, fields: &Fields, writing: &Writing) -> Resu
         ("along", place.along.is_some()),
         ("on", place.on.is_some()),
         ("inside", place.inside.is_some()),
+        ("direction", fields.direction.is_some()),
         ("taper", fields.taper.is_some()),
         ("twist", fields.twist.is_some()),
         ("tube", fields.tube.is_some()),
@@ -280,6 +285,7 @@ fn structures(place: Place, fields: Fields, engine: Engine, writing: &Writing) -
         keep: place.keep.map(Input::file),
         orient: fields.orient,
         scale: fields.scale,
+        direction: fields.direction.as_deref().map(Direction::parse),
         radius: fields.tube,
         taper: fields.taper,
         twist: fields.twist,

@@ -1,6 +1,11 @@
 //! The files that a job reads, each with the option that wants it.
 
-use crate::recipe::{field::FieldSource, input::Input, job::Job, region::Region};
+use crate::recipe::{
+    field::FieldSource,
+    input::Input,
+    job::{Direction, Job},
+    region::Region,
+};
 
 /// A file, and the option that wants it.
 type Wanted<'a> = (&'static str, &'a Input);
@@ -44,6 +49,9 @@ impl Job {
                 wanted.extend(job.keep.iter().map(|input| ("--keep", input)));
                 wanted.extend(field("--orient", job.orient.as_ref()));
                 wanted.extend(field("--scale", job.scale.as_ref()));
+                if let Some(Direction::Strokes(input)) = &job.direction {
+                    wanted.push(("--direction", input));
+                }
             }
             Self::Surface(job) => wanted.extend(job.trim.iter().map(|input| ("--trim", input))),
         }

@@ -14,7 +14,7 @@ pub use parameters::Parameters;
 pub use redo::Redo;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};
 pub use space::Space;
-pub use structures::Structures;
+pub use structures::{Direction, Structures};
 pub use surface::Surface;
 
 pub(super) use parameters::plain_values;

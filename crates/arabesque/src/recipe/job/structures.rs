@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Error, Result};
+use arabesque_core::Error;
 use arabesque_structures::StructureParams;
-use arabesque_surface::SurfaceParams;
+use arabesque_surface::{Bend, SurfaceParams};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::recipe::{
     field::FieldSource,
@@ -48,6 +48,10 @@ pub struct Structures {
     /// How the structure is turned: degrees about the z axis, about the normal of a surface, or about a curve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orient: Option<FieldSource>,
+    /// Where the structure runs on a mesh: `least` or `most`, along which the mesh bends least or most; a direction in space such as `0,0,1`;
+    /// or the lines of an OBJ file as strokes on the mesh. Default: least.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<Direction>,
     /// Size of the structure relative to the exemplar: a number. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<FieldSource>,
@@ -73,6 +77,56 @@ pub struct Structures {
     pub surface: BTreeMap<String, String>,
 }
 
+/// Where a structure runs on a mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Direction {
+    /// Along which it bends least or most.
+    #[schemars(with = "String")]
+    #[serde(serialize_with = "by_name")]
+    Bend(Bend),
+    /// One direction in space, as it lies along the mesh.
+    Towards([f64; 3]),
+    /// Strokes on the mesh.
+    Strokes(Input),
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn by_name<S: Serializer>(bend: &Bend, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(bend.name())
+}
+
+impl<'de> Deserialize<'de> for Direction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Text(String),
+            Towards([f64; 3]),
+            Strokes(Input),
+        }
+        Ok(match Written::deserialize(deserializer)? {
+            Written::Text(text) => Self::parse(&text),
+            Written::Towards(way) => Self::Towards(way),
+            Written::Strokes(input) => Self::Strokes(input),
+        })
+    }
+}
+
+impl Direction {
+    /// A direction as people write it: `least`, `most`, `0,0,1`, or a file of strokes.
+    pub fn parse(text: &str) -> Self {
+        if let Ok(bend) = text.parse() {
+            return Self::Bend(bend);
+        }
+        let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+        match numbers.and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()) {
+            Some(way) => Self::Towards(way),
+            None => Self::Strokes(Input::file(text)),
+        }
+    }
+}
+
 impl Structures {
     /// Follows the curves of a file.
     pub fn along(curves: Input) -> Self {
@@ -92,7 +146,7 @@ impl Structures {
     ///
     /// # Errors
     /// [`Error::Parameter`] for an unknown name or a value out of range.
-    pub(crate) fn engine_params(&self) -> Result<StructureParams> {
+    pub(crate) fn engine_params(&self) -> arabesque_core::Result<StructureParams> {
         let mut params = StructureParams::default();
         self.params.iter().try_for_each(|(name, value)| params.set(name, value))?;
         Ok(params)
@@ -102,7 +156,7 @@ impl Structures {
     ///
     /// # Errors
     /// [`Error::Parameter`] for an unknown name or a value out of range.
-    pub(crate) fn surface_params(&self) -> Result<SurfaceParams> {
+    pub(crate) fn surface_params(&self) -> arabesque_core::Result<SurfaceParams> {
         surface_params(&self.surface)
     }
 
@@ -110,7 +164,7 @@ impl Structures {
     ///
     /// # Errors
     /// [`Error::Parameter`] for none or several.
-    pub(crate) fn place(&self) -> Result<&'static str> {
+    pub(crate) fn place(&self) -> arabesque_core::Result<&'static str> {
         let given = [
             ("size", self.size.is_some()),
             ("tile", self.tile.is_some()),

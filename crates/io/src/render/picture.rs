@@ -26,7 +26,7 @@ const REACHES: [f32; 2] = [0.014, 0.06];
 /// Radii of points without one, in mean distances to their neighbours: of those of a surface, which are to hide what is behind it, and
 /// of others.
 const SKIN: f64 = 0.57;
-const BALL: f64 = 0.38;
+const BALL: f64 = 0.32;
 /// Radius of points that are all in one place, in pixels.
 const LONE: f64 = 8.0;
 /// Work of shading one pixel.

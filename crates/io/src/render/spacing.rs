@@ -5,7 +5,7 @@ use arabesque_core::{Bounds, Budget, Domain, GridIndex, Result, Vector};
 /// Points that are looked at, evenly among all of them.
 const LOOKED_AT: usize = 300;
 /// Neighbours of each, whose mean distance counts.
-const NEIGHBOURS: usize = 3;
+const NEIGHBOURS: usize = 6;
 /// Work of putting one point into the grid.
 const PER_POINT: u64 = 40;
 
@@ -44,10 +44,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_square_grid_has_the_spacing_of_its_cells() {
+    fn a_square_grid_has_the_spacing_of_its_cells_and_a_little_more() {
         let points: Vec<_> = (0..900).map(|k| Vector([f64::from(k % 30), f64::from(k / 30), 0.0])).collect();
         let found = spacing(&points, &Budget::default()).unwrap();
-        assert!((1.0..1.1).contains(&found), "{found}");
+        assert!((1.0..1.25).contains(&found), "{found}");
     }
 
     #[test]

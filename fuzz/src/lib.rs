@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod drawn;
+pub mod geometry;
 pub mod read;
 
 use arabesque_core::Limits;

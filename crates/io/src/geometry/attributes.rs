@@ -20,9 +20,9 @@ pub(crate) enum Attribute {
 
 /// Every attribute in the order of [`Attribute::index`], with its names in lower case: that of what is written first.
 pub(crate) const NAMES: [(Attribute, &[&str]); 12] = [
-    (Attribute::Position(0), &["x", "px", "pos_x", "posx", "position_x", "x_pos"]),
-    (Attribute::Position(1), &["y", "py", "pos_y", "posy", "position_y", "y_pos"]),
-    (Attribute::Position(2), &["z", "pz", "pos_z", "posz", "position_z", "z_pos"]),
+    (Attribute::Position(0), &["x", "px", "pos_x", "posx", "position_x", "x_pos", "easting", "lon", "longitude"]),
+    (Attribute::Position(1), &["y", "py", "pos_y", "posy", "position_y", "y_pos", "northing", "lat", "latitude"]),
+    (Attribute::Position(2), &["z", "pz", "pos_z", "posz", "position_z", "z_pos", "height", "elevation"]),
     (Attribute::Normal(0), &["nx", "normal_x", "normalx", "norm_x", "normals_x", "n_x", "normal_0"]),
     (Attribute::Normal(1), &["ny", "normal_y", "normaly", "norm_y", "normals_y", "n_y", "normal_1"]),
     (Attribute::Normal(2), &["nz", "normal_z", "normalz", "norm_z", "normals_z", "n_z", "normal_2"]),
@@ -34,8 +34,12 @@ pub(crate) const NAMES: [(Attribute, &[&str]); 12] = [
     (Attribute::Element, &["element", "elements", "element_id", "elementid", "instance", "instance_id", "object_id"]),
 ];
 
+/// What a program writes before names of values that it does not know itself.
+const PREFIX: &str = "scalar_";
+
 /// Whether `name`, in lower case, is what files call an attribute.
 pub(crate) fn is_known(name: &str) -> bool {
+    let name = name.strip_prefix(PREFIX).unwrap_or(name);
     NAMES.iter().any(|(_, aliases)| aliases.contains(&name))
 }
 
@@ -44,8 +48,10 @@ pub(crate) fn is_known(name: &str) -> bool {
 ///
 /// `r` alone, without green and blue, is a radius.
 pub(crate) fn columns_of(names: &[String]) -> [Option<usize>; NAMES.len()] {
-    let find =
-        |aliases: &[&str]| aliases.iter().find_map(|alias| names.iter().position(|name| name.as_str() == *alias));
+    let find = |aliases: &[&str]| {
+        let is = |name: &str, alias: &str| name == alias || name.strip_prefix(PREFIX) == Some(alias);
+        aliases.iter().find_map(|alias| names.iter().position(|name| is(name, alias)))
+    };
     let mut found = NAMES.map(|(_, aliases)| find(aliases));
     let [red, green, blue] = [0, 1, 2].map(|k| Attribute::Colour(k).index());
     if found[green].is_none() && found[blue].is_none() {
@@ -132,6 +138,7 @@ mod tests {
     fn usual_names_are_known_and_the_first_of_two_counts() {
         assert_eq!(columns(&["y", "normal_x", "x", "alpha"]), [("x", 2), ("y", 0), ("nx", 1)]);
         assert_eq!(columns(&["diffuse_red", "red"]), [("red", 1)]);
+        assert_eq!(columns(&["x", "y", "scalar_group"]), [("x", 0), ("y", 1), ("group", 2)]);
     }
 
     #[test]

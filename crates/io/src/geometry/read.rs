@@ -114,7 +114,12 @@ pub fn recipe_of(bytes: &[u8]) -> Option<String> {
         return gltf::recipe_of(bytes);
     }
     let text = std::str::from_utf8(bytes).ok()?;
-    if text.trim_start().starts_with('{') { json::recipe_of(text) } else { records::recipe_of(text) }
+    match text.trim_start().chars().next()? {
+        '{' => json::recipe_of(text),
+        // Tables begin with the names of their columns, everything else with a comment that says what it is.
+        '#' => obj::recipe_of(text),
+        _ => records::recipe_of(text),
+    }
 }
 
 #[cfg(test)]

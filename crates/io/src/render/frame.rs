@@ -32,6 +32,11 @@ impl Sample {
         Self { depth, normal: normal.map(|c| (c * sign) as i16), colour, behind }
     }
 
+    /// The same, of the back of something.
+    pub(super) fn from_behind(depth: f32, normal: [f32; 3], colour: [u8; 3]) -> Self {
+        Self { behind: true, ..Self::new(depth, normal, colour) }
+    }
+
     pub(super) fn is_something(&self) -> bool {
         self.depth > f32::NEG_INFINITY
     }
@@ -93,11 +98,15 @@ impl Frame {
         Ok(Self { width, height, samples, _held: held })
     }
 
+    /// Whether nothing is nearer, or as near, at a place.
+    pub(super) fn is_free(&self, x: usize, y: usize, depth: f32) -> bool {
+        depth > self.samples[y * self.width + x].depth
+    }
+
     /// Puts something in a place where nothing is nearer.
     pub(super) fn put(&mut self, x: usize, y: usize, sample: Sample) {
-        let there = &mut self.samples[y * self.width + x];
-        if sample.depth > there.depth {
-            *there = sample;
+        if self.is_free(x, y, sample.depth) {
+            self.samples[y * self.width + x] = sample;
         }
     }
 

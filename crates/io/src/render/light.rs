@@ -6,22 +6,22 @@ use super::{
 };
 
 /// Directions towards the lights, as the picture has them, and how strong they are.
-const KEY: ([f32; 3], [f32; 3]) = ([-0.48, 0.62, 0.62], [0.86, 0.82, 0.76]);
-const FILL: ([f32; 3], [f32; 3]) = ([0.85, -0.10, 0.52], [0.13, 0.15, 0.19]);
+const KEY: ([f32; 3], [f32; 3]) = ([-0.48, 0.62, 0.62], [0.90, 0.85, 0.78]);
+const FILL: ([f32; 3], [f32; 3]) = ([0.55, -0.48, 0.68], [0.14, 0.15, 0.18]);
 /// Light from all around, above and below.
-const SKY: [f32; 3] = [0.40, 0.43, 0.48];
-const GROUND: [f32; 3] = [0.24, 0.22, 0.20];
+const SKY: [f32; 3] = [0.30, 0.33, 0.38];
+const GROUND: [f32; 3] = [0.19, 0.175, 0.16];
 /// How far light reaches around what it falls on.
-const WRAP: f32 = 0.12;
+const WRAP: f32 = 0.05;
 /// How strong and how narrow the gleam is.
 const GLEAM: f32 = 0.10;
 const NARROW: i32 = 28;
 /// How much of the light of the lamps a hollow keeps away, beside all of that from all around.
 const SHADE: f32 = 0.62;
 /// What is seen from behind, relative to its front.
-const BEHIND: [f32; 3] = [0.58, 0.62, 0.70];
+const BEHIND: [f32; 3] = [0.66, 0.71, 0.80];
 /// How pale what is farthest off becomes.
-const HAZE: f32 = 0.16;
+const HAZE: f32 = 0.10;
 
 /// Light and how the picture is laid out in depth.
 pub(super) struct Lamp {
@@ -147,6 +147,6 @@ mod tests {
     fn what_is_far_off_is_pale() {
         let lamp = Lamp::new([0.0, 1.0, 0.0], [0.0, 100.0]);
         let at = |depth: f32| lamp.of(&Sample::new(depth, [0.0, 0.0, 1.0], [20; 3]), 1.0)[0];
-        assert!(at(0.0) > at(100.0) + 0.1);
+        assert!(at(0.0) > at(100.0) + 0.05);
     }
 }

@@ -11,13 +11,18 @@ use super::frame::{FINE, Frame};
 /// Looks from one place, for each reach.
 const LOOKS: usize = 14;
 /// Work of one look.
-const PER_LOOK: u64 = 8;
+const PER_LOOK: u64 = 4;
 /// Side of the square of directions.
 const SQUARE: usize = 4;
 /// Angle from one look to the next.
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
 /// Cosines above the surface that count for nothing, so that flat things stay light.
 const FLAT: f32 = 0.12;
+
+/// How strongly filled space takes light away.
+const STRENGTH: f32 = 3.0;
+/// Least weight of what is seen far in front.
+const RIM: f32 = 0.12;
 
 /// What is seen in each pixel: its nearness in pixels, and its direction.
 struct Coarse {
@@ -35,9 +40,13 @@ pub(super) fn openness(frame: &Frame, reaches: [f32; 2], budget: &Budget) -> Res
     light.resize(pixels, 1.0_f32);
     for reach in reaches {
         let mut raw = Vec::with_capacity(pixels);
+        let spirals = spirals(reach);
         for y in 0..coarse.height {
             budget.spend(PER_LOOK * (LOOKS * coarse.width) as u64)?;
-            raw.extend((0..coarse.width).map(|x| coarse.hidden(x, y, reach)));
+            raw.extend((0..coarse.width).map(|x| {
+                let number = ((x % SQUARE) * SQUARE + (y % SQUARE) * 7) % spirals.len();
+                coarse.hidden([x, y], &spirals[number], reach)
+            }));
         }
         for y in 0..coarse.height {
             budget.spend(PER_LOOK * (SQUARE * SQUARE * coarse.width) as u64)?;
@@ -69,34 +78,50 @@ fn coarse(frame: &Frame, budget: &Budget) -> Result<Coarse> {
     Ok(coarse)
 }
 
+/// Where to look from a place, right and up, for each place of a square.
+fn spirals(reach: f32) -> [[[i32; 2]; LOOKS]; SQUARE * SQUARE] {
+    std::array::from_fn(|number| {
+        let turn = number as f32 * (std::f32::consts::TAU / (SQUARE * SQUARE) as f32);
+        std::array::from_fn(|look| {
+            let far = reach * ((look as f32 + 0.5) / LOOKS as f32).sqrt();
+            let (sin, cos) = (turn + GOLDEN_ANGLE * look as f32).sin_cos();
+            [far * cos, far * sin].map(|v| v.round() as i32)
+        })
+    })
+}
+
 impl Coarse {
     /// The share of the space around a place that is filled.
-    fn hidden(&self, x: usize, y: usize, reach: f32) -> f32 {
+    fn hidden(&self, [x, y]: [usize; 2], looks: &[[i32; 2]; LOOKS], reach: f32) -> f32 {
         let at = y * self.width + x;
         let (depth, n) = (self.depth[at], self.normal[at]);
         if depth == f32::NEG_INFINITY {
             return 0.0;
         }
-        let turn = ((x % SQUARE) * SQUARE + (y % SQUARE) * 7 % 16) as f32 * (std::f32::consts::TAU / 16.0);
         let mut sum = 0.0;
-        for look in 0..LOOKS {
-            let far = reach * ((look as f32 + 0.5) / LOOKS as f32).sqrt();
-            let (sin, cos) = (turn + GOLDEN_ANGLE * look as f32).sin_cos();
-            let [to_x, to_y] = [x as f32 + far * cos, y as f32 + far * sin].map(f32::round);
-            if to_x < 0.0 || to_y < 0.0 || to_x >= self.width as f32 || to_y >= self.height as f32 {
+        for [dx, dy] in looks {
+            let (Some(to_x), Some(to_y)) = (x.checked_add_signed(*dx as isize), y.checked_sub_signed(*dy as isize))
+            else {
+                continue;
+            };
+            if to_x >= self.width || to_y >= self.height {
                 continue;
             }
-            let there = self.depth[to_y as usize * self.width + to_x as usize];
-            let v = [to_x - x as f32, y as f32 - to_y, there - depth];
-            let length = v.iter().map(|c| c * c).sum::<f32>();
-            if !length.is_finite() || length == 0.0 {
+            let there = self.depth[to_y * self.width + to_x];
+            if there == f32::NEG_INFINITY {
+                continue;
+            }
+            let v = [*dx as f32, *dy as f32, there - depth];
+            let length = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+            if length == 0.0 {
                 continue;
             }
             let above = (v[0] * n[0] + v[1] * n[1] + v[2] * n[2]) / length.sqrt() - FLAT;
+            // However far behind something is, a narrow rim around what is in front of it is darker.
             let weight = 1.0 / (1.0 + length / (reach * reach));
-            sum += above.max(0.0) * weight;
+            sum += above.max(0.0) * weight.max(RIM);
         }
-        2.6 * sum / LOOKS as f32
+        STRENGTH * sum / LOOKS as f32
     }
 
     /// The mean over a square of places that are about as near.

@@ -14,8 +14,8 @@ const FIRST: f64 = 0.63;
 pub(super) fn of_number(number: i32) -> [u8; 3] {
     let hue = (FIRST + GOLDEN * f64::from(number)).rem_euclid(1.0);
     // Every third one is darker, and every third one lighter.
-    let lightness = [0.72, 0.62, 0.80][number.rem_euclid(3) as usize];
-    oklch(lightness, 0.105, hue)
+    let lightness = [0.68, 0.58, 0.77][number.rem_euclid(3) as usize];
+    oklch(lightness, 0.125, hue)
 }
 
 /// Lightness, chroma and hue of equal steps to the eye (OKLab), as sRGB; hue in turns.

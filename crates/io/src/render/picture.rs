@@ -22,14 +22,15 @@ use crate::{
 /// Free border, as a share of the side.
 const BORDER: f64 = 0.04;
 /// How far light is kept away by what is near, and by what forms hollows, as shares of the larger side.
-const REACHES: [f32; 2] = [0.012, 0.05];
-/// Radii of points without one, in mean distances to their neighbours: of discs, which are to hide what is behind them, and of balls.
-const DISC: f64 = 0.62;
-const BALL: f64 = 0.30;
+const REACHES: [f32; 2] = [0.014, 0.06];
+/// Radii of points without one, in mean distances to their neighbours: of those of a surface, which are to hide what is behind it, and
+/// of others.
+const SKIN: f64 = 0.57;
+const BALL: f64 = 0.32;
 /// Radius of points that are all in one place, in pixels.
 const LONE: f64 = 8.0;
 /// Work of shading one pixel.
-const PER_PIXEL: u64 = 250;
+const PER_PIXEL: u64 = 120;
 /// Pixels of the longer side where nobody says.
 const USUAL: usize = 1200;
 /// The longer side is at most so many times as long as the shorter one.
@@ -119,7 +120,7 @@ fn clouds<'a>(items: &[Item<'a>], budget: &Budget) -> Result<Vec<(Cloud<'a>, f64
             Item::Plane(points) => Cloud::of_plane(points),
             Item::Mesh(_) | Item::Placed(..) => continue,
         };
-        let share = if cloud.normals.is_some() { DISC } else { BALL };
+        let share = if cloud.normals.is_some() { SKIN } else { BALL };
         let radius = if cloud.radii.is_some() { 0.0 } else { share * spacing(&cloud.positions, budget)? };
         clouds.push((cloud, radius));
     }
@@ -143,10 +144,13 @@ fn extent_of(items: &[Item<'_>], clouds: &[(Cloud<'_>, f64)], axes: &Axes, budge
             Item::Placed(mesh, places) => (*mesh, *places),
             Item::Points(_) | Item::Plane(_) => continue,
         };
+        // A vertex without triangles is not seen.
+        let mut used = vec![false; mesh.positions.len()];
+        mesh.triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
         for place in places {
-            budget.spend(30 * mesh.triangles.len() as u64)?;
-            let corners = mesh.triangles.iter().flatten().map(|v| mesh.positions[*v as usize]);
-            seen = corners.fold(seen, |seen, p| seen.joined(axes.turned(place.apply(p))));
+            budget.spend(30 * mesh.positions.len() as u64)?;
+            let corners = mesh.positions.iter().zip(&used).filter(|(_, used)| **used);
+            seen = corners.fold(seen, |seen, (p, _)| seen.joined(axes.turned(place.apply(*p))));
         }
     }
     Ok(seen)

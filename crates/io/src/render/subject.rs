@@ -11,8 +11,8 @@ pub enum Item<'a> {
     Mesh(&'a TriangleMesh),
     /// A mesh in many places, each coloured by its number where the mesh has no colours.
     Placed(&'a TriangleMesh, &'a [Similarity<3>]),
-    /// Points: as balls where they have radii, as discs across their normals where they have these, else as small balls; by their
-    /// colours, or else by their groups, or else by their elements.
+    /// Points: as balls of their radii where they have some, as pieces of a surface where they have normals, else as small balls; by
+    /// their colours, or else by their groups, or else by their elements.
     Points(&'a PointSet<3>),
     /// Points in the plane, as at height 0.
     Plane(&'a PointSet<2>),

@@ -41,7 +41,10 @@ pub(super) fn draw(triangles: impl Iterator<Item = [Corner; 3]>, frame: &mut Fra
                 let share =
                     |u: [f64; 3], v: [f64; 3]| ((v[0] - u[0]) * (p[1] - u[1]) - (v[1] - u[1]) * (p[0] - u[0])) / area;
                 let shares = [share(b, c), share(c, a), share(a, b)].map(|s| s.clamp(0.0, 1.0));
-                frame.put(x, y, between(&corners, shares));
+                let depth = (0..3).map(|k| shares[k] * corners[k].place[2]).sum::<f64>() as f32;
+                if frame.is_free(x, y, depth) {
+                    frame.put(x, y, between(&corners, shares, depth));
+                }
             }
         }
     }
@@ -62,8 +65,7 @@ fn crossed(corners: [[f64; 3]; 3], row: f64) -> Option<[f64; 2]> {
     found
 }
 
-fn between(corners: &[Corner; 3], shares: [f64; 3]) -> Sample {
-    let depth: f64 = (0..3).map(|k| shares[k] * corners[k].place[2]).sum();
+fn between(corners: &[Corner; 3], shares: [f64; 3], depth: f32) -> Sample {
     let shares = shares.map(|s| s as f32);
     let normal = std::array::from_fn(|axis| (0..3).map(|k| shares[k] * corners[k].normal[axis]).sum());
     let colour = match corners[0].colour == corners[1].colour && corners[1].colour == corners[2].colour {
@@ -72,7 +74,7 @@ fn between(corners: &[Corner; 3], shares: [f64; 3]) -> Sample {
             (0..3).map(|k| shares[k] * f32::from(corners[k].colour[c])).sum::<f32>().round() as u8
         }),
     };
-    Sample::new(depth as f32, normal, colour)
+    Sample::new(depth, normal, colour)
 }
 
 #[cfg(test)]
@@ -80,7 +82,7 @@ mod tests {
     use super::*;
 
     fn corner(x: f64, y: f64, depth: f64) -> Corner {
-        Corner { place: [x, y, depth], normal: [0.0, 0.0, 1.0], colour: [x as u8 * 10, 0, 0] }
+        Corner { place: [x, y, depth], normal: [0.0, 0.0, 1.0], colour: [(x * 10.0) as u8, 0, 0] }
     }
 
     #[test]

@@ -100,18 +100,23 @@ pub(crate) fn recipe_comments(recipe: &str) -> String {
 /// The comment line that a recipe follows.
 pub(crate) const RECIPE_MARK: &str = "# arabesque recipe:";
 
-/// The recipe in the comments of a file of points or curves that this library wrote. A name of a class that looks like one is none.
+/// The recipe in the comments of a table that this library wrote. A name that looks like one is none.
 pub fn recipe_of(text: &str) -> Option<String> {
-    let mut lines = text.lines();
     // Names with quotes are quoted and their quotes doubled, so that every other one opens.
     let mut quoted = false;
-    lines.find(|line| {
+    recipe_behind(text, |line| {
         if !quoted && line.starts_with('#') {
-            return *line == RECIPE_MARK;
+            return line == RECIPE_MARK;
         }
         quoted ^= line.matches('"').count() % 2 == 1;
         false
-    })?;
+    })
+}
+
+/// The recipe in the comment lines behind the one that is its mark.
+pub(crate) fn recipe_behind(text: &str, mut is_mark: impl FnMut(&str) -> bool) -> Option<String> {
+    let mut lines = text.lines();
+    lines.find(|line| is_mark(line))?;
     let lines = lines.map_while(|line| line.strip_prefix("# ").or_else(|| line.strip_prefix('#')));
     Some(lines.map(|line| format!("{line}\n")).collect())
 }

@@ -6,6 +6,7 @@ mod colour;
 mod container;
 mod document;
 mod nodes;
+mod points;
 mod primitives;
 mod read;
 mod scene;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Error, PointSet, Result, TriangleMesh, Vector, Warning};
 
-use super::{accessor::Binary, colour::srgb, document::Primitive};
+use super::{accessor::Binary, colour::srgb, document::Primitive, points::append};
 use crate::geometry::{Polygons, attributes::Attribute};
 
 /// Modes of the format.
@@ -186,38 +186,7 @@ impl Reader<'_> {
             }
             set = set.selected(&indices.iter().map(|i| *i as usize).collect::<Vec<_>>());
         }
-        if self.parts.points.is_empty() {
-            self.parts.points = set;
-            return Ok(());
-        }
-        self.append_points(set)
-    }
-
-    /// More points; attributes that not all of them have are left out.
-    fn append_points(&mut self, set: PointSet<3>) -> Result<()> {
-        fn joined<T>(all: &mut Option<Vec<T>>, more: Option<Vec<T>>) -> bool {
-            match (all.as_mut(), more) {
-                (Some(all), Some(more)) => {
-                    all.extend(more);
-                    true
-                }
-                (None, None) => true,
-                _ => {
-                    *all = None;
-                    false
-                }
-            }
-        }
-        let all = &mut self.parts.points;
-        all.positions.extend(set.positions);
-        let complete = [
-            joined(&mut all.normals, set.normals),
-            joined(&mut all.colours, set.colours),
-            joined(&mut all.radii, set.radii),
-            joined(&mut all.groups, set.groups),
-            joined(&mut all.elements, set.elements),
-        ];
-        if complete.contains(&false) {
+        if !append(&mut self.parts.points, set) {
             let message = format!("{}: attributes of some points alone are left out", self.place);
             self.parts.warnings.push(Warning::new(message, "give all points of a mesh the same attributes"));
         }

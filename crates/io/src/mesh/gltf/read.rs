@@ -6,19 +6,17 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Budget, Error, PointSet, Result, Similarity, TriangleMesh, Vector, Warning};
+use arabesque_core::{Budget, Error, Result, Similarity, TriangleMesh, Vector, Warning};
 
 use super::{
     accessor::Binary,
-    colour::srgb,
     container::chunks,
     document::read_document,
     nodes::{Affine, Placed, placed},
+    points::{append, in_place},
     primitives::Parts,
     scene::{Scene, SceneMesh, SceneNode},
 };
-use crate::geometry::{Cloud, Columns, attributes::Attribute};
-
 /// Reads a scene.
 ///
 /// # Errors
@@ -30,28 +28,15 @@ pub fn read_scene(name: &str, bytes: &[u8], budget: &Budget) -> Result<Scene> {
     let (text, binary) = chunks(name, bytes)?;
     let document = read_document(name, text, &budget)?;
     let binary = Binary { name, document: &document, bytes: binary, budget: &budget };
-    let mut reader = Reader {
-        binary,
-        meshes: BTreeMap::new(),
-        baked: BTreeMap::new(),
-        points: Columns::default(),
-        scene: Scene::default(),
-    };
+    let mut reader =
+        Reader { binary, meshes: BTreeMap::new(), baked: BTreeMap::new(), complete: true, scene: Scene::default() };
     let places = placed(&binary)?;
     reader.check_size(&places)?;
     for place in &places {
         reader.place(place)?;
     }
-    reader.warn_of_motion();
-    let Reader { points, mut scene, .. } = reader;
-    if !points.values[0].is_empty() {
-        let geometry = points.into_geometry(name, &budget)?;
-        scene.zero_normals = geometry.zero_normals;
-        scene.warnings.extend(geometry.warnings);
-        if let Cloud::Space(points) = geometry.points {
-            scene.points = points;
-        }
-    }
+    reader.warn();
+    let scene = reader.scene;
     if scene.nodes.is_empty() && scene.points.is_empty() {
         return Err(Error::input(name, "no mesh and no points in its scene", "give a file with meshes or points"));
     }
@@ -64,7 +49,8 @@ struct Reader<'a> {
     meshes: BTreeMap<usize, Parts>,
     /// Numbers of the meshes of the scene, by mesh of the file and the bits of what was done to it.
     baked: BTreeMap<(usize, Option<[u64; 9]>), usize>,
-    points: Columns,
+    /// Whether all points so far have the same attributes.
+    complete: bool,
     scene: Scene,
 }
 
@@ -98,7 +84,7 @@ impl Reader<'_> {
             let problem = format!("a vertex at {:?} where coordinates between -{most} and {most} were expected", p.0);
             return Err(Error::input(place, problem, "scale the mesh down, or move it nearer to the origin"));
         }
-        add_points(&mut self.points, &parts.points, &placed.place);
+        self.complete &= append(&mut self.scene.points, in_place(&parts.points, &placed.place));
         if parts.mesh.triangles.is_empty() {
             return Ok(());
         }
@@ -119,14 +105,26 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn warn_of_motion(&mut self) {
+    fn warn(&mut self) {
+        let name = self.binary.name;
+        let scene = &mut self.scene;
+        let mut warn = |message: String, advice: &str| {
+            scene.warnings.push(Warning::new(format!("{name}: {message}"), advice));
+        };
+        if !self.complete {
+            warn("attributes of some points alone are left out".into(), "give all points the same attributes");
+        }
+        let zero = scene.points.normals.iter().flatten().filter(|n| **n == Vector::ZERO).count();
+        scene.zero_normals = zero;
+        if zero > 0 {
+            warn(format!("{zero} normals of points are zero"), "compute normals where the points come from");
+        }
         let document = self.binary.document;
         let skins = document.nodes.iter().filter(|node| node.skin.is_some()).count();
         let shapes = document.meshes.iter().flat_map(|m| &m.primitives).filter(|p| !p.targets.is_empty()).count();
         if skins + shapes > 0 {
-            let message =
-                format!("{}: meshes are read as they rest; skins and shape keys are passed over", self.binary.name);
-            self.scene.warnings.push(Warning::new(message, "apply them before the file is saved"));
+            let message = "meshes are read as they rest; skins and shape keys are passed over";
+            warn(message.into(), "apply them before the file is saved");
         }
     }
 }
@@ -146,34 +144,4 @@ fn baked(mesh: &TriangleMesh, place: &Affine) -> TriangleMesh {
         normals: mesh.normals.as_ref().map(|normals| normals.iter().map(normal).collect()),
         ..mesh.clone()
     }
-}
-
-/// Adds points in their place; those without an attribute that others have get what says the least.
-fn add_points(all: &mut Columns, points: &PointSet<3>, place: &Affine) {
-    let before = all.values[0].len();
-    let scale = place.determinant().abs().cbrt();
-    let mut extend = |attribute: Attribute, values: Option<Vec<f64>>, otherwise: f64| {
-        let list = &mut all.values[attribute.index()];
-        let Some(values) = values else {
-            if !list.is_empty() {
-                list.resize(before + points.len(), otherwise);
-            }
-            return;
-        };
-        list.resize(before, otherwise);
-        list.extend(values);
-    };
-    let positions: Vec<Vector<3>> = points.positions.iter().map(|p| place.apply(*p)).collect();
-    let normals: Option<Vec<_>> = points.normals.as_ref().map(|n| n.iter().map(|n| place.linear.apply(*n)).collect());
-    let whole = |list: &Option<Vec<i32>>| list.as_ref().map(|list| list.iter().map(|v| f64::from(*v)).collect());
-    for k in 0..3 {
-        extend(Attribute::Position(k), Some(positions.iter().map(|p| p[k]).collect()), 0.0);
-        extend(Attribute::Normal(k), normals.as_ref().map(|n| n.iter().map(|n| n[k]).collect()), 0.0);
-        let colours = points.colours.as_ref();
-        extend(Attribute::Colour(k), colours.map(|c| c.iter().map(|c| srgb(c[k])).collect()), 1.0);
-    }
-    extend(Attribute::Radius, points.radii.as_ref().map(|r| r.iter().map(|r| r * scale).collect()), 1.0);
-    extend(Attribute::Group, whole(&points.groups), 0.0);
-    extend(Attribute::Element, whole(&points.elements), f64::from(PointSet::<3>::CONTINUOUS));
-    all.full = Some(1.0);
 }

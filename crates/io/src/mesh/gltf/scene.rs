@@ -72,6 +72,11 @@ impl Scene {
         scene
     }
 
+    /// Where a mesh stands.
+    pub fn places(&self, mesh: usize) -> Vec<Similarity<3>> {
+        self.nodes.iter().filter(|node| node.mesh == mesh).map(|node| node.transform).collect()
+    }
+
     /// Number of triangles, each mesh as often as it stands somewhere.
     pub fn triangles(&self) -> usize {
         self.nodes.iter().map(|node| self.meshes[node.mesh].mesh.triangles.len()).sum()

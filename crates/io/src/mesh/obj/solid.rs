@@ -157,4 +157,13 @@ mod tests {
         let text = write_mesh(&mesh, None, &Budget::default()).unwrap();
         assert!(text.contains("o a f 1 1 1\n"), "{text}");
     }
+
+    #[test]
+    fn quotes_in_names_do_not_hide_the_recipe() {
+        let mut mesh = mesh();
+        mesh.parts[0].name = "a 3\" pipe".into();
+        let text = write_mesh(&mesh, Some("seed = 1\n"), &Budget::default()).unwrap();
+        assert_eq!(recipe_of(&text).as_deref(), Some("seed = 1\n"));
+        assert_eq!(crate::geometry::recipe_of(text.as_bytes()), recipe_of(&text));
+    }
 }

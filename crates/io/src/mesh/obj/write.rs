@@ -68,7 +68,7 @@ impl Vertices {
     }
 }
 
-/// The recipe in the comments of a file that [`write_curves`] wrote.
+/// The recipe in the comments of an OBJ file that this library wrote. Quotes in it are letters like any other.
 pub fn recipe_of(text: &str) -> Option<String> {
-    records::recipe_of(text)
+    records::recipe_behind(text, |line| line == records::RECIPE_MARK)
 }

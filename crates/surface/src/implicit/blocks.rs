@@ -142,7 +142,7 @@ pub(crate) struct Field {
 
 impl Field {
     /// A field with nodes from `evaluate`, which is given a block's number, its nodes, and their colours, if any.
-    pub(super) fn new(
+    pub(crate) fn new(
         blocks: Blocks,
         elsewhere: Node,
         has_colours: bool,

@@ -4,6 +4,8 @@ mod blocks;
 mod metaballs;
 mod rimls;
 
+#[cfg(test)]
+pub(crate) use blocks::Blocks;
 pub(crate) use blocks::{BLOCK, Field, Node, SIDE};
 pub(crate) use metaballs::{Balls, metaballs};
 pub(crate) use rimls::{Kernel, Oriented, border_offset, rimls};

@@ -24,8 +24,16 @@ pub(crate) struct Oriented<'a> {
     pub(crate) radii: &'a [f64],
 }
 
+/// Nodes are told by a point that is so near, in radii: beyond corners there may be none that has a weight, and the plane of the nearest one counts.
+const VALID: f32 = 1.2;
+/// How far points of other sides are asked, in radii: farther, so that no side goes on beyond its edge where the other one is just out of reach.
+const REACH: f32 = 1.6;
 /// Cosine to the nearest point's normal below which points face another side.
-const OTHER: f32 = 0.0;
+const OTHER: f32 = 0.4;
+/// Cosine to a side's normal from which points have a say on it.
+const SAME: f32 = 0.2;
+/// Most sides that are asked at one place.
+const SIDES: usize = 3;
 
 /// How points are weighed.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +59,8 @@ struct Sample {
 
 /// The field of points with normals, with nodes at distances of `cell`.
 pub(crate) fn rimls(points: &Oriented<'_>, kernel: Kernel, cell: f64, budget: &Budget) -> Result<Field> {
-    let blocks = Blocks::new(points.positions, points.radii, cell, budget)?;
+    let reaches: Vec<f64> = points.radii.iter().map(|r| r * f64::from(REACH)).collect();
+    let blocks = Blocks::new(points.positions, &reaches, cell, budget)?;
     let evaluate = |blocks: &Blocks, block: usize, nodes: &mut [Node], colours: &mut [[f32; 3]]| {
         let corner = blocks.corner(block);
         let numbers = blocks.balls(block);
@@ -79,7 +88,7 @@ pub(crate) fn rimls(points: &Oriented<'_>, kernel: Kernel, cell: f64, budget: &B
             near.clear();
             for (s, sample) in samples.iter().enumerate() {
                 let q = dot2(minus(at, sample.at)) * sample.inverse2;
-                if q < 1.0 {
+                if q < REACH * REACH {
                     near.push((s as u32, 1.0 - q));
                 }
             }
@@ -96,9 +105,9 @@ pub(crate) fn rimls(points: &Oriented<'_>, kernel: Kernel, cell: f64, budget: &B
 
 /// For each node of a block the sample that is nearest, by radii, among those that reach it.
 fn nearest_samples(samples: &[Sample]) -> Vec<Option<u32>> {
-    let mut best = vec![(1.0_f32, None); BLOCK];
+    let mut best = vec![(VALID * VALID, None); BLOCK];
     for (s, sample) in samples.iter().enumerate() {
-        let [x, y, z] = reached(Vector(sample.at.map(f64::from)), f64::from(sample.radius));
+        let [x, y, z] = reached(Vector(sample.at.map(f64::from)), f64::from(VALID * sample.radius));
         for k in z.0..z.1 {
             for j in y.0..y.1 {
                 for i in x.0..x.1 {
@@ -114,32 +123,46 @@ fn nearest_samples(samples: &[Sample]) -> Vec<Option<u32>> {
     best.into_iter().map(|(_, s)| s).collect()
 }
 
-/// What the points around a node say. `near` has the samples that reach it with 1 - |x - p|² / h² each, `first` is the normal of the nearest one.
+/// What the points around a node say. `near` has the samples that reach it with 1 - |x - p|² / h² each, below 0 for those that have no weight, `first` is the normal of the nearest one.
 ///
 /// Where others face another side they are asked by themselves. Two surfaces that turn their backs on one another have something between them, and outside of it is what is outside of either;
 /// two that face one another have a gap or a groove between them, and outside is what is outside of both.
 fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], first: [f32; 3], kernel: Kernel) -> Node {
-    let nearest = |faces: &dyn Fn([f32; 3]) -> bool| {
-        let facing = near.iter().filter(|(s, _)| faces(samples[*s as usize].normal));
-        facing.fold(None, |best: Option<(u32, f32)>, &n| if best.is_none_or(|b| n.1 > b.1) { Some(n) } else { best })
-    };
-    let ask =
-        |sample: &Sample| rounds(at, samples, near, dot(sample.normal, minus(at, sample.at)), sample.normal, kernel);
-    let Some((own, _)) = nearest(&|n| n == first) else { return Node::UNKNOWN };
-    let node = ask(&samples[own as usize]);
-    let Some((other, _)) = nearest(&|n| dot(n, first) < OTHER).filter(|_| kernel.rounds > 0) else { return node };
-    let normal = samples[other as usize].normal;
-    let second = ask(&samples[other as usize]);
-    let way = minus(middle(samples, near, normal), middle(samples, near, first));
-    let is_gap = dot(way, minus(first, normal)) > 0.0;
-    if (second.value < node.value) == is_gap { Node { beyond: node.beyond, ..second } } else { node }
+    // The sides that were asked: no more than three meet in most corners.
+    let (mut sides, mut count) = ([first; SIDES], 0);
+    let mut node = Node::UNKNOWN;
+    while count < SIDES {
+        let asked = &sides[..count];
+        let is_new = |n: [f32; 3]| if count == 0 { n == first } else { asked.iter().all(|side| dot(*side, n) < OTHER) };
+        let facing = near.iter().filter(|(s, _)| is_new(samples[*s as usize].normal));
+        let nearest = facing
+            .fold(None, |best: Option<(u32, f32)>, &n| if best.is_none_or(|b| n.1 > b.1) { Some(n) } else { best });
+        let Some((own, _)) = nearest else { break };
+        let own = &samples[own as usize];
+        let said = rounds(at, samples, near, dot(own.normal, minus(at, own.at)), own.normal, kernel);
+        if count == 0 {
+            node = said;
+            if kernel.rounds == 0 {
+                break;
+            }
+        } else {
+            let way = minus(middle(samples, near, own.normal), middle(samples, near, first));
+            let is_gap = dot(way, minus(first, own.normal)) > 0.0;
+            if (said.value < node.value) == is_gap {
+                node = Node { beyond: node.beyond, ..said };
+            }
+        }
+        sides[count] = own.normal;
+        count += 1;
+    }
+    node
 }
 
 /// Where the samples lie that face a side, in the mean.
 fn middle(samples: &[Sample], near: &[(u32, f32)], side: [f32; 3]) -> [f32; 3] {
     let (mut sum, mut place) = (0.0_f32, [0.0_f32; 3]);
     for (sample, inner) in near.iter().map(|&(s, inner)| (&samples[s as usize], inner)) {
-        let weight = if dot(sample.normal, side) > 0.3 { inner * inner } else { 0.0 };
+        let weight = if dot(sample.normal, side) > 0.3 { (inner + REACH * REACH - 1.0).powi(2) } else { 0.0 };
         sum += weight;
         (0..3).for_each(|k| place[k] += weight * sample.at[k]);
     }
@@ -159,12 +182,15 @@ fn rounds(
     for round in 0..=kernel.rounds {
         let (mut sum, mut sum_f) = (0.0_f32, 0.0_f32);
         let (mut sum_n, mut sum_g, mut sum_gf) = ([0.0_f32; 3], [0.0_f32; 3], [0.0_f32; 3]);
-        for &(s, inner) in near {
+        for &(s, inner) in near.iter().filter(|(_, inner)| *inner > 0.0) {
             let sample = &samples[s as usize];
             let d = minus(at, sample.at);
             let own = dot(sample.normal, d);
             let mut alike = 1.0;
             if kernel.rounds > 0 {
+                if dot(sample.normal, normal) < SAME {
+                    continue;
+                }
                 let mut unlike = dot2(minus(sample.normal, g)) / (kernel.sharpness * kernel.sharpness);
                 if round > 0 {
                     let off = (own - f) / (kernel.residual * sample.radius);
@@ -199,13 +225,16 @@ fn rounds(
 /// How far the place is from the middle of the points around, along the surface: 1 at their border [Adamson 2004].
 fn beyond(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], g: [f32; 3], kernel: Kernel) -> f32 {
     let (mut sum, mut offset, mut radius) = (0.0_f32, [0.0_f32; 3], 0.0_f32);
-    for &(s, inner) in near {
+    for &(s, inner) in near.iter().filter(|(_, inner)| *inner > 0.0) {
         let sample = &samples[s as usize];
         let weight = inner * inner * inner * inner;
         let d = minus(at, sample.at);
         sum += weight;
         radius += weight * sample.radius;
         (0..3).for_each(|k| offset[k] += weight * d[k]);
+    }
+    if !(sum > 0.0) {
+        return f32::INFINITY;
     }
     let off = offset.map(|c| c / sum);
     let up = dot(off, g) / dot2(g).max(1e-12);
@@ -217,7 +246,8 @@ fn beyond(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], g: [f32; 3], ke
 fn mean_colour(near: &[(u32, f32)], colour: impl Fn(u32) -> [f64; 3]) -> [f32; 3] {
     let (mut sum, mut mean) = (0.0, [0.0; 3]);
     for &(s, inner) in near {
-        let weight = f64::from(inner).powi(4);
+        // Where nothing is nearer, all that can be asked counts.
+        let weight = f64::from(inner.max(0.02)).powi(4);
         sum += weight;
         colour(s).iter().enumerate().for_each(|(k, c)| mean[k] += weight * c);
     }

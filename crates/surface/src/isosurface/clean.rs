@@ -4,8 +4,8 @@ use arabesque_core::DisjointSets;
 
 use super::patch::Patch;
 
-/// Drops parts that hang together and are smaller than `least` in area, but never all; answers how many.
-pub(crate) fn crumbs(patch: &mut Patch, least: f64) -> usize {
+/// Drops parts that hang together and are smaller than `least` in area, but never all; answers how many, and their share of the area.
+pub(crate) fn crumbs(patch: &mut Patch, least: f64) -> (usize, f64) {
     let mut sets = DisjointSets::new(patch.vertices.len());
     for t in &patch.triangles {
         sets.join(t[0] as usize, t[1] as usize);
@@ -18,12 +18,13 @@ pub(crate) fn crumbs(patch: &mut Patch, least: f64) -> usize {
     }
     let largest = areas.iter().copied().fold(0.0, f64::max);
     let least = least.min(largest);
-    let dropped = areas.iter().filter(|&&area| area > 0.0 && area < least).count();
+    let small = || areas.iter().filter(|&&area| area > 0.0 && area < least);
+    let (dropped, share) = (small().count(), small().sum::<f64>() / areas.iter().sum::<f64>().max(f64::MIN_POSITIVE));
     if dropped > 0 {
         patch.triangles.retain(|t| areas[sets.of(t[0] as usize)] >= least);
         *patch = std::mem::take(patch).compact();
     }
-    dropped
+    (dropped, share)
 }
 
 /// Gives each fan of triangles a vertex of its own, where several fans meet in one vertex.

@@ -17,6 +17,8 @@ pub(super) struct Notes {
     pub(super) contradictions: f64,
     /// Points that lie alone and were left out.
     pub(super) outliers: usize,
+    /// Points inside of a solid that others surround, left out.
+    pub(super) buried: usize,
     /// Parts with too few points, by name.
     pub(super) too_few: Vec<String>,
     /// Parts without any surface, by name.
@@ -72,6 +74,11 @@ impl Notes {
             self.outliers > 0,
             format!("{} far from the others left out", many(self.outliers, "point was", "points were")),
             "remove them from the points, or set a larger kernel to keep them",
+        );
+        tell(
+            self.buried > 0,
+            format!("{} inside of what the others surround left out", many(self.buried, "point was", "points were")),
+            "give things that pass through one another groups of their own to keep them apart",
         );
         let list = |names: &[String]| match names {
             [a, b, c, _, ..] => format!("{a}, {b}, {c} and {} more", names.len() - 3),

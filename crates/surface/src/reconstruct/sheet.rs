@@ -21,6 +21,8 @@ const CELL_OF_BALLS: f64 = 0.4;
 const CONTRARY: f64 = 0.2;
 /// Pieces of surface smaller than so many squares of the spacing are crumbs.
 const CRUMB: f64 = 3.0;
+/// Crumbs are told where they are a larger share of the surface.
+const WORTH: f64 = 0.02;
 
 /// What is asked for, with what goes for all parts.
 pub(super) struct Job<'a> {
@@ -75,7 +77,9 @@ impl Job<'_> {
             let values: Vec<f32> = trim.signed_distances(&places, self.budget)?.iter().map(|d| -d as f32).collect();
             patch = cut(patch, &values);
         }
-        notes.crumbs += crumbs(&mut patch, CRUMB * grain * grain);
+        let (dropped, share) = crumbs(&mut patch, CRUMB * grain * grain);
+        // What is left of grooves and of borders is not worth a word.
+        notes.crumbs += if share > WORTH { dropped } else { 0 };
         pinches(&mut patch);
         Ok(patch)
     }
@@ -157,6 +161,7 @@ impl Job<'_> {
         let bare = |mut sheet: Vec<usize>| -> Result<Vec<usize>> {
             sheet.retain(|i| left_out.binary_search(i).is_err());
             let hidden = buried(&points.positions, &normals, &spacing, &sheet, self.budget)?;
+            notes.buried += hidden.len();
             sheet.retain(|i| hidden.binary_search(i).is_err());
             Ok(sheet)
         };

@@ -223,7 +223,9 @@ where
             meter.spend(self.library.within(place, reach, |e, _| found.push(e)))?;
         }
         let base = self.page.inks.len() as u32;
-        found.retain(|&e| e < base && self.library.copyable[e]);
+        // What is joined to strokes does not stand by itself.
+        let is_loose = |e: u32| self.natural.clear(self.library.class[e]).is_some();
+        found.retain(|&e| e < base && self.library.copyable[e] && is_loose(e));
         found.sort_unstable();
         let mut counted: Vec<(usize, u32)> = found.chunk_by(|a, b| a == b).map(|run| (run.len(), run[0])).collect();
         counted.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));

@@ -77,3 +77,55 @@ impl<const D: usize> Strokes<D> {
 fn between<const D: usize>(p: Vector<D>, offset: Vector<D>) -> impl Iterator<Item = Vector<D>> {
     (1..PLACES).map(move |k| p + offset * (f64::from(k) / f64::from(PLACES)))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use arabesque_core::{Budget, Matrix};
+
+    use super::*;
+    use crate::evenness::{
+        natural::Natural,
+        tests::{sampled, squares},
+    };
+
+    /// Lines from side to side at some heights, ten units apart, half a unit to each side.
+    fn lines(height: f64) -> Strokes<2> {
+        let places =
+            (0..12).flat_map(|row| (0..240).map(move |k| (f64::from(k) * 0.5, height + 10.0 * f64::from(row))));
+        let places = places.map(|(x, y)| (Vector::xy(x, y), 0.5)).collect();
+        Strokes::new(places, 10.0, &Domain::Box(squares().window))
+    }
+
+    fn natural(strokes: Strokes<2>) -> Natural {
+        let exemplar = squares();
+        let library = sampled(&exemplar).library;
+        let inks = Inks::new(&exemplar, &library, 144, 10.0, &Budget::default()).unwrap();
+        Natural::new(&exemplar, &library, &inks, strokes, &Budget::default()).unwrap().unwrap()
+    }
+
+    #[test]
+    fn the_gap_is_from_outline_to_the_rim_of_the_stroke() {
+        let exemplar = squares();
+        let inks = Inks::new(&exemplar, &sampled(&exemplar).library, 144, 10.0, &Budget::default()).unwrap();
+        let pose = |y: f64| Pose { source: 0, centre: Vector::xy(60.0, y), rotation: Matrix::identity(), scale: 1.0 };
+        let strokes = lines(0.0);
+        assert!((strokes.gap(&inks, &pose(35.0), 4.0) - 2.5).abs() < 0.1);
+        assert!((strokes.gap(&inks, &pose(33.5), 4.0) - 1.0).abs() < 0.1);
+        assert!(strokes.gap(&inks, &pose(31.0), 4.0) < 0.0);
+        assert_eq!(strokes.gap(&inks, &pose(35.0), 2.0), 2.0);
+    }
+
+    #[test]
+    fn what_stands_between_strokes_keeps_clear_of_them() {
+        // Squares of 4 that are up to 0.6 off the middle between lines of 1.
+        let clear = natural(lines(0.0)).clear(0).unwrap();
+        assert!((1.8..2.3).contains(&clear), "{clear}");
+    }
+
+    #[test]
+    fn what_touches_strokes_is_joined_to_them() {
+        assert!(natural(lines(7.2)).clear(0).is_none());
+    }
+}

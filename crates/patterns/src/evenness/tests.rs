@@ -58,11 +58,11 @@ fn grid(count: u32, seed: u64) -> Vec<(f64, f64)> {
     cells.map(|(x, y)| (10.0 * x + 5.0 + off(), 10.0 * y + 5.0 + off())).collect()
 }
 
-fn squares() -> Arc<Exemplar<2>> {
+pub(super) fn squares() -> Arc<Exemplar<2>> {
     drawing(grid(12, 1).into_iter().map(|p| square(0, p, 4.0)).collect(), 120.0)
 }
 
-fn sampled<const D: usize>(exemplar: &Arc<Exemplar<D>>) -> LevelExemplar<D> {
+pub(super) fn sampled<const D: usize>(exemplar: &Arc<Exemplar<D>>) -> LevelExemplar<D> {
     let params = Params { levels: 1, ..Params::default() };
     level_exemplars(exemplar, None, &params, &Budget::default()).unwrap().remove(0)
 }

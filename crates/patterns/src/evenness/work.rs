@@ -4,6 +4,8 @@
 //! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square;
 //! and so do places where there is more or less ink around than usual. Lengths are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
 
+use std::cmp::Ordering;
+
 use arabesque_core::{Budget, Meter, Numbered, Result, Vector};
 
 use crate::{
@@ -150,6 +152,12 @@ impl<'a, const D: usize> Work<'a, D> {
                 held.push(Held { place, without, tolerated, weight, alone });
             }
         });
+        if step > 0.0 {
+            // What costs most first: then prices reach their limit soon.
+            held.sort_unstable_by(|a, b| {
+                b.alone.total_cmp(&a.alone).then_with(|| a.place.0.partial_cmp(&b.place.0).unwrap_or(Ordering::Equal))
+            });
+        }
         let scale = page.spacing_scale(centre);
         let widest = self.natural.widest.max(0.0) * scale;
         let neighbours = page.neighbours(centre, radius + step + widest, body);

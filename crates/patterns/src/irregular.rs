@@ -84,10 +84,12 @@ where
             Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
             None => None,
         };
-        // What lies between strokes lies where they want it, which their neighbourhoods say.
-        let is_wanted = params.even == Switch::On && params.deform == Deform::Rigid && skeleton.is_none();
+        let is_wanted = params.even == Switch::On && params.deform == Deform::Rigid;
         let evenness = match levels.last().filter(|_| is_wanted) {
-            Some(s) => Evenness::new(&s.exemplar, &s.library, s.level.base as usize, budget)?,
+            Some(s) => {
+                let net = s.level.net.as_deref();
+                Evenness::new(&s.exemplar, &s.library, net, s.level.base as usize, budget)?
+            }
             None => None,
         };
         Ok(Self { exemplar: Arc::clone(exemplar), clearance, dissimilarity, levels, evenness, params: params.clone() })

@@ -17,6 +17,7 @@ mod natural;
 mod page;
 mod rounds;
 mod share;
+mod strokes;
 #[cfg(test)]
 mod tests;
 mod work;
@@ -32,9 +33,10 @@ use crate::{
         natural::Natural,
         page::{Body, Measures, Page},
         share::{Shares, Spread},
+        strokes::Strokes,
         work::{Moves, Work},
     },
-    exemplar::library::Library,
+    exemplar::{graph::net::Net, library::Library},
     output::{
         draft::{Item, Items},
         state::State,
@@ -68,6 +70,7 @@ where
     pub(crate) fn new(
         exemplar: &Exemplar<D>,
         library: &Library<D>,
+        net: Option<&Net<D>>,
         count: usize,
         budget: &Budget,
     ) -> Result<Option<Self>> {
@@ -75,7 +78,7 @@ where
             return Ok(None);
         }
         let inks = Arc::new(Inks::new(exemplar, library, count, library.spacing, budget)?);
-        let natural = Natural::new(exemplar, library, &inks, budget)?;
+        let natural = Natural::new(exemplar, library, &inks, Strokes::of_exemplar(net, library, count), budget)?;
         let mass = masses(exemplar, count);
         let spread = Spread::new(library, mass, budget)?;
         Ok(natural.filter(|n| n.tolerated > 0.0).map(|natural| Self { inks, natural, spread }))
@@ -98,7 +101,7 @@ where
         let base = state.level.base;
         let is_element = |&i: &u32| state.item(i).alive && state.item(i).item.source < base;
         let numbers: Vec<u32> = state.items().numbers().filter(is_element).collect();
-        let bodies: Vec<_> = numbers.iter().map(|&i| body(state, i)).collect();
+        let bodies: Vec<_> = numbers.iter().map(|&i| self.body(state, i)).collect();
         let shares = self.shares(state, &bodies, moves, &budget)?;
         let page = self.page(state, bodies, &budget)?;
         let targets = wanted(state.library, page.room(self.natural.tolerated), targets);
@@ -112,13 +115,21 @@ where
         Ok((Evened { numbers, bodies: work.page.bodies }, ended))
     }
 
+    /// Item `i` as a body. What is joined to strokes stays with them.
+    fn body(&self, state: &State<'_, D>, i: u32) -> Body<D> {
+        let (item, pose) = (&state.item(i).item, state.pose(i));
+        let pose = Pose { source: item.source, centre: item.position, rotation: pose.rotation, scale: pose.scale };
+        let is_joined = self.natural.clear(state.library.class[item.source]).is_none();
+        Body { pose, fixed: item.frozen.is_some() || is_joined, alive: true }
+    }
+
     fn page<'s>(&'s self, state: &State<'s, D>, bodies: Vec<Body<D>>, budget: &Budget) -> Result<Page<'s, D>> {
         let measures = Measures {
             spacing: state.library.spacing,
             tolerated: self.natural.tolerated,
             reach: REACH * self.natural.tolerated * state.extent.largest_spacing_scale,
         };
-        Page::new(state.extent, &self.inks, bodies, measures, &strokes(state), budget)
+        Page::new(state.extent, &self.inks, bodies, measures, Strokes::of_page(state), budget)
     }
 
     fn shares<'s>(
@@ -175,13 +186,6 @@ fn new_item<const D: usize>(body: &Body<D>) -> Item<D> {
     Item { source: body.pose.source, position: body.pose.centre, frozen: None }
 }
 
-/// Item `i` as a body.
-fn body<const D: usize>(state: &State<'_, D>, i: u32) -> Body<D> {
-    let (item, pose) = (&state.item(i).item, state.pose(i));
-    let pose = Pose { source: item.source, centre: item.position, rotation: pose.rotation, scale: pose.scale };
-    Body { pose, fixed: item.frozen.is_some(), alive: true }
-}
-
 /// Bodies as the items that they would be.
 fn items<const D: usize>(state: &State<'_, D>, numbers: &[u32], bodies: &[Body<D>]) -> Items<D> {
     let item = |(k, body): (usize, &Body<D>)| {
@@ -190,22 +194,6 @@ fn items<const D: usize>(state: &State<'_, D>, numbers: &[u32], bodies: &[Body<D
         (Item { frozen: live.item.frozen, ..new_item(body) }, turn)
     };
     bodies.iter().enumerate().filter(|(_, body)| body.alive).map(item).collect()
-}
-
-/// Ink of the strokes: places along them, and half their width.
-fn strokes<const D: usize>(state: &State<'_, D>) -> Vec<(Vector<D>, f64)> {
-    let mut places = Vec::new();
-    for &s in state.living() {
-        let Some(_) = state.node(s) else { continue };
-        let radius = state.library.radius[state.source(s)];
-        let (p, links) = (state.sample(s).position, state.links_of(s));
-        places.push((p, radius));
-        for &o in links.iter().filter(|&&o| o > s) {
-            let offset = state.offset(s, o);
-            places.extend((1..4).map(|k| (p + offset * (0.25 * f64::from(k)), radius)));
-        }
-    }
-    places
 }
 
 /// Ink of the first elements of an exemplar; the same for each where none has any.

@@ -98,7 +98,7 @@ where
             return Ok(0.0);
         }
         let start = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
-        let (pose, price) = self.descend(&scene, body.pose, start, far, meter)?;
+        let (pose, price) = self.descend(&scene, (start, body.pose), (far, f64::INFINITY), meter)?;
         if start - price < WORTH {
             return Ok(0.0);
         }
@@ -106,21 +106,22 @@ where
         Ok(start - price)
     }
 
-    /// The cheapest pose that steps lead to, shorter ones where none helps any more.
+    /// The cheapest pose that steps lead to, none longer than `far`; it is given up where it is sure enough not to become cheaper than
+    /// `goal`.
     fn descend(
         &self,
         scene: &Scene<D>,
-        mut pose: Pose<D>,
-        mut price: f64,
-        far: f64,
+        (mut price, mut pose): (f64, Pose<D>),
+        (far, goal): (f64, f64),
         meter: &mut Meter<'_>,
     ) -> Result<(Pose<D>, f64)> {
         let turn = self.turn(&pose);
-        let start = pose.centre;
+        let (first, start) = (price, pose.centre);
         let mut leading = Vector::ZERO;
-        for step in STEPS {
+        for (n, step) in STEPS.into_iter().enumerate() {
             let step = step * far;
-            if price < WORTH {
+            // As much again as was gained so far is not to be expected of what is left.
+            if price < WORTH || (n > 1 && price - goal > first - price) {
                 break;
             }
             let mut left = TURNS;
@@ -223,7 +224,9 @@ where
             meter.spend(self.library.within(place, reach, |e, _| found.push(e)))?;
         }
         let base = self.page.inks.len() as u32;
-        found.retain(|&e| e < base && self.library.copyable[e]);
+        // What is joined to strokes does not stand by itself.
+        let is_loose = |e: u32| self.natural.clear(self.library.class[e]).is_some();
+        found.retain(|&e| e < base && self.library.copyable[e] && is_loose(e));
         found.sort_unstable();
         let mut counted: Vec<(usize, u32)> = found.chunk_by(|a, b| a == b).map(|run| (run.len(), run[0])).collect();
         counted.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -247,7 +250,7 @@ where
         let sorted = self.priced(&scene, &wanted, p, before + HOPELESS)?;
         let rate = |(start, pose): &(f64, Pose<D>)| {
             let mut meter = self.budget.meter();
-            let (pose, price) = self.descend(&scene, *pose, *start, far, &mut meter)?;
+            let (pose, price) = self.descend(&scene, (*start, *pose), (far, before + CROWDED), &mut meter)?;
             if !self.admits(&pose) {
                 return Ok(None);
             }
@@ -336,7 +339,7 @@ where
         let rated = self.priced(&scene, &others, body.pose.centre, now + HOPELESS)?;
         let better = |(start, pose): &(f64, Pose<D>)| {
             let mut meter = self.budget.meter();
-            let (pose, price) = self.descend(&scene, *pose, *start, far, &mut meter)?;
+            let (pose, price) = self.descend(&scene, (*start, *pose), (far, now), &mut meter)?;
             if now - price <= WORTH || !self.admits(&pose) {
                 return Ok(None);
             }

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Matrix, Result, Vector};
+use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Matrix, Numbered, Result, Vector};
 use rayon::prelude::*;
 
 use crate::{
     dimension::Dimension,
-    evenness::ink::{Inks, Pose},
+    evenness::{
+        ink::{Inks, Pose},
+        strokes::Strokes,
+    },
     exemplar::library::Library,
 };
 
@@ -41,6 +44,11 @@ const ANYWHERE: f64 = 0.1;
 /// So many pairs tell how near two kinds come.
 const MANY: usize = 8;
 
+/// Kinds of which more than this share touches strokes are joined to them, such as leaves to their twigs; and how near that is, in mean
+/// spacings.
+const JOINED: f64 = 0.1;
+const TOUCHING: f64 = 0.02;
+
 /// Nanoseconds for a distance that is looked up, and for a pair of elements.
 const PRICE: (u64, u64) = (10, 1500);
 
@@ -57,10 +65,14 @@ pub(crate) struct Natural {
     otherwise: f64,
     /// Largest of these gaps.
     pub(crate) widest: f64,
+    /// How near elements of each kind come to strokes; `None` for those that are joined to them.
+    clear: Numbered<Option<f64>>,
+    /// Largest of these.
+    pub(crate) clearest: f64,
 }
 
 impl Natural {
-    /// Measures an exemplar. `None` where too little is seen of it.
+    /// Measures an exemplar with `strokes`. `None` where too little is seen of it.
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
@@ -68,12 +80,13 @@ impl Natural {
         exemplar: &Exemplar<D>,
         library: &Library<D>,
         inks: &Inks<D>,
+        strokes: Strokes<D>,
         budget: &Budget,
     ) -> Result<Option<Self>>
     where
         Vector<D>: Dimension<D>,
     {
-        let shown = Shown::new(exemplar, library, inks);
+        let shown = Shown::new(exemplar, library, inks, strokes);
         let mut distances = shown.distances(budget)?;
         if distances.len() < 16 {
             return Ok(None);
@@ -88,7 +101,14 @@ impl Natural {
         let kinds = if library.classes() <= TABLE { library.classes() } else { 0 };
         let narrowest = narrowest(&gaps, kinds, otherwise, tolerated);
         let widest = narrowest.iter().map(|&gap| f64::from(gap)).fold(otherwise, f64::max);
-        Ok(Some(Self { tolerated, narrowest, kinds, otherwise, widest }))
+        let clear = shown.clear(tolerated);
+        let clearest = clear.iter().flatten().fold(0.0, |most: f64, gap| most.max(*gap));
+        Ok(Some(Self { tolerated, narrowest, kinds, otherwise, widest, clear, clearest }))
+    }
+
+    /// How near elements of a kind come to strokes; `None` for those that are joined to them.
+    pub(crate) fn clear(&self, kind: u32) -> Option<f64> {
+        self.clear[kind]
     }
 
     /// Narrowest gap between elements of two kinds, the second at `offset` from the first in exemplar directions.
@@ -171,18 +191,17 @@ struct Shown<'a, const D: usize> {
     poses: Vec<Pose<D>>,
     index: GridIndex<D>,
     largest: f64,
-    strokes: Vec<(Vector<D>, f64)>,
+    strokes: Strokes<D>,
 }
 
 impl<'a, const D: usize> Shown<'a, D> {
-    fn new(exemplar: &Exemplar<D>, library: &'a Library<D>, inks: &'a Inks<D>) -> Self {
+    fn new(exemplar: &Exemplar<D>, library: &'a Library<D>, inks: &'a Inks<D>, strokes: Strokes<D>) -> Self {
         let pose =
             |e: usize| Pose { source: e as u32, centre: library.centre[e], rotation: Matrix::identity(), scale: 1.0 };
         let poses: Vec<_> = (0..inks.len()).map(pose).collect();
         let centres: Vec<_> = poses.iter().map(|p| p.centre).collect();
         let largest = poses.iter().map(|p| inks.radius(p)).fold(0.0, f64::max).min(library.reach.max(library.spacing));
         let index = GridIndex::new(&centres, library.spacing, &Domain::Box(exemplar.window));
-        let strokes = (inks.len()..library.len()).map(|e| (library.centre[e], library.radius[e])).collect();
         Self { library, inks, poses, index, largest, strokes }
     }
 
@@ -199,8 +218,6 @@ impl<'a, const D: usize> Shown<'a, D> {
         // Beyond the frame nothing is known: what is near it may be near ink outside.
         let margin = self.library.spacing.min(MARGIN * self.library.view.side());
         let places: Vec<_> = (0..counts.iter().product()).map(|c| window.cell_centre(c, &counts)).collect();
-        let strokes: Vec<_> = self.strokes.iter().map(|s| s.0).collect();
-        let strokes = GridIndex::new(&strokes, self.library.spacing, &Domain::Box(window));
         let distance = |&p: &Vector<D>| {
             if self.library.view.signed_distance(p) < margin {
                 return Ok(None);
@@ -212,15 +229,26 @@ impl<'a, const D: usize> Shown<'a, D> {
                     nearest = nearest.min(self.inks.distance(&self.poses[e], -offset));
                 }
             });
-            let widest = self.strokes.iter().map(|s| s.1).fold(0.0, f64::max);
-            strokes.within(p, nearest.max(0.0) + widest, |s, offset| {
-                nearest = nearest.min(offset.norm() - self.strokes[s].1);
-            });
+            self.strokes.near(p, nearest.max(0.0), |offset, radius| nearest = nearest.min(offset.norm() - radius));
             budget.spend(PRICE.0 * (4 + looked))?;
             Ok(Some(nearest.max(0.0)))
         };
         let found: Vec<Option<f64>> = places.par_iter().map(distance).collect::<Result<_>>()?;
         Ok(found.into_iter().flatten().collect())
+    }
+
+    /// For each kind, how near its elements come to strokes; no farther than what is tolerated.
+    fn clear(&self, tolerated: f64) -> Numbered<Option<f64>> {
+        let mut gaps = Numbered::filled(Vec::new(), self.library.classes());
+        for pose in self.poses.iter().filter(|pose| self.library.view.contains(pose.centre)) {
+            gaps[self.library.class[pose.source]].push(self.strokes.gap(self.inks, pose, tolerated));
+        }
+        let clear = |mut gaps: Vec<f64>| {
+            gaps.sort_by(f64::total_cmp);
+            let is_joined = low(&gaps, JOINED).is_some_and(|gap| gap <= TOUCHING * self.library.spacing);
+            (!is_joined).then(|| low(&gaps, NARROWEST).unwrap_or(0.0))
+        };
+        gaps.into_iter().map(clear).collect()
     }
 
     /// Gaps between neighbouring elements.

@@ -8,7 +8,10 @@ use arabesque_core::{Budget, Domain, Held, Lattice, Matrix, Meter, Request, Resu
 use crate::{
     border::Extent,
     dimension::Dimension,
-    evenness::ink::{Inks, Pose},
+    evenness::{
+        ink::{Inks, Pose},
+        strokes::Strokes,
+    },
 };
 
 /// Cells to a mean spacing, in the plane and in space, and most cells of a page.
@@ -74,6 +77,7 @@ pub(crate) struct Page<'a, const D: usize> {
     pub(crate) request: &'a Request<D>,
     pub(crate) inks: &'a Inks<D>,
     pub(crate) bodies: Vec<Body<D>>,
+    pub(crate) strokes: Strokes<D>,
     pub(crate) cells: Vec<Cell>,
     pub(crate) lattice: Lattice<D>,
     /// For each part of the page, the elements that are nearer to a place in it than the reach.
@@ -103,7 +107,7 @@ where
         inks: &'a Inks<D>,
         bodies: Vec<Body<D>>,
         measures: Measures,
-        strokes: &[(Vector<D>, f64)],
+        strokes: Strokes<D>,
         budget: &Budget,
     ) -> Result<Self> {
         let request = extent.request();
@@ -129,6 +133,7 @@ where
             request,
             inks,
             bodies,
+            strokes,
             cells,
             lattice,
             lists,
@@ -139,8 +144,8 @@ where
             reach,
             _held: held,
         };
-        for &(place, radius) in strokes {
-            page.draw(place, radius, &mut meter)?;
+        for k in 0..page.strokes.places.len() {
+            page.draw(page.strokes.places[k], &mut meter)?;
         }
         for b in 0..page.bodies.len() as u32 {
             if page.bodies[b as usize].alive {
@@ -211,7 +216,7 @@ impl<const D: usize> Page<'_, D> {
     }
 
     /// Makes the ink of a stroke part of what is still.
-    fn draw(&mut self, place: Vector<D>, radius: f64, meter: &mut Meter<'_>) -> Result<()> {
+    fn draw(&mut self, (place, radius): (Vector<D>, f64), meter: &mut Meter<'_>) -> Result<()> {
         let mut looked = 0;
         let (cells, lattice) = (&mut self.cells, &self.lattice);
         lattice.around(place, radius + self.reach, |c, at| {

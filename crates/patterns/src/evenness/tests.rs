@@ -16,6 +16,7 @@ use crate::{
     evenness::{
         Evenness, counts,
         page::{Body, Measures, Page},
+        strokes::Strokes,
         work::{Moves, Work},
     },
     exemplar::level_exemplar::{LevelExemplar, level_exemplars},
@@ -57,11 +58,11 @@ fn grid(count: u32, seed: u64) -> Vec<(f64, f64)> {
     cells.map(|(x, y)| (10.0 * x + 5.0 + off(), 10.0 * y + 5.0 + off())).collect()
 }
 
-fn squares() -> Arc<Exemplar<2>> {
+pub(super) fn squares() -> Arc<Exemplar<2>> {
     drawing(grid(12, 1).into_iter().map(|p| square(0, p, 4.0)).collect(), 120.0)
 }
 
-fn sampled<const D: usize>(exemplar: &Arc<Exemplar<D>>) -> LevelExemplar<D> {
+pub(super) fn sampled<const D: usize>(exemplar: &Arc<Exemplar<D>>) -> LevelExemplar<D> {
     let params = Params { levels: 1, ..Params::default() };
     level_exemplars(exemplar, None, &params, &Budget::default()).unwrap().remove(0)
 }
@@ -100,7 +101,7 @@ where
     let draft = Draft { items: items.iter().map(|&i| (i, Matrix::identity())).collect(), links: Vec::new() };
     let mut state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
     let count = exemplar.elements.len();
-    let evenness = Evenness::new(exemplar, &sampled.library, count, &Budget::default()).unwrap().unwrap();
+    let evenness = Evenness::new(exemplar, &sampled.library, None, count, &Budget::default()).unwrap().unwrap();
     let tell = &mut |items: &Vec<(Item<D>, Matrix<D>)>| {
         look(items);
         Ok(())
@@ -234,12 +235,12 @@ where
     let page = Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(side)));
     let request = Request { border: Border::Cross, ..Request::new(page) };
     let extent = Extent::new(&request, &sampled.exemplar, &sampled.library, sampled.level.base).unwrap();
-    let evenness = Evenness::new(exemplar, &sampled.library, exemplar.elements.len(), &Budget::default());
+    let evenness = Evenness::new(exemplar, &sampled.library, None, exemplar.elements.len(), &Budget::default());
     let evenness = evenness.unwrap().unwrap();
     let draft = Draft { items: items.iter().map(|&i| (i, Matrix::identity())).collect(), links: Vec::new() };
     let state = State::new(&sampled, &request, &extent, Deform::Rigid, &draft);
     let (work, moves) = (Numbered::filled(0.0, sampled.library.classes()), Moves::new(&Params::default()));
-    let bodies: Vec<_> = state.items().numbers().map(|i| super::body(&state, i)).collect();
+    let bodies: Vec<_> = state.items().numbers().map(|i| evenness.body(&state, i)).collect();
     let budget = Budget::default();
     let shares = evenness.shares(&state, &bodies, moves, &budget).unwrap();
     let page = evenness.page(&state, bodies, &budget).unwrap();
@@ -302,9 +303,10 @@ proptest! {
         let domain = if seed.is_multiple_of(2) { Domain::Box(domain) } else { Domain::Torus(domain) };
         let request = Request::new(domain);
         let extent = Extent::new(&request, &sampled.exemplar, &sampled.library, sampled.level.base).unwrap();
-        let evenness = Evenness::new(&exemplar, &sampled.library, 144, &budget).unwrap().unwrap();
+        let evenness = Evenness::new(&exemplar, &sampled.library, None, 144, &budget).unwrap().unwrap();
         let measures = Measures { spacing: 10.0, tolerated: 4.0, reach: 9.0 };
-        let fresh = |bodies: Vec<Body<2>>| Page::new(&extent, &evenness.inks, bodies, measures, &[], &budget).unwrap();
+        let none = Strokes::of_exemplar(None, &sampled.library, 144);
+        let fresh = |bodies: Vec<Body<2>>| Page::new(&extent, &evenness.inks, bodies, measures, none.clone(), &budget).unwrap();
         let mut page = fresh(Vec::new());
         let mut random = Stream::new(seed, Stage::TEST, 2);
         let mut meter = budget.meter();

@@ -4,6 +4,8 @@
 //! square of the excess; pairs of elements nearer than the exemplar has such pairs cost what is missing, and its square;
 //! and so do places where there is more or less ink around than usual. Lengths are in units of the tolerated distance, areas in its square, so that a price means the same in every pattern.
 
+use std::cmp::Ordering;
+
 use arabesque_core::{Budget, Meter, Numbered, Result, Vector};
 
 use crate::{
@@ -93,6 +95,8 @@ struct Held<const D: usize> {
 pub(crate) struct Scene<const D: usize> {
     held: Vec<Held<D>>,
     neighbours: Vec<u32>,
+    /// Places of strokes that an element may come too near to, and half the width there.
+    strokes: Vec<(Vector<D>, f64)>,
     shares: share::Around<D>,
 }
 
@@ -148,16 +152,25 @@ impl<'a, const D: usize> Work<'a, D> {
                 held.push(Held { place, without, tolerated, weight, alone });
             }
         });
+        if step > 0.0 {
+            // What costs most first: then prices reach their limit soon.
+            held.sort_unstable_by(|a, b| {
+                b.alone.total_cmp(&a.alone).then_with(|| a.place.0.partial_cmp(&b.place.0).unwrap_or(Ordering::Equal))
+            });
+        }
         let scale = page.spacing_scale(centre);
         let widest = self.natural.widest.max(0.0) * scale;
         let neighbours = page.neighbours(centre, radius + step + widest, body);
-        meter.spend(PRICE.0 * (looked + 20 * neighbours.len() as u64))?;
+        let mut strokes = Vec::new();
+        let clearest = self.natural.clearest * scale;
+        page.strokes.near(centre, radius + step + clearest, |offset, radius| strokes.push((centre + offset, radius)));
+        meter.spend(PRICE.0 * (looked + 20 * neighbours.len() as u64 + strokes.len() as u64))?;
         let there = |b: u32| page.bodies.get(b as usize).map(|body| ink_of(&body.pose));
         let shares = match &self.shares {
             Some(shares) => shares.around(centre, step, there(body), meter)?,
             None => share::Around::default(),
         };
-        Ok(Scene { held, neighbours, shares })
+        Ok(Scene { held, neighbours, strokes, shares })
     }
 
     /// Price of the surroundings of an element in some pose; without it for `None`. Beyond `limit`, any number larger than that.
@@ -185,6 +198,7 @@ impl<'a, const D: usize> Work<'a, D> {
     ) -> Result<f64> {
         let mut sum = 0.0;
         if let Some(pose) = pose {
+            sum += narrow(self.cramped(pose, &scene.strokes, meter)?);
             for &o in &scene.neighbours {
                 sum += self.narrow(pose, &self.page.body(o).pose, meter)?;
                 if sum > limit {
@@ -212,8 +226,26 @@ impl<'a, const D: usize> Work<'a, D> {
 
     /// Price of two elements that come too near each other.
     fn narrow(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
-        let missing = self.missing(a, b, meter)?;
-        Ok(if missing > 0.0 { (NARROW.0 + NARROW.1 * missing) * missing } else { 0.0 })
+        Ok(narrow(self.missing(a, b, meter)?))
+    }
+
+    /// What is missing of the narrowest gap that the exemplar has between such an element and strokes, in tolerated distances.
+    fn cramped(&self, pose: &Pose<D>, strokes: &[(Vector<D>, f64)], meter: &mut Meter<'_>) -> Result<f64> {
+        let Some(least) = self.natural.clear(self.library.class[pose.source]).filter(|_| !strokes.is_empty()) else {
+            return Ok(0.0);
+        };
+        meter.spend(PRICE.1 * strokes.len() as u64)?;
+        let scale = self.page.spacing_scale(pose.centre);
+        let least = least * scale;
+        let mut gap = least;
+        let reach = self.page.inks.radius(pose);
+        for (place, radius) in strokes {
+            let (offset, far) = (*place - pose.centre, reach + gap + radius);
+            if far > 0.0 && offset.norm2() < far * far {
+                gap = gap.min(self.page.inks.distance(pose, offset) - radius);
+            }
+        }
+        Ok((least - gap) / (self.natural.tolerated * scale))
     }
 
     /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
@@ -244,7 +276,11 @@ impl<'a, const D: usize> Work<'a, D> {
         }
         let scale = self.page.spacing_scale(body.pose.centre);
         let reach = self.page.inks.radius(&body.pose) + self.natural.widest.max(0.0) * scale;
-        let mut most = 0.0_f64;
+        let mut strokes = Vec::new();
+        let own = self.page.inks.radius(&body.pose) + self.natural.clearest * scale;
+        let centre = body.pose.centre;
+        self.page.strokes.near(centre, own, |offset, radius| strokes.push((centre + offset, radius)));
+        let mut most = if body.fixed { 0.0 } else { self.cramped(&body.pose, &strokes, meter)? };
         for o in self.page.neighbours(body.pose.centre, reach, b) {
             let other = self.page.body(o);
             if !(body.fixed && other.fixed) {
@@ -344,6 +380,11 @@ impl<'a, const D: usize> Work<'a, D> {
         }
         Ok(())
     }
+}
+
+/// Price of a gap of which so much is missing.
+fn narrow(missing: f64) -> f64 {
+    if missing > 0.0 { (NARROW.0 + NARROW.1 * missing) * missing } else { 0.0 }
 }
 
 /// An element as a mass at its centre.

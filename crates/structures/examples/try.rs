@@ -153,10 +153,11 @@ fn go<const D: usize>(a: &[String]) {
         "spacing {:.4} window {:.4} repetition {:?} repeats {} prep {:.2?}",
         prep.spacing(),
         prep.window(),
-        prep.repetition(),
+        (prep.repetition(), prep.regularity()),
         prep.repeats(),
         t.elapsed()
     );
+    if std::env::var("PREP").is_ok() { return; }
     let territory: Arc<dyn Territory<D>> = match along {
         Some(f) => {
             let text = std::fs::read_to_string(f).unwrap();

@@ -87,6 +87,11 @@ impl<const D: usize> Prepared<D> {
         self.repetition.length
     }
 
+    /// How well the exemplar looks like itself again there: 0 to 1.
+    pub fn regularity(&self) -> f64 {
+        self.repetition.strength
+    }
+
     /// Along how many directions the exemplar repeats: 1 for ropes, 2 for surfaces, 3 for volumes.
     pub fn repeats(&self) -> usize {
         self.pattern.repeats()

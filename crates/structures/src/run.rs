@@ -152,6 +152,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             index: &self.index,
             domain: &self.domain,
             shifts: &self.prepared.repetition.shifts,
+            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
         };
         if n == 0 {
             self.start(&level, state)?;
@@ -265,6 +266,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             index: &self.index,
             domain: &self.domain,
             shifts: &self.prepared.repetition.shifts,
+            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
         };
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;

@@ -111,6 +111,6 @@ pub(crate) fn repetition<const D: usize>(
     let length = peaks.iter().map(|p| p.0).min_by(f64::total_cmp);
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
     peaks.truncate(SHIFTS);
-    let strength = if best > 0.0 { (best - mean) / (1.0 - mean).max(1e-9) } else { 0.0 };
+    let strength = if best > 0.0 { ((best - mean) / (1.0 - mean).max(0.05)).clamp(0.0, 1.0) } else { 0.0 };
     Ok(Repetition { length, strength, shifts: peaks.into_iter().flat_map(|p| [p.2, -p.2]).collect() })
 }

@@ -23,6 +23,8 @@ use crate::{
 const WORTH: f64 = 0.04;
 /// A point goes, however many there are, when it makes up less of itself than this leaves over, halved.
 const STRAY: f64 = 0.7;
+/// Nothing but strays is removed where there are fewer points than in the exemplar in the mean, by this share.
+const EMPTIEST: f64 = -0.04;
 /// What is added is no nearer to a point like it than this, in units of the spacing.
 const APART: f64 = 0.45;
 
@@ -48,36 +50,46 @@ pub(crate) fn control<const D: usize>(
     Ok((added, gone))
 }
 
-/// For each point by how many points its windows have more than their matches, in the mean [Roveri 2015 eq. 7].
-fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, matches: &Matches<D>) -> Vec<f64> {
+/// By how many points windows have more than something, for each point in the mean over those it is in.
+struct Surplus {
+    /// More than their matches [Roveri 2015 eq. 7].
+    matched: Vec<f64>,
+    /// More than windows of the exemplar have in the mean, as a share of that.
+    usual: Vec<f64>,
+}
+
+fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, matches: &Matches<D>) -> Surplus {
     let points = near.windows.turned_round(level.sites.len());
     let seen = |q: usize, i: usize| {
         let site = &level.sites[q];
         let u = site.seen(level.domain.offset(site.place, output.places[i]));
         let known = level.tables.known.at(&std::array::from_fn(|k| (matches.places[q][k] + u[k]) as f32));
-        level.tables.kernel.weights(&u).0 * f64::from(known)
+        (level.tables.kernel.weights(&u).0, f64::from(known))
     };
-    let of_sites: Vec<f64> = (0..level.sites.len())
+    let of_sites: Vec<(f64, f64)> = (0..level.sites.len())
         .into_par_iter()
         .with_min_len(16)
         .map(|q| {
-            let mass: f64 = points.of(q).iter().map(|&i| seen(q, i as usize)).sum();
-            mass - level.tables.back.mass(&matches.places[q].0)
+            let sums = points.of(q).iter().map(|&i| seen(q, i as usize)).fold((0.0, 0.0), |s, (w, k)| (s.0 + w * k, s.1 + w));
+            (sums.0 - level.tables.back.mass(&matches.places[q].0), sums.1 / level.usual - 1.0)
         })
         .collect();
-    (0..output.places.len())
+    let means: Vec<(f64, f64)> = (0..output.places.len())
         .into_par_iter()
         .with_min_len(64)
         .map(|i| {
-            let (mut sum, mut weight) = (0.0, 1e-12);
+            let (mut matched, mut usual, mut weight) = (0.0, 0.0, 1e-12);
             for &q in near.windows.of(i) {
-                let w = seen(q as usize, i);
-                sum += w * of_sites[q as usize];
+                let (w, _) = seen(q as usize, i);
+                matched += w * of_sites[q as usize].0;
+                usual += w * of_sites[q as usize].1;
                 weight += w;
             }
-            sum / weight
+            (matched / weight, usual / weight)
         })
-        .collect()
+        .collect();
+    let (matched, usual) = means.into_iter().unzip();
+    Surplus { matched, usual }
 }
 
 /// Which points go, the most superfluous first, each with the ones before it gone.
@@ -85,7 +97,7 @@ fn remove<const D: usize>(
     level: &Level<'_, D>,
     output: &Output<D>,
     near: &Near,
-    (pulls, surplus): (&[Pull<D>], &[f64]),
+    (pulls, surplus): (&[Pull<D>], &Surplus),
 ) -> Vec<bool> {
     let n = output.places.len();
     let pair = |i: usize, j: usize| {
@@ -132,7 +144,8 @@ fn remove<const D: usize>(
     let mut gone = vec![0.0; n];
     for (_, i) in order {
         // Fewer points in the windows of this one by those that went.
-        let least = if surplus[i] - gone[i] > 0.5 { -WORTH } else { -STRAY };
+        let enough = surplus.usual[i] - gone[i] / level.usual > EMPTIEST;
+        let least = if enough && surplus.matched[i] - gone[i] > 0.5 { -WORTH } else { -STRAY };
         if worth(&change, i) >= least {
             continue;
         }

@@ -187,7 +187,38 @@ fn go<const D: usize>(a: &[String]) {
     eprintln!("{} points, {:.2?}, work {}", out.points.len(), t.elapsed(), request.budget.work() / 1_000_000);
     save(&a[2], &out.points, class);
 }
-fn main() {
+fn main() { let a: Vec<String> = std::env::args().collect(); if let Some(f) = a.iter().find_map(|x| x.strip_prefix("on=")) { return meshed(&a, true, f); } if let Some(f) = a.iter().find_map(|x| x.strip_prefix("inside=")) { return meshed(&a, false, f); }
     let a: Vec<String> = std::env::args().collect();
     if a[1].ends_with("csv") { go::<2>(&a) } else { go::<3>(&a) }
+}
+fn mesh(f: &str, budget: &Budget) -> Arc<arabesque_surface::MeshIndex> {
+    let text = std::fs::read_to_string(f).unwrap();
+    let mut m = TriangleMesh::default();
+    for l in text.lines() {
+        let t: Vec<&str> = l.split_whitespace().collect();
+        match t.first() {
+            Some(&"v") => m.positions.push(Vector(std::array::from_fn(|k| t[k + 1].parse().unwrap()))),
+            Some(&"f") => { let q: Vec<u32> = t[1..].iter().map(|x| x.split('/').next().unwrap().parse::<u32>().unwrap() - 1).collect(); for i in 1..q.len() - 1 { m.triangles.push([q[0], q[i], q[i + 1]]); } }
+            _ => {}
+        }
+    }
+    Arc::new(arabesque_surface::MeshIndex::new(&m, f, budget).unwrap())
+}
+fn meshed(a: &[String], on: bool, file: &str) {
+    use arabesque_surface::*;
+    let budget = Budget::new(Limits { work: 1 << 30, ..Limits::default() });
+    let index = mesh(file, &budget);
+    let mut params = StructureParams::default(); let mut seed = 0;
+    for kv in &a[3..] { let (k, x) = kv.split_once('=').unwrap(); match k { "seed" => seed = x.parse().unwrap(), "on" | "inside" => {} _ => params.set(k, x).unwrap() } }
+    let prep = Prepared::<3>::new(Arc::new(load::<3>(&a[1])), &params, &budget).unwrap();
+    let territory: Arc<dyn Territory<3>> = if on {
+        let d = DirectionField::new(&index, &Directions::Curvature(Bend::Least), &budget).unwrap();
+        Arc::new(Shell::new(index, Arc::new(d), ScalarField::Constant(1.0)))
+    } else { Arc::new(Solid::new(index, 1.0, Fields::default())) };
+    let t = Instant::now();
+    let mut request = StructureRequest::new(territory);
+    request.seed = seed; request.budget = budget;
+    let out = prep.run(&request, &mut Show(false)).unwrap();
+    eprintln!("{} points, {:.2?}, work {}", out.points.len(), t.elapsed(), request.budget.work() / 1_000_000);
+    save(&a[2], &out.points, false);
 }

@@ -19,5 +19,7 @@ pub use request::{PlacedElement, StructureOutcome, StructureRequest};
 pub use territory::{
     Site, SitePlan, Territory,
     flat::Flat,
+    shell::Shell,
+    solid::Solid,
     tube::{Along, Thread, Tube},
 };

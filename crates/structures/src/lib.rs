@@ -4,6 +4,7 @@
 
 mod energy;
 mod exemplar;
+mod layout;
 mod output;
 mod params;
 mod prepared;

@@ -102,16 +102,11 @@ impl<const D: usize> Prepared<D> {
         self.pattern.repeats()
     }
 
-    /// Distance between sites, in the units of the exemplar.
-    pub(crate) fn step(&self) -> f64 {
-        STEP * 0.5 * self.window
-    }
-
-    /// What territories are asked for.
-    pub fn plan(&self) -> SitePlan<D> {
+    /// What territories are asked for, for windows of this size.
+    pub(crate) fn plan_for(&self, window: f64) -> SitePlan<D> {
         SitePlan {
-            step: self.step(),
-            margin: self.window,
+            step: STEP * 0.5 * window,
+            margin: window,
             base: self.pattern.base,
             axis: self.pattern.axis,
             thickness: self.pattern.thickness,

@@ -215,7 +215,7 @@ pub(crate) fn matching<const D: usize>(
                 let m = Vector(std::array::from_fn(|k| {
                     before.places[other][k] + if level.pattern.base[k] { step[k] } else { 0.0 }
                 }));
-                if room.contains(m) && (m - now.m).norm() > 0.05 * level.tables.kernel.sigma {
+                if room.contains(m) && (m - now.m).norm() > 0.3 * level.tables.kernel.sigma {
                     consider(m);
                 }
             }

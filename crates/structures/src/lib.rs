@@ -4,6 +4,7 @@
 
 mod energy;
 mod exemplar;
+mod layout;
 mod output;
 mod params;
 mod prepared;
@@ -19,7 +20,7 @@ pub use request::{PlacedElement, StructureOutcome, StructureRequest};
 pub use territory::{
     Site, SitePlan, Territory,
     flat::Flat,
-    hollow::Hollow,
     shell::Shell,
+    solid::Solid,
     tube::{Along, Thread, Tube},
 };

@@ -32,7 +32,7 @@ params! {
         /// Width of the Gaussians that stand for the points.
         sigma "sigma": f64 = 1.0, in 0.2..=5.0, unit "spacings";
         /// Width of these Gaussians in the last levels, which make the spacing of the points even.
-        fine "fine": f64 = 0.6, in 0.1..=5.0, unit "spacings";
+        fine "fine": f64 = 0.45, in 0.1..=5.0, unit "spacings";
         /// How much of a neighbourhood counts.
         shape "shape": Window = Window::Gaussian;
         /// Along how many directions the exemplar repeats: 1 for ropes, 2 for surfaces, 3 for volumes.

@@ -17,6 +17,8 @@ use crate::{
 
 /// Share of what repeats that the window is by itself.
 const WINDOW: f64 = 0.7;
+/// Window for what does not repeat, in spacings.
+const IRREGULAR: f64 = 4.5;
 /// Smallest window, in spacings.
 const SMALLEST: f64 = 3.0;
 /// Largest share of the exemplar's length that the window is by itself.
@@ -54,7 +56,10 @@ impl<const D: usize> Prepared<D> {
         let field = Field::new(places, &pattern.weights, pattern.channels.blocks(), &kernel, &budget)?;
         let step = if pattern.repeats() > 2 { sigma } else { 0.6 * sigma };
         let repetition = repetition(&pattern, &field, step.max(shortest / 150.0), &budget)?;
-        let found = WINDOW * repetition.length.unwrap_or(2.0 * LARGEST * shortest);
+        // What hardly repeats has neighbours alone to go by.
+        let regular = ((repetition.strength - 0.1) / 0.4).clamp(0.0, 1.0);
+        let repeats = WINDOW * repetition.length.unwrap_or(2.0 * LARGEST * shortest);
+        let found = regular * repeats + (1.0 - regular) * IRREGULAR * pattern.spacing;
         let window = params.window.map_or_else(
             || found.min(LARGEST * shortest).max(SMALLEST * pattern.spacing),
             |window| window * pattern.spacing,
@@ -87,21 +92,21 @@ impl<const D: usize> Prepared<D> {
         self.repetition.length
     }
 
+    /// How well the exemplar looks like itself again there: 0 to 1.
+    pub fn regularity(&self) -> f64 {
+        self.repetition.strength
+    }
+
     /// Along how many directions the exemplar repeats: 1 for ropes, 2 for surfaces, 3 for volumes.
     pub fn repeats(&self) -> usize {
         self.pattern.repeats()
     }
 
-    /// Distance between sites, in the units of the exemplar.
-    pub(crate) fn step(&self) -> f64 {
-        STEP * 0.5 * self.window
-    }
-
-    /// What territories are asked for.
-    pub fn plan(&self) -> SitePlan<D> {
+    /// What territories are asked for, for windows of this size.
+    pub(crate) fn plan_for(&self, window: f64) -> SitePlan<D> {
         SitePlan {
-            step: self.step(),
-            margin: self.window,
+            step: STEP * 0.5 * window,
+            margin: window,
             base: self.pattern.base,
             axis: self.pattern.axis,
             thickness: self.pattern.thickness,

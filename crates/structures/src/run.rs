@@ -2,14 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Budget, Domain, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
+use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
 
 use crate::{
     energy::{
         kernel::Kernel,
         level::{Level, Matches, Tables},
-        links::{Lists, SiteIndex, neighbours},
     },
+    layout::Layout,
     output::{
         finish::{Finished, finish, groups, kept, sources},
         state::Output,
@@ -24,7 +24,6 @@ use crate::{
         sampling::control,
     },
     start::{grow::grow, noise::noise, patches::patches, shake::shake},
-    territory::Site,
 };
 
 /// The smallest window, in units of the first one.
@@ -33,8 +32,6 @@ const SMALLEST: f64 = 0.5;
 const SETTLED: f64 = 1e-3;
 /// Rounds for the first matches, where the start brings none along.
 const FIRST: u64 = 4;
-/// Windows of neighbours: sites within so many steps.
-const AROUND: f64 = 1.25;
 
 /// Window and width of the Gaussians of one level.
 #[derive(Clone, Copy, Debug)]
@@ -48,10 +45,7 @@ struct Stage<'a, const D: usize> {
     prepared: &'a Prepared<D>,
     request: &'a StructureRequest<D>,
     budget: Budget,
-    sites: Vec<Site<D>>,
-    index: SiteIndex<D>,
-    around: Lists,
-    domain: Domain<D>,
+    layout: Layout<D>,
     scales: Vec<Scale>,
 }
 
@@ -102,41 +96,25 @@ impl<const D: usize> Prepared<D> {
 impl<'a, const D: usize> Stage<'a, D> {
     fn new(prepared: &'a Prepared<D>, request: &'a StructureRequest<D>) -> Result<Self> {
         let budget = request.budget.stage("making the structure");
-        let (plan, pattern) = (prepared.plan(), &prepared.pattern);
-        let sites = request.territory.sites(&plan, &budget)?;
-        if sites.is_empty() {
-            return Err(Error::no_result(
-                "the domain is too small for the structure",
-                "make the domain larger, or the scale smaller",
-            ));
-        }
-        let expected = sites.iter().map(|s| s.weight).sum::<f64>() * plan.step.powi(pattern.repeats() as i32)
-            / pattern.measure()
-            * pattern.points.len() as f64;
-        budget.within(
-            "points of the result",
-            expected as usize,
-            ("output-elements", budget.limits().output_elements),
-        )?;
+        let layout = Layout::new(prepared, &*request.territory, &budget)?;
+        let expected = layout.expected(prepared);
+        let limits = budget.limits();
+        budget.within("points of the result", expected as usize, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected);
-        let domain = request.territory.surroundings();
-        let index = SiteIndex::new(&sites, plan.step, &domain);
-        let places: Vec<_> = sites.iter().map(|s| s.place).collect();
-        let largest = sites.iter().map(|s| s.scale).fold(0.0, f64::max);
-        let around = neighbours(&places, AROUND * plan.step * largest, &domain, &budget)?;
         let mut scales = Vec::new();
-        let (mut delta, sigma) = (prepared.window, prepared.params.sigma * pattern.spacing);
-        while delta > SMALLEST * prepared.window * 1.001 {
+        let spacing = prepared.pattern.spacing;
+        let (mut delta, sigma) = (layout.window, prepared.params.sigma * spacing);
+        let least = SMALLEST * layout.window;
+        while delta > 1.1 * least {
             scales.push(Scale { delta, sigma });
             delta *= prepared.params.shrink;
         }
-        let delta = SMALLEST * prepared.window;
-        scales.push(Scale { delta, sigma });
-        let fine = prepared.params.fine * pattern.spacing;
+        scales.push(Scale { delta: least, sigma });
+        let fine = prepared.params.fine * spacing;
         if fine < sigma {
-            scales.push(Scale { delta, sigma: fine });
+            scales.push(Scale { delta: least, sigma: fine });
         }
-        Ok(Self { prepared, request, budget, sites, index, around, domain, scales })
+        Ok(Self { prepared, request, budget, layout, scales })
     }
 
     fn level(&self, n: usize, state: &mut State<D>, watch: &mut dyn Watch<PointSet<D>>) -> Result<ControlFlow<()>> {
@@ -148,10 +126,11 @@ impl<'a, const D: usize> Stage<'a, D> {
         let level = Level {
             pattern,
             tables: &tables,
-            sites: &self.sites,
-            index: &self.index,
-            domain: &self.domain,
+            sites: &self.layout.sites,
+            index: &self.layout.index,
+            domain: &self.layout.domain,
             shifts: &self.prepared.repetition.shifts,
+            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
         };
         if n == 0 {
             self.start(&level, state)?;
@@ -165,7 +144,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             let number = (n * 1000 + round) as u64 + 10;
             let near = level.near(&state.output, &self.budget)?;
             let draw = Round { seed: self.request.seed, number, tries: params.tries };
-            let matched = matching(&level, &state.output, &near, &matches, &self.around, (draw, &self.budget))?;
+            let matched = matching(&level, &state.output, &near, &matches, &self.layout.around, (draw, &self.budget))?;
             debug_assert!(matched.energy.1 <= matched.energy.0 + 1e-9 * matched.energy.0.abs());
             matches = matched.matches;
             let mut pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
@@ -184,7 +163,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             let changed = control(&level, &mut state.output, &near, &matches, &pulls, &self.budget)?;
             state.matches.clone_from(&matches.places);
             let elements = state.output.places.len();
-            let energy = energy / self.sites.len() as f64;
+            let energy = energy / self.layout.sites.len() as f64;
             state.energy.push(EnergyPoint { level: n, iteration: round, energy, elements });
             let done = n * params.rounds + round + 1;
             let total = self.scales.len() * params.rounds;
@@ -210,11 +189,11 @@ impl<'a, const D: usize> Stage<'a, D> {
     /// Lays out the first points and matches.
     fn start(&self, level: &Level<'_, D>, state: &mut State<D>) -> Result<()> {
         let (params, seed) = (&self.prepared.params, self.request.seed);
-        let step = self.prepared.step();
+        let step = self.layout.plan.step;
         let kept = std::mem::take(&mut state.output);
         let spacing = self.prepared.pattern.spacing;
         let (mut output, matches) = match params.start {
-            Start::Grow => grow(level, kept, &self.around, step, seed, &self.budget)?,
+            Start::Grow => grow(level, kept, &self.layout.around, step, seed, &self.budget)?,
             Start::Patches => patches(level, kept, (step, params.patch * spacing), seed),
             Start::Noise => {
                 let output = noise(level, kept, step, seed);
@@ -222,11 +201,12 @@ impl<'a, const D: usize> Stage<'a, D> {
                 let first = |q| {
                     anywhere(&room, &mut arabesque_core::Stream::new(seed, arabesque_core::Stage::new(46), q as u64))
                 };
-                let mut matches = Matches::new(level, (0..self.sites.len()).map(first).collect());
+                let mut matches = Matches::new(level, (0..self.layout.sites.len()).map(first).collect());
                 let near = level.near(&output, &self.budget)?;
                 for number in 0..FIRST {
                     let draw = Round { seed, number, tries: 8 };
-                    matches = matching(level, &output, &near, &matches, &self.around, (draw, &self.budget))?.matches;
+                    matches =
+                        matching(level, &output, &near, &matches, &self.layout.around, (draw, &self.budget))?.matches;
                 }
                 (output, matches.places)
             }
@@ -244,10 +224,10 @@ impl<'a, const D: usize> Stage<'a, D> {
     }
 
     fn cut(&self, output: &Output<D>, sources: &[usize], groups: Option<&[i32]>) -> Finished<D> {
-        let plan = self.prepared.plan();
-        let inside = |p| self.request.territory.contains(self.domain.wrap(p), &plan);
+        let plan = self.layout.plan;
+        let inside = |p| self.request.territory.contains(self.layout.domain.wrap(p), &plan);
         let mut finished = finish(&self.prepared.pattern, output, sources, groups, inside);
-        finished.points.positions.iter_mut().for_each(|p| *p = self.domain.wrap(*p));
+        finished.points.positions.iter_mut().for_each(|p| *p = self.layout.domain.wrap(*p));
         finished
     }
 
@@ -261,10 +241,11 @@ impl<'a, const D: usize> Stage<'a, D> {
         let level = Level {
             pattern,
             tables: &tables,
-            sites: &self.sites,
-            index: &self.index,
-            domain: &self.domain,
+            sites: &self.layout.sites,
+            index: &self.layout.index,
+            domain: &self.layout.domain,
             shifts: &self.prepared.repetition.shifts,
+            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
         };
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;

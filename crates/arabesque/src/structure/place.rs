@@ -6,7 +6,7 @@ use arabesque_core::{
     Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, ScalarField, Vector,
 };
 use arabesque_io::{file, geometry::Cloud, mesh::obj, svg};
-use arabesque_structures::{Along, Flat, Hollow, Shell, Territory, Thread, Tube};
+use arabesque_structures::{Along, Flat, Shell, Solid, Territory, Thread, Tube};
 use arabesque_surface::{Bend, DirectionField, Directions, MeshReport};
 
 use crate::{
@@ -89,25 +89,21 @@ pub(super) fn in_space(
             let across = height.size().0.into_iter().fold(f64::INFINITY, f64::min);
             return Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?));
         }
-        ("on", Structures { on: Some(input), direction, scale, radius, .. }) => {
-            let scale = constant_size(scale.as_ref())?;
+        ("on", Structures { on: Some(input), direction, .. }) => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
             context.warnings.extend(warnings);
             let report = MeshReport::new(&index, context.budget())?;
             context.warnings.extend(report.surface_of(input.name())?);
             let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
             context.warnings.extend(field.warnings().iter().cloned());
-            let thick = height.size()[2].max(1e-3 * height.size().norm());
-            let radius = radius.unwrap_or(0.5 * thick * scale);
-            return Ok(Arc::new(Shell::new(index, &report, field, [scale, radius])?));
+            return Ok(Arc::new(Shell::new(Arc::new(index), Arc::new(field), fields.scale)));
         }
-        ("inside", Structures { inside: Some(input), scale, .. }) => {
-            let scale = constant_size(scale.as_ref())?;
+        ("inside", Structures { inside: Some(input), .. }) => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
             context.warnings.extend(warnings);
             let report = MeshReport::new(&index, context.budget())?;
             context.warnings.extend(report.volume_of(input.name())?);
-            return Ok(Arc::new(Hollow::new(index, &report, about_z, scale)?));
+            return Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), fields)));
         }
         (other, _) => {
             return Err(elsewhere(
@@ -147,17 +143,6 @@ fn degrees(job: &Structures) -> Result<f64> {
 
 fn factor<const D: usize>(job: &Structures) -> Result<ScalarField<D>> {
     constant_factor("scale", job.scale.as_ref())
-}
-
-/// The size of a pattern on or in a mesh.
-fn constant_size(source: Option<&FieldSource>) -> Result<f64> {
-    match source {
-        None => Ok(1.0),
-        Some(FieldSource::Constant(v)) => Ok(*v),
-        Some(FieldSource::File(_)) => {
-            Err(Error::Unsupported { what: "scale from a file, on a mesh".into(), advice: "give a number".into() })
-        }
-    }
 }
 
 /// Where the pattern runs on a mesh; strokes are embedded.

@@ -112,7 +112,7 @@ struct Fields {
     /// Along curves: degrees by which the structure turns about the curve from start to end
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
     twist: Option<f64>,
-    /// Along curves and on meshes: how far from these points may lie that repeat across them too
+    /// Along curves: how far from the curve points may lie that repeat across it too
     #[arg(long, value_name = "R")]
     tube: Option<f64>,
 }

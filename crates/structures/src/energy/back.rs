@@ -15,6 +15,7 @@ pub(crate) struct Back<const D: usize> {
     step: f64,
     counts: [usize; D],
     values: Vec<f64>,
+    masses: Vec<f64>,
 }
 
 impl<const D: usize> Back<D> {
@@ -31,10 +32,13 @@ impl<const D: usize> Back<D> {
         );
         let lattice = Lattice::new(bounds, counts, false);
         let mut values = vec![0.0; lattice.count()];
+        let mut masses = values.clone();
         let pair = 0.5 / (kernel.sigma * kernel.sigma);
         // Every pair goes to the cell of its middle, shared among the cells around it.
         let mut meter = budget.meter();
         for (i, &p) in pattern.points.positions.iter().enumerate() {
+            let seen = f64::from(known.at(&p.0.map(|x| x as f32)));
+            share(&lattice, &counts, base, step, p, |cell, w| masses[cell] += w * seen);
             let mut cost = 0;
             pattern.index.within(p, kernel.pairs(), |j, offset| {
                 cost += 20;
@@ -47,11 +51,21 @@ impl<const D: usize> Back<D> {
             meter.spend(cost)?;
         }
         blur(&mut values, &counts, base, kernel, step);
-        Ok(Self { origin: pattern.bounds.min.0, step, counts, values })
+        blur(&mut masses, &counts, base, kernel, step);
+        Ok(Self { origin: pattern.bounds.min.0, step, counts, values, masses })
     }
 
     /// The value for a match at `m`, and its slope.
     pub(crate) fn at(&self, m: &[f64; D]) -> (f64, [f64; D]) {
+        self.read(&self.values, m)
+    }
+
+    /// How many points of the exemplar there are in the window around `m`, each as far as it is in it.
+    pub(crate) fn mass(&self, m: &[f64; D]) -> f64 {
+        self.read(&self.masses, m).0
+    }
+
+    fn read(&self, values: &[f64], m: &[f64; D]) -> (f64, [f64; D]) {
         let mut low = [0; D];
         let mut into = [0.0; D];
         for k in 0..D {
@@ -77,7 +91,7 @@ impl<const D: usize> Back<D> {
                 (_, 1) => into[k],
                 _ => 1.0 - into[k],
             };
-            let v = self.values[index];
+            let v = values[index];
             value += v * (0..D).map(part).product::<f64>();
             for k in (0..D).filter(|&k| self.counts[k] > 1) {
                 let sign = if corner >> k & 1 == 1 { 1.0 } else { -1.0 };

@@ -57,6 +57,8 @@ pub(crate) struct Level<'a, const D: usize> {
     pub(crate) domain: &'a Domain<D>,
     /// Shifts that lay the exemplar well upon itself.
     pub(crate) shifts: &'a [Vector<D>],
+    /// How many points a window has in the mean over the exemplar, each as far as it is in it.
+    pub(crate) usual: f64,
 }
 
 /// Where each site looks in the exemplar.

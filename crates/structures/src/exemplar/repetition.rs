@@ -19,6 +19,8 @@ const RISE: f64 = 0.7;
 pub(crate) struct Repetition<const D: usize> {
     /// Length of the shortest of them; `None` where there is none.
     pub(crate) length: Option<f64>,
+    /// How far the best of them is from any shift, towards one that changes nothing: 0 to 1.
+    pub(crate) strength: f64,
     /// The best of them, each with its opposite, best first.
     pub(crate) shifts: Vec<Vector<D>>,
 }
@@ -109,5 +111,6 @@ pub(crate) fn repetition<const D: usize>(
     let length = peaks.iter().map(|p| p.0).min_by(f64::total_cmp);
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
     peaks.truncate(SHIFTS);
-    Ok(Repetition { length, shifts: peaks.into_iter().flat_map(|p| [p.2, -p.2]).collect() })
+    let strength = if best > 0.0 { ((best - mean) / (1.0 - mean).max(0.05)).clamp(0.0, 1.0) } else { 0.0 };
+    Ok(Repetition { length, strength, shifts: peaks.into_iter().flat_map(|p| [p.2, -p.2]).collect() })
 }

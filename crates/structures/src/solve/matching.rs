@@ -28,6 +28,10 @@ const SEEN: f64 = 0.72;
 /// A match has to be better by this share to replace the one before.
 const BETTER: f64 = 1e-9;
 
+/// A match has as many points in its window as the output has in that of the site, or misses that by this share: what fits nowhere would
+/// fit nothing best.
+const FULL: f64 = 0.08;
+
 /// A window of the output as its site sees it.
 pub(crate) struct View<const D: usize> {
     points: Vec<Seen<D>>,
@@ -36,6 +40,7 @@ pub(crate) struct View<const D: usize> {
 struct Seen<const D: usize> {
     u: [f64; D],
     weights: Weights,
+    pair: f32,
     /// What its pairs weigh.
     own: f32,
     outer: f32,
@@ -53,11 +58,17 @@ impl<const D: usize> View<D> {
             (pair > 0.0).then(|| Seen {
                 u,
                 weights: level.pattern.channels.turned(&output.weights[i], &back),
+                pair: pair as f32,
                 own: (pair * own[i]) as f32,
                 outer: outer as f32,
             })
         });
         Self { points: seen.collect() }
+    }
+
+    /// How many points there are in the window, each as far as it is in it.
+    fn mass(&self) -> f64 {
+        self.points.iter().map(|p| f64::from(p.pair)).sum()
     }
 
     /// Number of points in the window.
@@ -192,14 +203,22 @@ pub(crate) fn matching<const D: usize>(
             let now = Match { m: before.places[q], error: view.error(level, &before.places[q]) };
             let stride = (view.len() / FEW).max(1);
             let mut candidates = Vec::new();
-            let mut consider = |m: Vector<D>| candidates.push(Match { m, error: view.rough(level, &m, stride) });
+            let mass = view.mass();
+            let off =
+                |m: &Vector<D>| (level.tables.back.mass(&m.0) / level.tables.known.share(&m.0).max(0.05) - mass).abs();
+            let least = off(&now.m).max(FULL * mass);
+            let mut consider = |m: Vector<D>| {
+                if off(&m) <= least {
+                    candidates.push(Match { m, error: view.rough(level, &m, stride) })
+                }
+            };
             for &other in around.of(q) {
                 let other = other as usize;
                 let step = level.sites[other].seen(level.domain.offset(level.sites[other].place, level.sites[q].place));
                 let m = Vector(std::array::from_fn(|k| {
                     before.places[other][k] + if level.pattern.base[k] { step[k] } else { 0.0 }
                 }));
-                if room.contains(m) && (m - now.m).norm() > 0.05 * level.tables.kernel.sigma {
+                if room.contains(m) && (m - now.m).norm() > 0.3 * level.tables.kernel.sigma {
                     consider(m);
                 }
             }

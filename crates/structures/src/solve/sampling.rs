@@ -3,6 +3,9 @@
 //! Adding a point with weights `b` at `x` changes `T` by `P(x) |b|^2 - 2 b.r(x)`, where `r` is what the matches want there beyond what all
 //! points give; removing one of weights `a` changes it by `2 a.r' - P |a|^2` with `r'` the same without the point. So a point is worth its place
 //! when it makes up at least half of itself, and every change is kept only if `T` falls by it.
+//!
+//! Where matches do not agree yet, what they want is blurred, and no point makes up half of itself; that is no reason to remove it as long as
+//! there are not more points than the matches have: `P` of the paper decides then.
 
 use arabesque_core::{Budget, GridIndex, Result, Similarity, Vector};
 use rayon::prelude::*;
@@ -18,6 +21,10 @@ use crate::{
 
 /// A change must lower the energy by this share of what one point weighs.
 const WORTH: f64 = 0.04;
+/// A point goes, however many there are, when it makes up less of itself than this leaves over, halved.
+const STRAY: f64 = 0.7;
+/// Nothing but strays is removed where there are fewer points than in the exemplar in the mean, by this share.
+const EMPTIEST: f64 = -0.04;
 /// What is added is no nearer to a point like it than this, in units of the spacing.
 const APART: f64 = 0.45;
 
@@ -30,7 +37,8 @@ pub(crate) fn control<const D: usize>(
     pulls: &[Pull<D>],
     budget: &Budget,
 ) -> Result<(usize, usize)> {
-    let removed = remove(level, output, near, pulls);
+    let surplus = surplus(level, output, near, matches);
+    let removed = remove(level, output, near, (pulls, &surplus));
     let before = output.places.len();
     budget.spend(near.pairs.total() as u64 * 20)?;
     let gone = removed.iter().filter(|r| **r).count();
@@ -42,8 +50,56 @@ pub(crate) fn control<const D: usize>(
     Ok((added, gone))
 }
 
+/// By how many points windows have more than something, for each point in the mean over those it is in.
+struct Surplus {
+    /// More than their matches [Roveri 2015 eq. 7].
+    matched: Vec<f64>,
+    /// More than windows of the exemplar have in the mean, as a share of that.
+    usual: Vec<f64>,
+}
+
+fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, matches: &Matches<D>) -> Surplus {
+    let points = near.windows.turned_round(level.sites.len());
+    let seen = |q: usize, i: usize| {
+        let site = &level.sites[q];
+        let u = site.seen(level.domain.offset(site.place, output.places[i]));
+        let known = level.tables.known.at(&std::array::from_fn(|k| (matches.places[q][k] + u[k]) as f32));
+        (level.tables.kernel.weights(&u).0, f64::from(known))
+    };
+    let of_sites: Vec<(f64, f64)> = (0..level.sites.len())
+        .into_par_iter()
+        .with_min_len(16)
+        .map(|q| {
+            let sums =
+                points.of(q).iter().map(|&i| seen(q, i as usize)).fold((0.0, 0.0), |s, (w, k)| (s.0 + w * k, s.1 + w));
+            (sums.0 - level.tables.back.mass(&matches.places[q].0), sums.1 / level.usual - 1.0)
+        })
+        .collect();
+    let means: Vec<(f64, f64)> = (0..output.places.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|i| {
+            let (mut matched, mut usual, mut weight) = (0.0, 0.0, 1e-12);
+            for &q in near.windows.of(i) {
+                let (w, _) = seen(q as usize, i);
+                matched += w * of_sites[q as usize].0;
+                usual += w * of_sites[q as usize].1;
+                weight += w;
+            }
+            (matched / weight, usual / weight)
+        })
+        .collect();
+    let (matched, usual) = means.into_iter().unzip();
+    Surplus { matched, usual }
+}
+
 /// Which points go, the most superfluous first, each with the ones before it gone.
-fn remove<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, pulls: &[Pull<D>]) -> Vec<bool> {
+fn remove<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    near: &Near,
+    (pulls, surplus): (&[Pull<D>], &Surplus),
+) -> Vec<bool> {
     let n = output.places.len();
     let pair = |i: usize, j: usize| {
         let r2 = level.domain.offset(output.places[i], output.places[j]).norm2();
@@ -86,14 +142,19 @@ fn remove<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near,
         heads.into_iter().map(|i| (worth(&change, i), i)).filter(|c| c.0 < -WORTH).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut removed = vec![false; n];
+    let mut gone = vec![0.0; n];
     for (_, i) in order {
-        if worth(&change, i) >= -WORTH {
+        // Fewer points in the windows of this one by those that went.
+        let enough = surplus.usual[i] - gone[i] / level.usual > EMPTIEST;
+        let least = if enough && surplus.matched[i] - gone[i] > 0.5 { -WORTH } else { -STRAY };
+        if worth(&change, i) >= least {
             continue;
         }
         for a in members(i) {
             removed[a] = true;
             for &j in near.pairs.of(a) {
                 if !removed[j as usize] {
+                    gone[j as usize] += 1.0;
                     change[j as usize] += 2.0 * pair(a, j as usize);
                 }
             }

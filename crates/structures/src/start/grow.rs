@@ -23,10 +23,10 @@ const TRIES: Stage = Stage::new(42);
 const RANDOM: usize = 28;
 /// What it costs to go on elsewhere in the exemplar, as a share of all that a window holds.
 const JUMP: f64 = 0.1;
-/// How far a site looks at what is there, in units of the window.
-const LOOK: f64 = 1.8;
+/// How far a site looks at what is there, in units of the window; less where there is much to look at.
+const LOOK: [f64; 4] = [1.8, 1.8, 1.8, 1.3];
 /// Cells of the map of what is there, in one step of the sites.
-const CELLS: f64 = 2.5;
+const CELLS: [f64; 4] = [2.5, 2.5, 2.5, 1.7];
 /// A new point is no nearer to one like it than this, in spacings.
 const APART: f64 = 0.5;
 
@@ -188,8 +188,8 @@ impl<const D: usize> Growth<'_, '_, D> {
     fn map(&self, q: usize) -> Map<D> {
         let level = self.level;
         let site = &level.sites[q];
-        let cell = self.step / CELLS;
-        let half = (LOOK * level.tables.kernel.delta / cell).ceil() as i64;
+        let cell = self.step / CELLS[level.pattern.repeats()];
+        let half = (LOOK[level.pattern.repeats()] * level.tables.kernel.delta / cell).ceil() as i64;
         let base = level.pattern.base;
         let side = 2 * half + 1;
         let count = side.pow(base.iter().filter(|b| **b).count() as u32);
@@ -205,7 +205,7 @@ impl<const D: usize> Growth<'_, '_, D> {
                     c as f64 * cell
                 }));
                 let p = site.place + site.shown(offset);
-                level.index.nearest(p, 1.6 * self.step * site.scale).is_some_and(|s| self.done[s])
+                level.index.nearest(p, 1.1 * self.step * site.scale).is_some_and(|s| self.done[s])
             })
             .collect();
         Map { half, cell, base, done }.eroded()
@@ -214,7 +214,7 @@ impl<const D: usize> Growth<'_, '_, D> {
     /// What is there around site `q`.
     fn there(&self, q: usize, map: &Map<D>) -> Vec<There<D>> {
         let (level, site) = (self.level, &self.level.sites[q]);
-        let look = LOOK * level.tables.kernel.delta;
+        let look = LOOK[level.pattern.repeats()] * level.tables.kernel.delta;
         let across = 1.3 * level.pattern.thickness + level.pattern.spacing;
         let radius = (look * look * level.pattern.repeats() as f64 + across * across).sqrt() * site.scale;
         let back = site.rotation.transpose();
@@ -242,7 +242,7 @@ impl<const D: usize> Growth<'_, '_, D> {
                 sum += f64::from(known * (p.own - 2.0 * p.outer * tables.field.project(&y, &p.weights)));
             }
         }
-        let look = LOOK * tables.kernel.delta;
+        let look = LOOK[pattern.repeats()] * tables.kernel.delta;
         let radius = (look * look * pattern.repeats() as f64 + pattern.thickness * pattern.thickness * 1.1).sqrt();
         pattern.index.within(*m, radius, |j, v| {
             if map.at(&v.0) {

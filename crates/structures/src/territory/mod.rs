@@ -1,9 +1,9 @@
 //! Where the output may lie, and how the pattern is turned and scaled there [Roveri 2015 §6.2].
 
 pub(crate) mod flat;
-pub(crate) mod hollow;
 pub(crate) mod shell;
 pub(crate) mod site;
+pub(crate) mod solid;
 pub(crate) mod tube;
 
 use std::fmt;

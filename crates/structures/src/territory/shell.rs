@@ -1,122 +1,119 @@
-//! On meshes: bumps, waves, scales and whatever else has a surface below it.
+//! On a surface: the pattern lies on the triangles of a mesh, its base along them and its height along their normals.
 
-use std::fmt;
+use std::{collections::VecDeque, sync::Arc};
 
-use arabesque_core::{Bounds, Budget, Domain, Error, Matrix, Result, Vector};
-use arabesque_surface::{Closest, DirectionField, MeshIndex, MeshReport, scatter, shell_grid};
+use arabesque_core::{Bounds, Budget, Domain, Error, Matrix, Result, ScalarField, Vector};
+use arabesque_surface::{DirectionField, MeshIndex, scatter};
 
 use super::{Site, SitePlan, Territory};
+use crate::energy::links::neighbours;
 
-/// Random stream of the sites: they are the same for every seed of a run.
-const SITES: u64 = 0;
+/// Sites are drawn nearer to each other than they are in a grid of the same number.
+const CLOSER: f64 = 0.85;
+/// Stream of the places of sites.
+const PLACES: u64 = 47;
+/// What is on a surface leaves its point there along the normal, but for this share of the height, and this share of a step.
+const SLANT: (f64, f64) = (0.6, 0.1);
 
-/// A layer on a mesh, open or closed. The direction of the exemplar that does not repeat is the normal, its first other one is where the
-/// field leads; an exemplar that repeats along all three fills the layer as thick as `radius` says, to both sides.
+/// The surroundings of a surface, open or closed.
+#[derive(Clone, Debug)]
 pub struct Shell {
-    mesh: MeshIndex,
-    field: DirectionField,
-    scale: f64,
-    radius: f64,
-    is_open: bool,
-}
-
-impl fmt::Debug for Shell {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mesh, scale, radius, is_open, .. } = self;
-        f.debug_struct("Shell")
-            .field("triangles", &mesh.triangles())
-            .field("scale", scale)
-            .field("radius", radius)
-            .field("is_open", is_open)
-            .finish_non_exhaustive()
-    }
+    index: Arc<MeshIndex>,
+    directions: Arc<DirectionField>,
+    scale: ScalarField<3>,
 }
 
 impl Shell {
-    /// A layer on the mesh that `report` tells of, along `field`; `scale` is the size of the pattern.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for a scale or a radius that is not positive.
-    pub fn new(mesh: MeshIndex, report: &MeshReport, field: DirectionField, [scale, radius]: [f64; 2]) -> Result<Self> {
-        for (name, value) in [("scale", scale), ("radius", radius)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::parameter(name, value, "a positive number"));
+    /// On the mesh of `index`, with the first direction of the pattern along `directions`, in sizes of `scale`.
+    pub fn new(index: Arc<MeshIndex>, directions: Arc<DirectionField>, scale: ScalarField<3>) -> Self {
+        Self { index, directions, scale }
+    }
+
+    /// Turns frames half around where they are against those of their neighbours: a field of lines knows no forwards.
+    fn agree(&self, sites: &mut [Site<3>], first: usize, step: f64, budget: &Budget) -> Result<()> {
+        let places: Vec<_> = sites.iter().map(|s| s.place).collect();
+        let around = neighbours(&places, 1.8 * step, &Domain::Box(self.index.bounds()), budget)?;
+        let column = |s: &Site<3>, c: usize| Vector([s.rotation.0[0][c], s.rotation.0[1][c], s.rotation.0[2][c]]);
+        let second = (first + 1) % 3;
+        let mut seen = vec![false; sites.len()];
+        for start in 0..sites.len() {
+            if std::mem::replace(&mut seen[start], true) {
+                continue;
+            }
+            let mut queue = VecDeque::from([start]);
+            while let Some(q) = queue.pop_front() {
+                for &next in around.of(q) {
+                    let next = next as usize;
+                    let upright = column(&sites[q], (first + 2) % 3).dot(column(&sites[next], (first + 2) % 3));
+                    if seen[next] || upright < 0.0 {
+                        continue;
+                    }
+                    seen[next] = true;
+                    if column(&sites[q], first).dot(column(&sites[next], first)) < 0.0 {
+                        let rotation = &mut sites[next].rotation;
+                        for row in &mut rotation.0 {
+                            (row[first], row[second]) = (-row[first], -row[second]);
+                        }
+                    }
+                    queue.push_back(next);
+                }
             }
         }
-        Ok(Self { mesh, field, scale, radius, is_open: report.open_edges.any() })
-    }
-
-    /// The pattern at a point of the mesh: the normal is the coordinate `up` of the exemplar.
-    fn rotation(&self, at: &Closest, up: usize) -> Matrix<3> {
-        let frame = self.field.frame(&self.mesh, at);
-        let columns = [frame.tangent, frame.bitangent(), frame.normal];
-        let mut rotation = Matrix::zero();
-        for (k, column) in columns.into_iter().enumerate() {
-            // In cyclic order, so that right-handed stays right-handed.
-            let c = (up + 1 + k) % 3;
-            (0..3).for_each(|r| rotation.0[r][c] = column[r]);
-        }
-        rotation
-    }
-
-    /// The coordinate of the exemplar that stands upright, and whether all three repeat.
-    fn upright(plan: &SitePlan<3>) -> (usize, bool) {
-        match (0..3).rev().find(|&k| !plan.base[k]) {
-            Some(k) => (k, false),
-            None => (2, true),
-        }
+        Ok(())
     }
 }
 
 impl Territory<3> for Shell {
     fn sites(&self, plan: &SitePlan<3>, budget: &Budget) -> Result<Vec<Site<3>>> {
-        let (up, is_solid) = Self::upright(plan);
-        let (scale, step) = (self.scale, plan.step * self.scale);
-        let site = |place: Vector<3>, at: &Closest, weight: f64| Site {
-            place,
-            rotation: self.rotation(at, up),
-            scale,
-            weight,
+        let Some(across) = (0..3).find(|&k| !plan.base[k]).filter(|_| plan.base.iter().filter(|b| **b).count() == 2)
+        else {
+            return Err(Error::Unsupported {
+                what: "a structure on a surface that repeats along other than two directions".into(),
+                advice: "give an exemplar that is a sheet, say repeats=2, or use --inside or --along".into(),
+            });
         };
-        let mut sites: Vec<Site<3>> = if is_solid {
-            let reach = self.radius + plan.margin * scale;
-            let places = shell_grid(&self.mesh, step, reach, reach, budget)?;
-            let near = self.mesh.closest_all(&places, budget)?;
-            places.into_iter().zip(&near).map(|(place, at)| site(place, at, 1.0)).collect()
-        } else {
-            let found = scatter(&self.mesh, step, SITES, budget)?;
-            let weight = self.mesh.area() / (found.len().max(1) as f64 * step * step);
-            found.iter().map(|at| site(at.point, at, weight)).collect()
+        let (smallest, _) = self.scale.range();
+        if !(smallest > 0.0 && smallest.is_finite()) {
+            return Err(Error::parameter("scale", smallest, "a positive number everywhere"));
+        }
+        // In cyclic order, so that right-handed stays right-handed.
+        let first = (across + 1) % 3;
+        let places = scatter(&self.index, CLOSER * plan.step * smallest, PLACES, budget)?;
+        let share = self.index.area() / places.len().max(1) as f64;
+        let site = |at: &arabesque_surface::Closest| {
+            let frame = self.directions.frame(&self.index, at);
+            let columns = [frame.tangent, frame.bitangent(), frame.normal];
+            let mut rotation = Matrix::zero();
+            for (k, column) in columns.iter().enumerate() {
+                (0..3).for_each(|r| rotation.0[r][(first + k) % 3] = column[r]);
+            }
+            let scale = self.scale.at(at.point);
+            // The pattern's base passes through the surface.
+            let weight = share / (plan.step * scale).powi(2);
+            Site { place: at.point, rotation, scale, weight }
         };
-        let bounds = self.mesh.bounds();
-        sites.sort_by_cached_key(|site| (along_curve(site.place, &bounds), site.place.0.map(f64::to_bits)));
+        let mut sites: Vec<Site<3>> = places.iter().map(site).collect();
+        self.agree(&mut sites, first, plan.step * smallest, budget)?;
         Ok(sites)
     }
 
     fn contains(&self, p: Vector<3>, plan: &SitePlan<3>) -> bool {
-        let (_, is_solid) = Self::upright(plan);
-        let reach = if is_solid { self.radius } else { 1.5 * plan.thickness * self.scale + plan.step * self.scale };
-        let Some(near) = self.mesh.closest_within(p, reach) else { return false };
-        // Beside an open border the nearest point is on it, and not below.
-        let offset = p - near.point;
-        let beside = (offset - near.normal * near.normal.dot(offset)).norm();
-        !self.is_open || beside <= 0.25 * plan.step * self.scale
+        let at = self.index.closest(p);
+        let offset = p - at.point;
+        let height = offset.dot(at.normal);
+        let beside = (offset - at.normal * height).norm();
+        beside <= SLANT.0 * height.abs() + SLANT.1 * plan.step * self.scale.at(at.point)
     }
 
     fn surroundings(&self) -> Domain<3> {
-        Domain::Box(self.mesh.bounds().grown(self.radius))
+        Domain::Box(self.index.bounds())
     }
 
-    fn measure(&self, repeats: usize) -> f64 {
-        if repeats == 3 { self.mesh.area() * 2.0 * self.radius } else { self.mesh.area() }
+    fn measure(&self, _: usize) -> f64 {
+        self.index.area()
     }
-}
 
-/// The number of a place along a curve that fills a box, so that neighbours mostly have numbers near each other [Morton 1966].
-pub(super) fn along_curve(p: Vector<3>, bounds: &Bounds<3>) -> u64 {
-    const BITS: u32 = 16;
-    let size = bounds.size().0.into_iter().fold(f64::MIN_POSITIVE, f64::max);
-    let cell = |k: usize| ((p[k] - bounds.min[k]) / size * f64::from(1_u32 << BITS)).clamp(0.0, 65_535.0) as u64;
-    let cells = [cell(0), cell(1), cell(2)];
-    (0..BITS).fold(0, |code, bit| (0..3).fold(code, |code, k| code | (cells[k] >> bit & 1) << (3 * bit + k as u32)))
+    fn bounds(&self) -> Bounds<3> {
+        self.index.bounds()
+    }
 }

@@ -9,6 +9,8 @@ use arabesque::{
     core::options::{markdown_table, preset_list},
     patterns::Params,
     ribbons::RibbonParams,
+    structures::StructureParams,
+    surfaces::SurfaceParams,
 };
 
 fn is_current(name: &str, generated: &str) {
@@ -47,10 +49,14 @@ fn the_shipped_tables_of_parameters_are_current() {
     let text = format!(
         "# Parameters\n\nEvery parameter that can be set by name, with `--set NAME=VALUE` or in the table `params` of a job. This page is \
          generated from the code.\n\n## Elements and curves: `arabesque fill`\n\n{}\n### Presets, for `--preset`\n\n{presets}\n\
-         ## Ribbons: `arabesque ribbon`\n\n{}\nThese have options of their own, and keys of their own in the table `[ribbon]`:\n\n{}",
+         ## Ribbons: `arabesque ribbon`\n\n{}\nThese have options of their own, and keys of their own in the table `[ribbon]`:\n\n{}\n\
+         ## Structures: `arabesque fill` on points with attributes\n\n{}\n\
+         ## Surfaces: `arabesque surface`, and `arabesque fill --mesh` by `--surface NAME=VALUE`\n\n{}",
         markdown_table(&Params::specs()),
         markdown_table(&set),
         markdown_table(&own),
+        markdown_table(&StructureParams::specs()),
+        markdown_table(&SurfaceParams::specs()),
     );
     is_current("parameters.md", &text);
 }

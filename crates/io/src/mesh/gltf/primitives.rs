@@ -65,6 +65,12 @@ impl Reader<'_> {
         Err(Error::input(self.place.clone(), problem, "write the file again; it is damaged"))
     }
 
+    /// Refuses more of something than the limit: primitives may refer to the same numbers over and over.
+    fn check(&self, what: &str, found: usize) -> Result<()> {
+        let limit = ("nodes", self.binary.budget.limits().nodes);
+        self.binary.budget.within(&format!("{}: {what}", self.place), found, limit)
+    }
+
     fn primitive(&mut self, primitive: &Primitive) -> Result<()> {
         match primitive.mode.unwrap_or(TRIANGLES) {
             POINTS => self.points(primitive),
@@ -145,6 +151,8 @@ impl Reader<'_> {
         if mode == TRIANGLES {
             self.parts.warnings.extend(cut.warnings);
         }
+        let found = self.parts.mesh.triangles.len() + cut.triangles.len();
+        self.check("triangles", found)?;
         self.parts.mesh.triangles.extend(cut.triangles);
         Ok(())
     }
@@ -156,10 +164,9 @@ impl Reader<'_> {
             return Ok(*known);
         }
         let vertices = self.vertices(primitive)?;
+        let (first, count) = (self.parts.mesh.positions.len(), vertices.positions.len());
+        self.check("vertices", first + count)?;
         let mesh = &mut self.parts.mesh;
-        let (first, count) = (mesh.positions.len(), vertices.positions.len());
-        let limit = ("nodes", self.binary.budget.limits().nodes);
-        self.binary.budget.within(&format!("{}: vertices", self.place), first + count, limit)?;
         mesh.positions.extend(vertices.positions);
         self.coloured |= vertices.colours.is_some();
         self.smooth &= vertices.normals.is_some();
@@ -186,6 +193,7 @@ impl Reader<'_> {
             }
             set = set.selected(&indices.iter().map(|i| *i as usize).collect::<Vec<_>>());
         }
+        self.check("points", self.parts.points.len() + set.len())?;
         if !append(&mut self.parts.points, set) {
             let message = format!("{}: attributes of some points alone are left out", self.place);
             self.parts.warnings.push(Warning::new(message, "give all points of a mesh the same attributes"));

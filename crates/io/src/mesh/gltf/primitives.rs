@@ -4,7 +4,12 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Error, PointSet, Result, TriangleMesh, Vector, Warning};
 
-use super::{accessor::Binary, colour::srgb, document::Primitive, points::append};
+use super::{
+    accessor::Binary,
+    colour::srgb,
+    document::{Paint, Primitive},
+    points::append,
+};
 use crate::geometry::{Polygons, attributes::Attribute};
 
 /// Modes of the format.
@@ -46,6 +51,10 @@ impl Parts {
         for primitive in &record.primitives {
             reader.primitive(primitive)?;
         }
+        if record.primitives.iter().any(|p| reader.paint(p).is_some_and(|p| p.base_color_texture.is_some())) {
+            let message = format!("{}: pictures on it are passed over", reader.place);
+            reader.parts.warnings.push(Warning::new(message, "give its vertices colours if they matter"));
+        }
         reader.finish()
     }
 }
@@ -83,6 +92,10 @@ impl Reader<'_> {
         }
     }
 
+    fn paint(&self, primitive: &Primitive) -> Option<&Paint> {
+        self.binary.document.materials.get(primitive.material?)?.pbr_metallic_roughness.as_ref()
+    }
+
     fn vertices(&mut self, primitive: &Primitive) -> Result<Vertices> {
         let Some(&position) = primitive.attributes.get("POSITION") else {
             return self.fail("a primitive without POSITION".into());
@@ -109,8 +122,9 @@ impl Reader<'_> {
     }
 
     fn colours(&self, primitive: &Primitive, count: usize) -> Result<Option<Vec<[f64; 3]>>> {
-        let material = primitive.material.and_then(|m| self.binary.document.materials.get(m));
-        let factor = material.and_then(|m| m.pbr_metallic_roughness.as_ref()?.base_color_factor);
+        let paint = self.paint(primitive);
+        // What a picture is multiplied by says nothing without the picture.
+        let factor = paint.filter(|p| p.base_color_texture.is_none()).and_then(|p| p.base_color_factor);
         let factor: Option<[f64; 3]> = factor.map(|[r, g, b, _]| [r, g, b]);
         let Some(&accessor) = primitive.attributes.get("COLOR_0") else {
             return Ok(factor.map(|colour| vec![colour; count]));

@@ -12,7 +12,7 @@ use crate::{
         Columns, Geometry,
         attributes::{Attribute, NAMES, columns_of, is_known},
     },
-    table::records::{PER_BYTE, fields, is_data, recipe_comments, separator_of},
+    table::records::{PER_BYTE, check_length, fields, is_data, recipe_comments, separator_of},
     text::short::{list, short},
 };
 
@@ -78,6 +78,7 @@ impl Table<'_> {
         let Some(first) = lines.iter().position(|line| is_data(line.trim())) else {
             return Err(Error::input(self.name, "no point found", "give one point per line, as x,y or x,y,z"));
         };
+        check_length(self.name, first + 1, lines[first], self.budget)?;
         let separator = separator_of(lines[first].trim());
         let Some((head, more)) = fields(lines[first], &lines[first + 1..], separator) else {
             return Err(self.open_quote(first));
@@ -136,6 +137,7 @@ impl Table<'_> {
                 continue;
             }
             let number = at;
+            check_length(self.name, number, line, self.budget)?;
             let Some((fields, more)) = fields(line, &lines[at..], separator) else {
                 return Err(self.open_quote(number - 1));
             };

@@ -10,6 +10,11 @@ pub(crate) fn is_data(line: &str) -> bool {
     !line.is_empty() && !line.starts_with('#')
 }
 
+/// Refuses lines so long that a list of their fields would be larger than the rest of the file.
+pub(crate) fn check_length(name: &str, number: usize, line: &str, budget: &Budget) -> Result<()> {
+    budget.within(&format!("{name}: characters of line {number}"), line.len(), ("nodes", budget.limits().nodes))
+}
+
 /// What separates fields: the first of comma, semicolon and tab that occurs, else white space.
 pub(crate) fn separator_of(line: &str) -> Option<char> {
     [',', ';', '\t'].into_iter().find(|c| line.contains(*c))
@@ -35,6 +40,7 @@ pub(crate) fn records(name: &str, text: &str, budget: &Budget, most: usize) -> R
             continue;
         }
         let number = at;
+        check_length(name, number, line, budget)?;
         let Some((fields, more)) = fields(line, &lines[at..], separator) else {
             let problem = "a quote that nothing closes, expected one more on this line or after it";
             return Err(Error::input(format!("{name}: line {number}"), problem, "close the quote, or remove it"));

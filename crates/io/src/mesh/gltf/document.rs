@@ -8,7 +8,7 @@ use serde::Deserialize;
 /// Work for each byte of the document.
 const PER_BYTE: u64 = 20;
 /// Bytes in memory for each byte of text, roughly.
-const GROWTH: usize = 4;
+const GROWTH: usize = 8;
 
 /// Extensions that a file may require: they are understood, or say nothing about places.
 const UNDERSTOOD: [&str; 5] = [

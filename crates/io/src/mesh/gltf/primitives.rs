@@ -4,7 +4,12 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Error, PointSet, Result, TriangleMesh, Vector, Warning};
 
-use super::{accessor::Binary, colour::srgb, document::Primitive, points::append};
+use super::{
+    accessor::Binary,
+    colour::srgb,
+    document::{Paint, Primitive},
+    points::append,
+};
 use crate::geometry::{Polygons, attributes::Attribute};
 
 /// Modes of the format.
@@ -46,6 +51,10 @@ impl Parts {
         for primitive in &record.primitives {
             reader.primitive(primitive)?;
         }
+        if record.primitives.iter().any(|p| reader.paint(p).is_some_and(|p| p.base_color_texture.is_some())) {
+            let message = format!("{}: pictures on it are passed over", reader.place);
+            reader.parts.warnings.push(Warning::new(message, "give its vertices colours if they matter"));
+        }
         reader.finish()
     }
 }
@@ -65,6 +74,12 @@ impl Reader<'_> {
         Err(Error::input(self.place.clone(), problem, "write the file again; it is damaged"))
     }
 
+    /// Refuses more of something than the limit: primitives may refer to the same numbers over and over.
+    fn check(&self, what: &str, found: usize) -> Result<()> {
+        let limit = ("nodes", self.binary.budget.limits().nodes);
+        self.binary.budget.within(&format!("{}: {what}", self.place), found, limit)
+    }
+
     fn primitive(&mut self, primitive: &Primitive) -> Result<()> {
         match primitive.mode.unwrap_or(TRIANGLES) {
             POINTS => self.points(primitive),
@@ -75,6 +90,10 @@ impl Reader<'_> {
                 Ok(())
             }
         }
+    }
+
+    fn paint(&self, primitive: &Primitive) -> Option<&Paint> {
+        self.binary.document.materials.get(primitive.material?)?.pbr_metallic_roughness.as_ref()
     }
 
     fn vertices(&mut self, primitive: &Primitive) -> Result<Vertices> {
@@ -103,8 +122,9 @@ impl Reader<'_> {
     }
 
     fn colours(&self, primitive: &Primitive, count: usize) -> Result<Option<Vec<[f64; 3]>>> {
-        let material = primitive.material.and_then(|m| self.binary.document.materials.get(m));
-        let factor = material.and_then(|m| m.pbr_metallic_roughness.as_ref()?.base_color_factor);
+        let paint = self.paint(primitive);
+        // What a picture is multiplied by says nothing without the picture.
+        let factor = paint.filter(|p| p.base_color_texture.is_none()).and_then(|p| p.base_color_factor);
         let factor: Option<[f64; 3]> = factor.map(|[r, g, b, _]| [r, g, b]);
         let Some(&accessor) = primitive.attributes.get("COLOR_0") else {
             return Ok(factor.map(|colour| vec![colour; count]));
@@ -145,6 +165,8 @@ impl Reader<'_> {
         if mode == TRIANGLES {
             self.parts.warnings.extend(cut.warnings);
         }
+        let found = self.parts.mesh.triangles.len() + cut.triangles.len();
+        self.check("triangles", found)?;
         self.parts.mesh.triangles.extend(cut.triangles);
         Ok(())
     }
@@ -156,10 +178,9 @@ impl Reader<'_> {
             return Ok(*known);
         }
         let vertices = self.vertices(primitive)?;
+        let (first, count) = (self.parts.mesh.positions.len(), vertices.positions.len());
+        self.check("vertices", first + count)?;
         let mesh = &mut self.parts.mesh;
-        let (first, count) = (mesh.positions.len(), vertices.positions.len());
-        let limit = ("nodes", self.binary.budget.limits().nodes);
-        self.binary.budget.within(&format!("{}: vertices", self.place), first + count, limit)?;
         mesh.positions.extend(vertices.positions);
         self.coloured |= vertices.colours.is_some();
         self.smooth &= vertices.normals.is_some();
@@ -186,6 +207,7 @@ impl Reader<'_> {
             }
             set = set.selected(&indices.iter().map(|i| *i as usize).collect::<Vec<_>>());
         }
+        self.check("points", self.parts.points.len() + set.len())?;
         if !append(&mut self.parts.points, set) {
             let message = format!("{}: attributes of some points alone are left out", self.place);
             self.parts.warnings.push(Warning::new(message, "give all points of a mesh the same attributes"));

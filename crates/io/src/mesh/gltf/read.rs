@@ -57,7 +57,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// Refuses scenes that are too large in all, before anything is put together.
     fn check_size(&mut self, places: &[Placed<'_>]) -> Result<()> {
-        let mut total = 0_usize;
+        let mut totals = [0_usize; 2];
         for place in places {
             let parts = match self.meshes.get(&place.mesh) {
                 Some(parts) => parts,
@@ -67,10 +67,15 @@ impl Reader<'_> {
                     self.meshes.entry(place.mesh).or_insert(parts)
                 }
             };
-            total = total.saturating_add(parts.mesh.positions.len()).saturating_add(parts.points.len());
+            let more = [parts.mesh.positions.len() + parts.points.len(), parts.mesh.triangles.len()];
+            totals = std::array::from_fn(|k| totals[k].saturating_add(more[k]));
         }
         let limit = ("nodes", self.binary.budget.limits().nodes);
-        self.binary.budget.within(&format!("{}: vertices in all places", self.binary.name), total, limit)
+        let check = |what: &str, total: usize| {
+            self.binary.budget.within(&format!("{}: {what} in all places", self.binary.name), total, limit)
+        };
+        check("vertices", totals[0])?;
+        check("triangles", totals[1])
     }
 
     fn place(&mut self, placed: &Placed<'_>) -> Result<()> {

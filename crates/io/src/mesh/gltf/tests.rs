@@ -104,6 +104,11 @@ fn strips_fans_and_materials_are_understood() {
         let colour = scene.meshes[0].mesh.colours.as_ref().unwrap()[0];
         assert!(colour[0] == 1.0 && (colour[2] - 0.5).abs() < 1e-3, "{colour:?}");
     }
+    let textured =
+        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "baseColorFactor": [1, 1, 1, 1] } }]);
+    let scene = read(json!([{ "mesh": 0 }]), json!({ "meshes": meshes(4), "materials": textured })).unwrap();
+    assert!(scene.meshes[0].mesh.colours.is_none());
+    assert!(scene.warnings[0].message.contains("mesh 0: pictures on it are passed over"), "{:?}", scene.warnings);
     let lines = read(json!([{ "mesh": 0 }]), json!({ "meshes": meshes(1) })).unwrap_err().to_string();
     assert!(lines.contains("no mesh and no points"), "{lines}");
 }

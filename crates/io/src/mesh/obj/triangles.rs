@@ -52,7 +52,6 @@ struct Reader<'a> {
     polygons: Polygons,
     /// Vertices of `p` statements, with their line.
     points: Vec<(usize, usize)>,
-    part: String,
     ignored: BTreeMap<String, usize>,
     uses: usize,
 }
@@ -67,7 +66,6 @@ impl<'a> Reader<'a> {
             normal_of: Vec::new(),
             polygons: Polygons::default(),
             points: Vec::new(),
-            part: String::new(),
             ignored: BTreeMap::new(),
             uses: 0,
         }
@@ -80,7 +78,10 @@ impl<'a> Reader<'a> {
         self.lexer.budget.spend(PER_BYTE * content.len() as u64)?;
         match keyword {
             "v" | "vn" | "f" | "p" => {
-                self.uses += words.clone().count();
+                // Words are counted before a list of them is made.
+                let count = words.clone().count();
+                self.lexer.check_limit("numbers in one line", count, limits.nodes)?;
+                self.uses += count;
                 self.lexer.check_limit("numbers", self.uses, limits.nodes.saturating_mul(16))?;
                 let words: Vec<&str> = words.collect();
                 match keyword {
@@ -91,8 +92,7 @@ impl<'a> Reader<'a> {
                 }
             }
             "o" | "g" => {
-                self.part = words.collect::<Vec<_>>().join(" ");
-                self.polygons.begin_part(&self.part);
+                self.polygons.begin_part(content.trim_start()[1..].trim());
                 Ok(())
             }
             // How faces look, which says nothing about where they are.

@@ -1,5 +1,7 @@
 //! The header of a PLY file: its elements and their properties.
 
+use std::collections::BTreeSet;
+
 use arabesque_core::{Budget, Error, Result};
 
 use super::scalar::Scalar;
@@ -50,8 +52,6 @@ impl Element {
 pub(super) struct Header {
     pub(super) order: Order,
     pub(super) elements: Vec<Element>,
-    /// Comments in their order.
-    pub(super) comments: Vec<String>,
     /// Where the data begin, and the number of their first line.
     pub(super) data: usize,
     pub(super) line: usize,
@@ -66,17 +66,16 @@ pub(super) fn read_header(name: &str, bytes: &[u8], budget: &Budget) -> Result<H
     if lines.next().is_none_or(|first| first.trim_end() != "ply") {
         return Err(Error::input(name, "a file that does not begin with the word ply", "give a PLY file"));
     }
-    let mut reader = Reader { name, line: 1, order: None, elements: Vec::new(), comments: Vec::new() };
+    let mut reader = Reader { name, line: 1, order: None, elements: Vec::new(), names: BTreeSet::new() };
     while let Some(content) = lines.next() {
         reader.line += 1;
         budget.spend(PER_BYTE * content.len() as u64)?;
         budget.within(&format!("{name}: lines of the header"), reader.line, ("nodes", budget.limits().nodes))?;
-        let words: Vec<&str> = content.split_ascii_whitespace().collect();
+        // No statement has more words than a list; more of them show that it is none.
+        let words: Vec<&str> = content.split_ascii_whitespace().take(6).collect();
         match words[..] {
             ["end_header"] => return reader.finish(lines.at),
-            [] => {}
-            ["comment", ..] => reader.comments.push(comment(&content).to_owned()),
-            ["obj_info", ..] => {}
+            [] | ["comment" | "obj_info", ..] => {}
             ["format", ref rest @ ..] => reader.format(rest)?,
             ["element", ref rest @ ..] => reader.element(rest)?,
             ["property", ref rest @ ..] => reader.property(rest)?,
@@ -143,7 +142,8 @@ struct Reader<'a> {
     line: usize,
     order: Option<Order>,
     elements: Vec<Element>,
-    comments: Vec<String>,
+    /// The elements so far, and the properties of the last one, each with its element.
+    names: BTreeSet<(Option<usize>, String)>,
 }
 
 impl Reader<'_> {
@@ -183,7 +183,7 @@ impl Reader<'_> {
             return self.fail(problem, "write how many there are, as 100");
         };
         let name = name.to_ascii_lowercase();
-        if self.elements.iter().any(|e| e.name == name) {
+        if !self.names.insert((None, name.clone())) {
             return self.fail(format!("a second element {}", short(&name)), "give each element a name of its own");
         }
         self.elements.push(Element { name, count: number, properties: Vec::new() });
@@ -206,11 +206,12 @@ impl Reader<'_> {
                 return self.fail("a property that is neither a number nor a list", advice);
             }
         };
+        let number = self.elements.len();
         let Some(element) = self.elements.last_mut() else {
             return self.fail("a property before any element", "begin with a line such as element vertex 100");
         };
         let name = name.to_ascii_lowercase();
-        if element.properties.iter().any(|p| p.name == name) {
+        if !self.names.insert((Some(number), name.clone())) {
             let problem = format!("a second property {} of element {}", short(&name), short(&element.name));
             return self.fail(problem, "give each property a name of its own");
         }
@@ -232,8 +233,8 @@ impl Reader<'_> {
     fn finish(self, data: usize) -> Result<Header> {
         match self.order {
             Some(order) => {
-                let Self { line, elements, comments, .. } = self;
-                Ok(Header { order, elements, comments, data, line: line + 1 })
+                let Self { line, elements, .. } = self;
+                Ok(Header { order, elements, data, line: line + 1 })
             }
             None => self.fail("a header without a format", "add a line such as format ascii 1.0"),
         }
@@ -252,10 +253,18 @@ mod tests {
          list uchar int other\nelement face 6\nproperty list uint8 int32 vertex_indices\nobj_info x\nend_header\n1 2";
 
     #[test]
+    fn many_elements_and_properties_take_little() {
+        let names: String =
+            (0..20_000).map(|k| format!("element e{k} 0\nproperty int a{k}\nproperty int b\n")).collect();
+        let text = format!("ply\nformat ascii 1.0\n{names}comment {}\nend_header\n", "a ".repeat(100_000));
+        assert_eq!(read(&text).unwrap().elements.len(), 20_000);
+    }
+
+    #[test]
     fn elements_properties_and_comments_are_read() {
         let header = read(CUBE).unwrap();
         assert_eq!((header.order, header.line, &CUBE[header.data..]), (Order::Text, 11, "1 2"));
-        assert_eq!(header.comments, [" made by hand"]);
+        assert_eq!(comments(CUBE.as_bytes()), [" made by hand"]);
         assert_eq!(header.elements[0].properties[1].length, Some(Scalar::U8));
         assert_eq!((header.elements[1].name.as_str(), header.elements[1].count), ("face", 6));
         assert_eq!(header.elements[0].least_bytes(Order::LittleEndian), 5);

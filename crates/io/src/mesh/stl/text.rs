@@ -50,7 +50,7 @@ impl Reader<'_> {
             }
             "facet" => {
                 // A normal that is none counts for nothing, and many programs write one.
-                let words: Vec<f64> = rest.split_whitespace().skip(1).filter_map(|w| w.parse().ok()).collect();
+                let words: Vec<f64> = rest.split_whitespace().skip(1).take(3).filter_map(|w| w.parse().ok()).collect();
                 self.normal = words.try_into().map_or(Vector::ZERO, Vector);
                 Ok(())
             }

@@ -209,7 +209,7 @@ fn rounds(
                 sum_gf[k] += slope * d[k] * own;
             }
         }
-        if !(sum > 1e-20) {
+        if sum.is_nan() || sum <= 1e-20 {
             break;
         }
         let before = f;
@@ -233,7 +233,7 @@ fn beyond(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], g: [f32; 3], ke
         radius += weight * sample.radius;
         (0..3).for_each(|k| offset[k] += weight * d[k]);
     }
-    if !(sum > 0.0) {
+    if sum <= 0.0 {
         return f32::INFINITY;
     }
     let off = offset.map(|c| c / sum);

@@ -34,7 +34,7 @@ impl Blocks {
         let origin = bounds.min - Vector([0.519, 0.547, 0.503]) * cell;
         let side = cell * SIDE as f64;
         let along = bounds.size().0.iter().fold(0.0_f64, |a, &b| a.max(b)) / side;
-        if !(along < f64::from(1_u32 << BITS) - 4.0) {
+        if along.is_nan() || along >= f64::from(1_u32 << BITS) - 4.0 {
             let most =
                 bounds.size().0.iter().fold(0.0_f64, |a, &b| a.max(b)) / (f64::from(1_u32 << BITS) * SIDE as f64);
             return Err(Error::parameter("cell", cell, format!("more than {most:.3e} for points as far apart")));

@@ -5,15 +5,15 @@
 //! rest, by `exp(-((f_p - f) / (σ_r h))²)`, and whose normal differs from the gradient, by `exp(-(|n - ∇f| / σ_n)²)`: so edges stay sharp.
 //!
 //! Departures: the rounds start from what the nearest point says (in units of its `h`), not from the plain mean, so that the other side of a thin sheet or a near-by part never
-//! gets a say; each point has its own `h`, a multiple of the spacing around it. The rounds are done at nodes within two cells of the surface only; what is farther away is taken from the
+//! gets a say; each point has its own `h`, a multiple of the spacing around it. The rounds are done at nodes of cells that the surface crosses; what is farther away is taken from the
 //! nearest point, since nothing but its sign matters there.
 
 use arabesque_core::{Budget, Result, Vector};
 
 use super::blocks::{BLOCK, Blocks, Field, Node, SIDE, reached};
 
-/// Nodes nearer to the surface are done with care, in cells.
-const CARE: f32 = 2.0;
+/// Nodes nearer to the surface are done with care, in cells: all those of a cell that the surface crosses.
+const CARE: f32 = 1.75;
 
 /// Points with normals, as a surface is made of them.
 pub(crate) struct Oriented<'a> {
@@ -24,12 +24,16 @@ pub(crate) struct Oriented<'a> {
     pub(crate) radii: &'a [f64],
 }
 
+/// Rounds end when the height changes by less, in cells.
+const SETTLED: f32 = 1e-3;
 /// Nodes are told by a point that is so near, in radii: beyond corners there may be none that has a weight, and the plane of the nearest one counts.
 const VALID: f32 = 1.2;
 /// How far points of other sides are asked, in radii: farther, so that no side goes on beyond its edge where the other one is just out of reach.
 const REACH: f32 = 1.6;
 /// Cosine to the nearest point's normal below which points face another side.
 const OTHER: f32 = 0.4;
+/// How far to the side of its nearest point a node looks farther, in radii.
+const ASIDE: f32 = 0.55;
 /// Cosine to a side's normal from which points have a say on it.
 const SAME: f32 = 0.2;
 /// Most sides that are asked at one place.
@@ -130,11 +134,15 @@ fn nearest_samples(samples: &[Sample]) -> Vec<Option<u32>> {
 fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], first: [f32; 3], kernel: Kernel) -> Node {
     // The sides that were asked: no more than three meet in most corners.
     let (mut sides, mut count) = ([first; SIDES], 0);
-    let mut node = Node::UNKNOWN;
+    let (mut node, mut looks_beyond) = (Node::UNKNOWN, false);
     while count < SIDES {
         let asked = &sides[..count];
-        let is_new = |n: [f32; 3]| if count == 0 { n == first } else { asked.iter().all(|side| dot(*side, n) < OTHER) };
-        let facing = near.iter().filter(|(s, _)| is_new(samples[*s as usize].normal));
+        let is_new = |&&(s, inner): &&(u32, f32)| {
+            let normal = samples[s as usize].normal;
+            let faces = if count == 0 { normal == first } else { asked.iter().all(|side| dot(*side, normal) < OTHER) };
+            faces && (inner > 0.0 || count == 0 || looks_beyond)
+        };
+        let facing = near.iter().filter(is_new);
         let nearest = facing
             .fold(None, |best: Option<(u32, f32)>, &n| if best.is_none_or(|b| n.1 > b.1) { Some(n) } else { best });
         let Some((own, _)) = nearest else { break };
@@ -142,6 +150,10 @@ fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], first: [f32; 3
         let said = rounds(at, samples, near, dot(own.normal, minus(at, own.at)), own.normal, kernel);
         if count == 0 {
             node = said;
+            // Where the nearest point is far to one side, its own side may have ended in between.
+            let way = minus(at, own.at);
+            let height = dot(own.normal, way);
+            looks_beyond = dot2(way) - height * height > (ASIDE * own.radius).powi(2);
             if kernel.rounds == 0 {
                 break;
             }
@@ -209,13 +221,13 @@ fn rounds(
                 sum_gf[k] += slope * d[k] * own;
             }
         }
-        if !(sum > 1e-20) {
+        if sum.is_nan() || sum <= 1e-20 {
             break;
         }
         let before = f;
         f = sum_f / sum;
         g = std::array::from_fn(|k| (sum_gf[k] - f * sum_g[k] + sum_n[k]) / sum);
-        if (f - before).abs() < 1e-4 {
+        if (f - before).abs() < SETTLED {
             break;
         }
     }
@@ -233,7 +245,7 @@ fn beyond(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], g: [f32; 3], ke
         radius += weight * sample.radius;
         (0..3).for_each(|k| offset[k] += weight * d[k]);
     }
-    if !(sum > 0.0) {
+    if sum <= 0.0 {
         return f32::INFINITY;
     }
     let off = offset.map(|c| c / sum);

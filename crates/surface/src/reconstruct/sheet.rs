@@ -120,7 +120,7 @@ impl Job<'_> {
     fn cloud(&self, points: &PointSet<3>, name: &str, notes: &mut Notes) -> Result<Cloud> {
         let neighbours = Neighbours::new(&points.positions, self.params.neighbours, self.budget)?;
         let median = neighbours.median_spacing();
-        if !(median > 0.0) {
+        if median.is_nan() || median <= 0.0 {
             return Err(Error::input(
                 name,
                 "most points lie in one place, expected points spread over a surface",

@@ -224,6 +224,10 @@ where
         }
     }
 
+    fn has_strokes(&self) -> bool {
+        self.contexts.iter().any(|context| context.sampled.level.net.is_some())
+    }
+
     fn search_params(&self, k: usize, iteration: usize) -> SearchParams {
         let params = self.params;
         let done = iteration % self.iterations.max(1);
@@ -239,7 +243,7 @@ where
                 (Search::PatchMatch, false) => 2,
                 _ => 1,
             },
-            thorough: done < 2 || params.search != Search::KCoherence,
+            thorough: done < 2 || params.search != Search::KCoherence || self.has_strokes(),
             step: (k * 10_000 + iteration) as u64,
         }
     }
@@ -387,9 +391,9 @@ where
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<()> {
         let k = steps.k;
-        // What starts in disorder gains and loses elements for a while.
-        let is_ordered = self.params.initialisation != Initialisation::WhiteNoise && self.params.rest > 0.0;
-        let rest = if is_ordered { self.params.rest } else { f64::NEG_INFINITY };
+        // What starts in disorder gains and loses elements for a while, and strokes join when the energy has long come to rest.
+        let is_ordered = self.params.initialisation != Initialisation::WhiteNoise && !self.has_strokes();
+        let rest = if is_ordered && self.params.rest > 0.0 { self.params.rest } else { f64::NEG_INFINITY };
         let mut before = f64::INFINITY;
         for iteration in steps.before..steps.before + self.iterations {
             let searched = search::search(state, &self.search_params(k, iteration))?;

@@ -78,7 +78,7 @@ where
             return Ok(None);
         }
         let inks = Arc::new(Inks::new(exemplar, library, count, library.spacing, budget)?);
-        let natural = Natural::new(exemplar, library, &inks, Strokes::of_exemplar(net, library, count), budget)?;
+        let natural = Natural::new(exemplar, library, &inks, Strokes::of_exemplar(net, library), budget)?;
         let mass = masses(exemplar, count);
         let spread = Spread::new(library, mass, budget)?;
         Ok(natural.filter(|n| n.tolerated > 0.0).map(|natural| Self { inks, natural, spread }))

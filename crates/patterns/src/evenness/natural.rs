@@ -41,8 +41,9 @@ const SECTORS: usize = 8;
 /// Share of the gaps in all directions that are narrower than what counts as the narrowest in one that is hardly seen.
 const ANYWHERE: f64 = 0.1;
 
-/// So many pairs tell how near two kinds come.
+/// So many pairs tell how near two kinds come; and so few at least what they do not do.
 const MANY: usize = 8;
+const HANDFUL: usize = 4;
 
 /// Kinds of which more than this share touches strokes are joined to them, such as leaves to their twigs; and how near that is, in mean
 /// spacings.
@@ -175,7 +176,8 @@ fn narrowest<const D: usize>(gaps: &[Seen<D>], kinds: usize, otherwise: f64, mos
             } else if all.len() >= 2 * MANY {
                 low(&all, ANYWHERE)
             } else {
-                low(&all, 0.0).map(|least| least.min(otherwise))
+                // The least of a handful says enough; one or two may be far apart by chance.
+                low(&all, 0.0).map(|least| if all.len() >= HANDFUL { least } else { least.min(otherwise) })
             };
             let place = (a as usize * kinds + b as usize) * SECTORS + s;
             table[place] = gap.unwrap_or(otherwise).min(most) as f32;

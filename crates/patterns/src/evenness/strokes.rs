@@ -1,6 +1,8 @@
 //! Ink of strokes: places along them, close enough that the gaps between them do not matter, and half their width.
 
-use arabesque_core::{Domain, GridIndex, Vector};
+use std::collections::BTreeMap;
+
+use arabesque_core::{Domain, GridIndex, Numbered, Vector};
 
 use crate::{
     evenness::ink::{Inks, Pose},
@@ -28,15 +30,18 @@ impl<const D: usize> Strokes<D> {
         Self { index: GridIndex::new(&points, spacing, domain), places, widest }
     }
 
-    /// The strokes of an exemplar, whose first `base` elements are no samples of strokes.
-    pub(crate) fn of_exemplar(net: Option<&Net<D>>, library: &Library<D>, base: usize) -> Self {
+    /// The strokes of an exemplar.
+    pub(crate) fn of_exemplar(net: Option<&Net<D>>, library: &Library<D>) -> Self {
         let mut places = Vec::new();
-        for (n, node) in net.iter().flat_map(|net| net.nodes.iter().enumerate()) {
-            let radius = library.radius[base + n];
-            places.push((node.position, radius));
-            for arm in node.arms.iter().filter(|arm| arm.to as usize > n) {
-                let offset = net.map_or(Vector::ZERO, |net| net.nodes[arm.to].position - node.position);
-                places.extend(between(node.position, offset).map(|p| (p, radius)));
+        if let Some(net) = net {
+            let radii = radii(net);
+            for (n, node) in net.nodes.iter().enumerate() {
+                let radius = radii[n];
+                places.push((node.position, radius));
+                for arm in node.arms.iter().filter(|arm| arm.to as usize > n) {
+                    let offset = net.nodes[arm.to].position - node.position;
+                    places.extend(between(node.position, offset).map(|p| (p, radius)));
+                }
             }
         }
         Self::new(places, library.spacing, &Domain::Box(library.view.window))
@@ -45,8 +50,9 @@ impl<const D: usize> Strokes<D> {
     /// The strokes of a page.
     pub(crate) fn of_page(state: &State<'_, D>) -> Self {
         let mut places = Vec::new();
-        for &s in state.living().iter().filter(|&&s| state.node(s).is_some()) {
-            let radius = state.library.radius[state.source(s)];
+        let radii = state.level.net.as_deref().map_or_else(Numbered::new, radii);
+        for &s in state.living() {
+            let Some(&radius) = state.node(s).and_then(|node| radii.get(node as usize)) else { continue };
             let p = state.sample(s).position;
             places.push((p, radius));
             for &o in state.links_of(s).iter().filter(|&&o| o > s) {
@@ -71,6 +77,15 @@ impl<const D: usize> Strokes<D> {
         });
         gap
     }
+}
+
+/// Half the width of the stroke through each node.
+fn radii<const D: usize>(net: &Net<D>) -> Numbered<f64> {
+    let mut of_curve = BTreeMap::new();
+    for line in &net.skeleton.lines {
+        of_curve.entry(line.curve).or_insert(0.5 * line.width);
+    }
+    net.nodes.iter().map(|node| of_curve.get(&node.curve).copied().unwrap_or(0.0)).collect()
 }
 
 /// Places between the ends of an edge.

@@ -305,7 +305,7 @@ proptest! {
         let extent = Extent::new(&request, &sampled.exemplar, &sampled.library, sampled.level.base).unwrap();
         let evenness = Evenness::new(&exemplar, &sampled.library, None, 144, &budget).unwrap().unwrap();
         let measures = Measures { spacing: 10.0, tolerated: 4.0, reach: 9.0 };
-        let none = Strokes::of_exemplar(None, &sampled.library, 144);
+        let none = Strokes::of_exemplar(None, &sampled.library);
         let fresh = |bodies: Vec<Body<2>>| Page::new(&extent, &evenness.inks, bodies, measures, none.clone(), &budget).unwrap();
         let mut page = fresh(Vec::new());
         let mut random = Stream::new(seed, Stage::TEST, 2);

@@ -30,7 +30,7 @@ params! {
         /// Size of the window that has to look like the exemplar, at first; half of it in the end.
         window "window": Option<f64> = None, in 1.0..=1000.0, auto "about half of what repeats in the exemplar", unit "spacings";
         /// Width of the Gaussians that stand for the points.
-        sigma "sigma": f64 = 1.0, in 0.2..=5.0, unit "spacings";
+        sigma "sigma": Option<f64> = None, in 0.2..=5.0, auto "1, and less where points lie as evenly as in a lattice", unit "spacings";
         /// Width of these Gaussians in the last levels, which make the spacing of the points even.
         fine "fine": f64 = 0.45, in 0.1..=5.0, unit "spacings";
         /// How much of a neighbourhood counts.
@@ -42,7 +42,7 @@ params! {
         /// Size of the patches that `start=patches` begins with.
         patch "patch": f64 = 6.0, in 1.0..=1000.0, unit "spacings";
         /// How far points are shaken after they were laid out from pieces of the exemplar, so that they are not its very points.
-        shake "shake": f64 = 0.35, in 0.0..=2.0, unit "spacings";
+        shake "shake": Option<f64> = None, in 0.0..=2.0, auto "as unevenly as the points of the exemplar lie", unit "spacings";
         /// Factor from one size of the window to the next.
         shrink "shrink": f64 = 0.8, in 0.3..=0.99;
         /// Rounds of matching, moving, adding and removing for each size of the window.

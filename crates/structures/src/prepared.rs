@@ -19,6 +19,12 @@ use crate::{
 const WINDOW: f64 = 0.7;
 /// Window for what does not repeat, in spacings.
 const IRREGULAR: f64 = 4.5;
+/// Distances that vary less than by the first count as even, more than by the second as random.
+const EVEN: (f64, f64) = (0.02, 0.07);
+/// Width of the Gaussians for even points, in spacings.
+const NARROW: f64 = 0.6;
+/// From this strength on an exemplar repeats regularly.
+const REGULAR: f64 = 0.5;
 /// Smallest window, in spacings.
 const SMALLEST: f64 = 3.0;
 /// Largest share of the exemplar's length that the window is by itself.
@@ -28,6 +34,13 @@ const MOST: f64 = 0.5;
 /// Windows at most from one site to the next, when they are smallest.
 const STEP: f64 = 1.0;
 
+/// Width of the Gaussians, in spacings, for points whose distances vary by this share of themselves. Gaussians as wide as the spacing do not
+/// tell where each point of a lattice is.
+fn width(variation: f64) -> f64 {
+    let uneven = ((variation - EVEN.0) / (EVEN.1 - EVEN.0)).clamp(0.0, 1.0);
+    NARROW + (1.0 - NARROW) * uneven
+}
+
 /// A prepared exemplar.
 #[derive(Clone, Debug)]
 pub struct Prepared<const D: usize> {
@@ -35,6 +48,8 @@ pub struct Prepared<const D: usize> {
     pub(crate) params: StructureParams,
     /// The window at first, in the units of the exemplar.
     pub(crate) window: f64,
+    /// Width of the Gaussians at first, in the units of the exemplar.
+    pub(crate) sigma: f64,
     pub(crate) repetition: Repetition<D>,
     pub(crate) warnings: Vec<Warning>,
 }
@@ -49,7 +64,7 @@ impl<const D: usize> Prepared<D> {
         let budget = budget.stage("preparing the exemplar");
         let mut warnings = Vec::new();
         let pattern = Pattern::new(points, params, &budget, &mut warnings)?;
-        let sigma = params.sigma * pattern.spacing;
+        let sigma = params.sigma.unwrap_or_else(|| width(pattern.variation)) * pattern.spacing;
         let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
         let kernel = Kernel::new(sigma, 1e3 * shortest.max(sigma), pattern.base, params.shape);
         let places = &pattern.points.positions;
@@ -74,7 +89,7 @@ impl<const D: usize> Prepared<D> {
                 ),
             ));
         }
-        Ok(Self { pattern: Arc::new(pattern), params: params.clone(), window, repetition, warnings })
+        Ok(Self { pattern: Arc::new(pattern), params: params.clone(), window, sigma, repetition, warnings })
     }
 
     /// Mean distance of a point of the exemplar from the nearest.
@@ -110,6 +125,7 @@ impl<const D: usize> Prepared<D> {
             base: self.pattern.base,
             axis: self.pattern.axis,
             thickness: self.pattern.thickness,
+            repetition: self.repetition.length.filter(|_| self.repetition.strength > REGULAR),
         }
     }
 }

@@ -28,6 +28,8 @@ use crate::{
 
 /// The smallest window, in units of the first one.
 const SMALLEST: f64 = 0.5;
+/// How far points are shaken, in units of how much their distances vary.
+const SHAKE: f64 = 2.7;
 /// Points that move less than this in the mean, in spacings, have settled.
 const SETTLED: f64 = 1e-3;
 /// Rounds for the first matches, where the start brings none along.
@@ -103,7 +105,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         budget.allow_elements(expected);
         let mut scales = Vec::new();
         let spacing = prepared.pattern.spacing;
-        let (mut delta, sigma) = (layout.window, prepared.params.sigma * spacing);
+        let (mut delta, sigma) = (layout.window, prepared.sigma);
         let least = SMALLEST * layout.window;
         while delta > 1.1 * least {
             scales.push(Scale { delta, sigma });
@@ -212,7 +214,8 @@ impl<'a, const D: usize> Stage<'a, D> {
             }
         };
         if params.start != Start::Noise {
-            shake(&mut output, params.shake * spacing, seed);
+            let length = params.shake.unwrap_or((SHAKE * self.prepared.pattern.variation).min(0.5));
+            shake(&mut output, length * spacing, seed);
         }
         (state.output, state.matches) = (output, matches);
         Ok(())

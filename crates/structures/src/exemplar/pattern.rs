@@ -6,7 +6,7 @@ use arabesque_core::{Bounds, Budget, Domain, Error, GridIndex, PointSet, Result,
 
 use super::{
     bodies::{Body, bodies},
-    channels::{Channels, Weights},
+    channels::{Channels, LANES, Weights},
     spacing::{base, spacing},
 };
 use crate::params::StructureParams;
@@ -25,8 +25,12 @@ pub(crate) struct Pattern<const D: usize> {
     pub(crate) channels: Channels,
     /// The weights of each point.
     pub(crate) weights: Vec<Weights>,
+    /// Smallest and largest weight in each channel.
+    pub(crate) ranges: [(f32, f32); LANES],
     /// Mean distance of a point from the nearest.
     pub(crate) spacing: f64,
+    /// By what share of itself that distance varies.
+    pub(crate) variation: f64,
     /// The coordinates along which the exemplar repeats.
     pub(crate) base: [bool; D],
     /// The box of what repeats; across it, that of all points.
@@ -54,7 +58,7 @@ impl<const D: usize> Pattern<D> {
         check(&points, budget)?;
         let all = points.bounds();
         budget.spend(points.len() as u64 * 2_000)?;
-        let spacing = spacing(&points.positions).ok_or_else(|| {
+        let (spacing, variation) = spacing(&points.positions).ok_or_else(|| {
             Error::input("the exemplar", "all points lie in one place", "give an exemplar in which points lie apart")
         })?;
         let (bodies, body_of) = bodies(&points);
@@ -79,9 +83,11 @@ impl<const D: usize> Pattern<D> {
         let across = |p: &Vector<D>| (0..D).filter(|&k| !base[k]).map(|k| (p[k] - axis[k]).powi(2)).sum::<f64>().sqrt();
         let thickness = points.positions.iter().map(across).fold(0.0, f64::max);
         let channels = Channels::new(&points, params);
-        let weights = (0..points.len()).map(|i| channels.of(&points, i)).collect();
+        let weights: Vec<Weights> = (0..points.len()).map(|i| channels.of(&points, i)).collect();
+        let range = |c: usize| weights.iter().fold((f32::MAX, f32::MIN), |(a, b), w| (w[c].min(a), w[c].max(b)));
+        let ranges = std::array::from_fn(range);
         let index = GridIndex::new(&points.positions, 2.0 * spacing, &Domain::Box(all));
-        Ok(Self { channels, weights, spacing, base, bounds, axis, thickness, bodies, body_of, index, points })
+        Ok(Self { channels, weights, ranges, spacing, variation, base, bounds, axis, thickness, bodies, body_of, index, points })
     }
 
     /// Number of directions along which the exemplar repeats.

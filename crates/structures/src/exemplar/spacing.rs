@@ -7,8 +7,9 @@ const ROPE: f64 = 0.6;
 /// A structure that is thicker than this share of its width is no surface.
 const SHEET: f64 = 0.5;
 
-/// Distance to the nearest other point, in the median over all points that do not lie on another one; `None` when all do.
-pub(crate) fn spacing<const D: usize>(points: &[Vector<D>]) -> Option<f64> {
+/// Distance to the nearest other point, in the median over all points that do not lie on another one, and by how much of itself it
+/// varies; `None` when all lie on one another.
+pub(crate) fn spacing<const D: usize>(points: &[Vector<D>]) -> Option<(f64, f64)> {
     let bounds = Bounds::around(points.iter().copied());
     let size = bounds.size();
     let largest = size.0.iter().copied().fold(0.0, f64::max);
@@ -39,7 +40,11 @@ pub(crate) fn spacing<const D: usize>(points: &[Vector<D>]) -> Option<f64> {
         }
     }
     nearest.sort_by(f64::total_cmp);
-    nearest.get(nearest.len() / 2).copied()
+    let at = |share: f64| nearest.get((share * nearest.len() as f64) as usize).copied();
+    let median = at(0.5)?;
+    // Nine in ten lie within 3.29 standard deviations of a normal distribution.
+    let variation = (at(0.95)? - at(0.05)?) / 3.29 / median;
+    Some((median, variation))
 }
 
 /// The coordinates along which a structure in `bounds` repeats: all that are long; `wanted` says how many.

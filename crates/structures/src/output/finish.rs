@@ -13,6 +13,9 @@ use crate::{
 /// Points of one part are no farther apart than this, in spacings.
 const PART: f64 = 2.2;
 
+/// Share of the votes by which neighbours must be of one part: a part holds together at many places, and one false link joins two.
+const SURE: f64 = 0.6;
+
 /// For each point the point of the exemplar it stands for: the nearest to where most of its windows see it.
 pub(crate) fn sources<const D: usize>(
     level: &Level<'_, D>,
@@ -99,14 +102,15 @@ pub(crate) fn groups<const D: usize>(
             if j < i || far > PART * pattern.spacing * scale {
                 continue;
             }
-            let (mut votes, mut b) = (0.0, seen[j].iter().peekable());
+            let (mut votes, mut all, mut b) = (0.0, 0.0, seen[j].iter().peekable());
             for (q, weight, source) in &seen[i] {
                 while b.next_if(|s| s.0 < *q).is_some() {}
                 if let Some((_, other, theirs)) = b.next_if(|s| s.0 == *q) {
+                    all += weight * other;
                     votes += weight * other * if parts[*source] == parts[*theirs] { 1.0 } else { -1.0 };
                 }
             }
-            if votes > 0.0 {
+            if votes > SURE * all && all > 0.0 {
                 sets.join(i, j);
             }
         }

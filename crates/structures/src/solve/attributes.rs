@@ -52,7 +52,9 @@ pub(crate) fn attributes<const D: usize>(
         }
         for c in level.pattern.channels.scalars() {
             // The minimum of the quadratic, damped in the same way.
-            new[c] = (rest[c] + INERTIA * own * old[c]) / ((1.0 + INERTIA) * own).max(1e-12);
+            let (least, most) = level.pattern.ranges[c];
+            let best = (rest[c] + INERTIA * own * old[c]) / ((1.0 + INERTIA) * own).max(1e-12);
+            new[c] = best.clamp(least, most);
         }
         // Exactly how T changes.
         let change: f32 =

@@ -24,6 +24,8 @@ pub struct SitePlan<const D: usize> {
     pub axis: Vector<D>,
     /// How far its points are from the base.
     pub thickness: f64,
+    /// How far it is from where it looks like itself again, where it repeats regularly.
+    pub repetition: Option<f64>,
 }
 
 /// Part of the plane or of space that a structure is made in.

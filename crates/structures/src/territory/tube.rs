@@ -103,6 +103,16 @@ impl<const D: usize> Traced<D> {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
+    /// By how much the pattern is stretched so that it closes: whole repetitions fill a closed line.
+    fn closing(&self, plan: &SitePlan<D>) -> f64 {
+        let (true, Some(repetition)) = (self.thread.closed, plan.repetition) else { return 1.0 };
+        let steps = 256;
+        let share = |k: usize| (k as f64 + 0.5) / f64::from(steps);
+        let shown: f64 = (0..steps as usize).map(|k| 1.0 / self.thread.scale.at(share(k)).max(1e-9)).sum();
+        let count = shown / f64::from(steps) * self.length() / repetition;
+        if count < 1.0 { 1.0 } else { count / count.round() }
+    }
+
     /// Point, rotation with `along` as the tangent's coordinate, and scale at a distance from the start; straight on beyond the ends.
     fn at(&self, s: f64, along: usize) -> (Vector<D>, Matrix<D>, f64) {
         let length = self.length();
@@ -205,7 +215,8 @@ impl<const D: usize> Territory<D> for Tube<D> {
         let across: Vec<usize> = (0..D).filter(|&k| plan.base[k] && k != along).collect();
         let mut sites = Vec::new();
         for traced in &self.threads {
-            let scale = |s: f64| traced.thread.scale.at((s / traced.length()).clamp(0.0, 1.0));
+            let fit = traced.closing(plan);
+            let scale = |s: f64| fit * traced.thread.scale.at((s / traced.length()).clamp(0.0, 1.0));
             let margin = if traced.thread.closed { 0.0 } else { plan.margin };
             // Stations as far apart as the pattern is large there: equal steps of the length measured in it.
             let (mut stations, mut s) = (Vec::new(), -margin * scale(0.0));
@@ -227,6 +238,7 @@ impl<const D: usize> Territory<D> for Tube<D> {
             let start = stations[0];
             for s in stations.into_iter().map(|s| start + (s - start) * stretch) {
                 let (place, rotation, scale) = traced.at(s, along);
+                let scale = fit * scale;
                 let weight = stretch;
                 let reach = if across.is_empty() {
                     0

@@ -87,7 +87,21 @@ impl<const D: usize> Pattern<D> {
         let range = |c: usize| weights.iter().fold((f32::MAX, f32::MIN), |(a, b), w| (w[c].min(a), w[c].max(b)));
         let ranges = std::array::from_fn(range);
         let index = GridIndex::new(&points.positions, 2.0 * spacing, &Domain::Box(all));
-        Ok(Self { channels, weights, ranges, spacing, variation, base, bounds, axis, thickness, bodies, body_of, index, points })
+        Ok(Self {
+            channels,
+            weights,
+            ranges,
+            spacing,
+            variation,
+            base,
+            bounds,
+            axis,
+            thickness,
+            bodies,
+            body_of,
+            index,
+            points,
+        })
     }
 
     /// Number of directions along which the exemplar repeats.

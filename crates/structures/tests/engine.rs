@@ -1,5 +1,7 @@
 //! The engine on small drawings made here.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, its helpers too")]
+
 use std::{f64::consts::TAU, ops::ControlFlow, sync::Arc};
 
 use arabesque_core::{

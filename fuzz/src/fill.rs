@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, ops::ControlFlow};
 
 use arabesque::{
     Artwork, Border, Cuboid, FieldFile, FieldSource, Fill, Format, Input, Job, Method, OutputOptions, Progress, Recipe,
-    Redo, Region, Resources, Size, Space, Watch, core::options::Kind, patterns::Params, recipe_in,
+    Redo, Region, Resources, Size, Space, Tile, Watch, core::options::Kind, patterns::Params, recipe_in,
 };
 use arabesque_fuzz::{check, drawn, limits};
 use libfuzzer_sys::{
@@ -95,7 +95,7 @@ fn fill(u: &mut Unstructured<'_>) -> Result<Fill> {
     match u.int_in_range(0..=6u8)? {
         0 => {}
         1 => fill.domain = Some(embedded("domain.svg", drawn::drawing(u)?)),
-        2 | 3 => fill.tile = size(u)?,
+        2 | 3 => fill.tile = size(u)?.map(Tile::Of),
         _ => fill.size = size(u)?,
     }
     if u.ratio(1, 8u8)? {

@@ -34,8 +34,10 @@ const REACH: f32 = 1.6;
 const OTHER: f32 = 0.4;
 /// Cosine to a side's normal from which points have a say on it.
 const SAME: f32 = 0.2;
+/// Points of other sides are asked from this value of 1 - |x - p|² / h², elsewhere only where a node looks farther.
+const NEAR: f32 = 0.3;
 /// How far to the side of its nearest point a node looks farther, in radii.
-const ASIDE: f32 = 0.8;
+const ASIDE: f32 = 0.6;
 /// Most sides that are asked at one place.
 const SIDES: usize = 3;
 
@@ -140,7 +142,7 @@ fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], first: [f32; 3
         let is_new = |&&(s, inner): &&(u32, f32)| {
             let normal = samples[s as usize].normal;
             let faces = if count == 0 { normal == first } else { asked.iter().all(|side| dot(*side, normal) < OTHER) };
-            faces && (inner > 0.0 || count == 0 || looks_beyond)
+            faces && (inner > NEAR || count == 0 || looks_beyond)
         };
         let facing = near.iter().filter(is_new);
         let nearest = facing

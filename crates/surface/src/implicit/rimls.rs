@@ -32,10 +32,12 @@ const VALID: f32 = 1.2;
 const REACH: f32 = 1.6;
 /// Cosine to the nearest point's normal below which points face another side.
 const OTHER: f32 = 0.4;
-/// How far to the side of its nearest point a node looks farther, in radii.
-const ASIDE: f32 = 0.55;
 /// Cosine to a side's normal from which points have a say on it.
 const SAME: f32 = 0.2;
+/// Points of other sides are asked from this value of 1 - |x - p|² / h², elsewhere only where a node looks farther.
+const NEAR: f32 = 0.3;
+/// How far to the side of its nearest point a node looks farther, in radii.
+const ASIDE: f32 = 0.6;
 /// Most sides that are asked at one place.
 const SIDES: usize = 3;
 
@@ -140,20 +142,25 @@ fn careful(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], first: [f32; 3
         let is_new = |&&(s, inner): &&(u32, f32)| {
             let normal = samples[s as usize].normal;
             let faces = if count == 0 { normal == first } else { asked.iter().all(|side| dot(*side, normal) < OTHER) };
-            faces && (inner > 0.0 || count == 0 || looks_beyond)
+            faces && (inner > NEAR || count == 0 || looks_beyond)
         };
         let facing = near.iter().filter(is_new);
         let nearest = facing
             .fold(None, |best: Option<(u32, f32)>, &n| if best.is_none_or(|b| n.1 > b.1) { Some(n) } else { best });
-        let Some((own, _)) = nearest else { break };
+        let Some((own, inner)) = nearest else { break };
         let own = &samples[own as usize];
-        let said = rounds(at, samples, near, dot(own.normal, minus(at, own.at)), own.normal, kernel);
+        let height = dot(own.normal, minus(at, own.at));
+        // A side of which no point has a weight is the plane of its nearest one. Other sides than the first have few points here; those of the first must not outvote them.
+        let said = if inner > 0.0 {
+            let start = Start { height, normal: own.normal, least: if count == 0 { -1.0 } else { SAME } };
+            rounds(at, samples, near, start, kernel)
+        } else {
+            Node { value: height, gradient: own.normal, beyond: f32::INFINITY }
+        };
         if count == 0 {
             node = said;
             // Where the nearest point is far to one side, its own side may have ended in between.
-            let way = minus(at, own.at);
-            let height = dot(own.normal, way);
-            looks_beyond = dot2(way) - height * height > (ASIDE * own.radius).powi(2);
+            looks_beyond = dot2(minus(at, own.at)) - height * height > (ASIDE * own.radius).powi(2);
             if kernel.rounds == 0 {
                 break;
             }
@@ -181,16 +188,18 @@ fn middle(samples: &[Sample], near: &[(u32, f32)], side: [f32; 3]) -> [f32; 3] {
     place.map(|c| c / sum.max(f32::MIN_POSITIVE))
 }
 
-/// The rounds at one node, from a height and a normal.
-fn rounds(
-    at: [f32; 3],
-    samples: &[Sample],
-    near: &[(u32, f32)],
+/// What the rounds start from.
+#[derive(Clone, Copy)]
+struct Start {
     height: f32,
     normal: [f32; 3],
-    kernel: Kernel,
-) -> Node {
-    let (mut f, mut g) = (height, normal);
+    /// Least cosine to the normal of the points that have a say.
+    least: f32,
+}
+
+/// The rounds at one node.
+fn rounds(at: [f32; 3], samples: &[Sample], near: &[(u32, f32)], start: Start, kernel: Kernel) -> Node {
+    let (mut f, mut g) = (start.height, start.normal);
     for round in 0..=kernel.rounds {
         let (mut sum, mut sum_f) = (0.0_f32, 0.0_f32);
         let (mut sum_n, mut sum_g, mut sum_gf) = ([0.0_f32; 3], [0.0_f32; 3], [0.0_f32; 3]);
@@ -200,7 +209,7 @@ fn rounds(
             let own = dot(sample.normal, d);
             let mut alike = 1.0;
             if kernel.rounds > 0 {
-                if dot(sample.normal, normal) < SAME {
+                if dot(sample.normal, start.normal) < start.least {
                     continue;
                 }
                 let mut unlike = dot2(minus(sample.normal, g)) / (kernel.sharpness * kernel.sharpness);

@@ -1,4 +1,52 @@
 //! Repetitive structures as sums of Gaussians [Roveri 2015].
+//!
+//! An exemplar is a set of points with attributes: directions, colours, radii, parts, rigid elements. Every point stands for a Gaussian
+//! weighted by its attributes, so that exemplar and output are fields. Around each site of the output, and of a place in the exemplar that
+//! goes with it, the fields are compared under a window; the points of the output, and the places, are moved until the sum of the
+//! differences is as low as it gets. Sites have frames, so that the pattern turns and grows with a curve, a surface or a field.
+//!
+//! | step | module | source |
+//! |---|---|---|
+//! | understand the exemplar | `exemplar` | [Roveri 2015 §4.1] |
+//! | find how far it repeats, and the window | `exemplar::repetition`, `prepared` | |
+//! | lay sites over the domain | `territory`, `layout` | [Roveri 2015 §4.3, §6.2] |
+//! | lay out the first points | `start` | [Roveri 2015 fig. 4] |
+//! | error and slopes | `energy` | [Roveri 2015 §4.2, §4.3, eqs 2 to 6] |
+//! | local step: match | `solve::matching` | [Roveri 2015 §5.1] |
+//! | global step: places, then attributes | `solve::merging`, `solve::newton`, `solve::attributes` | [Roveri 2015 §5.1] |
+//! | sampling control | `solve::sampling` | [Roveri 2015 §5.1, eq. 7] |
+//! | the multi-scale loop | `run` | [Roveri 2015, algorithm 1] |
+//! | cut, number parts and elements | `output::finish` | |
+//!
+//! | symbol | identifier |
+//! |---|---|
+//! | x, a | `Output::places`, `Output::weights` |
+//! | e, b | `Pattern::points`, `Pattern::weights` |
+//! | q, R, s | [`Site::place`], [`Site::rotation`], [`Site::scale`] |
+//! | m | `Matches::places` |
+//! | σ, δ, w | `Kernel::sigma`, `Kernel::delta`, `Kernel::weights` |
+//! | S, T | `View::error`, `Level::energy` |
+//! | P | `Surplus::matched` |
+//! | α | [`StructureParams::shrink`] |
+//!
+//! Where it departs from the paper:
+//!
+//! - The window is a Gaussian along the directions in which the exemplar repeats and has no end across them, and sites lie on the base of
+//!   the output alone, a curve or a surface. So a match is a place on the base, and a structure never leaves its domain sideways.
+//! - Sites are half a first window apart, not σ. The error density of a match that goes on from site to site is as smooth as the window, and
+//!   windows of width δ at a distance of δ sum to a constant within 1e-4. Where the frames turn fast, window and step are smaller.
+//! - The sum over the exemplar is one look-up in its field (`energy::kernel`), and pairs of the output count as far as their points, not
+//!   their middles, lie in the windows (`energy::level`).
+//! - Beyond the border of the exemplar nothing is known: what a window sees there is left out, and the error divided by the rest.
+//! - Points move along Gauss-Newton directions with a step that is halved until T falls, instead of a fixed step down the slope.
+//! - A match has about as many points as the output has there, and points that nobody wants go only where there are too many: otherwise
+//!   empty places fit empty places best, and thin structures dissolve.
+//! - Levels end with narrow Gaussians ([`StructureParams::fine`]): with σ as wide as the spacing T hardly tells how points lie along a line or
+//!   a surface.
+//! - By default the output is grown from a seed and then shaken as unevenly as the points of the exemplar lie, so that it is not the
+//!   exemplar to the point. Whole repetitions fill a closed curve where the exemplar repeats regularly.
+//!
+//! Not handled: a σ for each point, a window for each kind of point, and brushes.
 
 #![allow(clippy::needless_range_loop, reason = "coordinates are numbered alike in many arrays at once")]
 

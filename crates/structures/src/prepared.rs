@@ -20,9 +20,9 @@ const WINDOW: f64 = 0.7;
 /// Window for what does not repeat, in spacings.
 const IRREGULAR: f64 = 4.5;
 /// Distances that vary less than by the first count as even, more than by the second as random.
-const EVEN: (f64, f64) = (0.02, 0.07);
+const EVEN: (f64, f64) = (0.0, 0.07);
 /// Width of the Gaussians for even points, in spacings.
-const NARROW: f64 = 0.6;
+const NARROW: f64 = 0.35;
 /// From this strength on an exemplar repeats regularly.
 const REGULAR: f64 = 0.5;
 /// Smallest window, in spacings.

@@ -5,8 +5,8 @@ use crate::space::Vector;
 /// Vectors no longer than this have no direction.
 const LEAST: f64 = 1e-12;
 
-/// For each tangent a direction across the curve, carried along without twist from `first`: of all frames these turn least
-/// [Wang 2008]. A closed curve, whose first tangent comes again at the end, spreads what is left over its length.
+/// For each tangent a direction across the curve, carried along without twist from `first`: of all frames these turn least.
+/// A closed curve, whose first tangent comes again at the end, spreads what is left over its length.
 pub fn carried(tangents: &[Vector<3>], first: Vector<3>, closed: bool) -> Vec<Vector<3>> {
     let mut side = first;
     let mut carried = Vec::with_capacity(tangents.len());

@@ -49,6 +49,7 @@ impl<const D: usize> Tables<D> {
 }
 
 /// One level of the multi-scale optimisation over its sites.
+#[derive(Clone, Copy)]
 pub(crate) struct Level<'a, const D: usize> {
     pub(crate) pattern: &'a Pattern<D>,
     pub(crate) tables: &'a Tables<D>,

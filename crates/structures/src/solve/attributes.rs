@@ -2,7 +2,7 @@
 //!
 //! For fixed places `T` is a quadratic form in the weights. A direction has length 1: its best value, with all others as they are, is
 //! what the matches want less what the others give already, at length 1. Points follow one another, so that each sees what became of
-//! those before it [Gauss-Seidel].
+//! those before it (Gauss-Seidel).
 
 use arabesque_core::Vector;
 

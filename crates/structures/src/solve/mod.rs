@@ -5,3 +5,5 @@ pub(crate) mod matching;
 pub(crate) mod merging;
 pub(crate) mod newton;
 pub(crate) mod sampling;
+#[cfg(test)]
+mod tests;

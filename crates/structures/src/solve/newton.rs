@@ -1,6 +1,6 @@
 //! A direction downhill for all points at once.
 //!
-//! `T` is a sum of squares of fields, so the product of their slopes stands in for its second derivatives [Gauss-Newton]; points of
+//! `T` is a sum of squares of fields, so the product of their slopes stands in for its second derivatives (Gauss-Newton); points of
 //! one rigid element move as one. The equations are solved roughly, by conjugate gradients.
 
 use arabesque_core::{Matrix, Vector};

@@ -1,0 +1,187 @@
+//! No step raises the error.
+
+use std::{f64::consts::TAU, sync::Arc};
+
+use arabesque_core::{Bounds, Budget, Domain, Fields, Matrix, PointSet, Similarity, Vector};
+
+use super::{
+    attributes::attributes,
+    matching::{Round, anywhere, matching, room},
+    merging::merge,
+    newton::slopes,
+    sampling::control,
+};
+use crate::{
+    Flat, Prepared, StructureParams,
+    energy::{
+        exact::Scene,
+        kernel::Kernel,
+        level::{Level, Matches, Near, Tables},
+    },
+    layout::Layout,
+    output::state::Output,
+    params::Window,
+    start::noise::noise,
+};
+
+fn wave() -> PointSet<2> {
+    let at = |k: usize| k as f64 / 100.0;
+    let positions = (0..100).map(|k| Vector::xy(at(k), 0.05 * (at(k) * 5.0 * TAU).sin())).collect();
+    let slope = |k: usize| 0.25 * TAU * (at(k) * 5.0 * TAU).cos();
+    let normals = (0..100).map(|k| Vector::xy(-slope(k), 1.0).unit()).collect();
+    let radii = (0..100).map(|k| 1.0 + (at(k) * 5.0 * TAU).cos() * 0.3).collect();
+    PointSet { normals: Some(normals), radii: Some(radii), ..PointSet::at(positions) }
+}
+
+/// Calls `check` with a level over noise, with random matches.
+fn noisy(check: impl FnOnce(&Level<'_, 2>, &Layout<2>, Output<2>, Matches<2>)) {
+    let budget = Budget::default();
+    let prepared = Prepared::new(Arc::new(wave()), &StructureParams::default(), &budget).unwrap();
+    let domain = Domain::Box(Bounds::new(Vector::ZERO, Vector::xy(1.5, 0.0)));
+    let layout = Layout::new(&prepared, &Flat::new(domain, Fields::default()), &budget).unwrap();
+    let pattern = &*prepared.pattern;
+    let kernel = Kernel::new(prepared.sigma, prepared.window, pattern.base, Window::Gaussian);
+    let tables = Tables::new(pattern, kernel, &budget).unwrap();
+    let level = Level {
+        pattern,
+        tables: &tables,
+        sites: &layout.sites,
+        index: &layout.index,
+        domain: &layout.domain,
+        shifts: &[],
+        usual: 30.0,
+    };
+    let output = noise(&level, Output::default(), layout.plan.step, 5);
+    let room = room(&level);
+    let mut stream = arabesque_core::Stream::new(3, arabesque_core::Stage::TEST, 0);
+    let first = (0..layout.sites.len()).map(|_| anywhere(&room, &mut stream)).collect();
+    let matches = Matches::new(&level, first);
+    check(&level, &layout, output, matches);
+}
+
+fn energy(level: &Level<'_, 2>, output: &Output<2>, near: &Near, matches: &Matches<2>) -> f64 {
+    let pulls = level.pulls(output, near, matches, &Budget::default()).unwrap();
+    level.energy(output, near, &pulls, matches)
+}
+
+#[test]
+fn no_step_raises_the_error() {
+    noisy(|level, layout, mut output, mut matches| {
+        let budget = Budget::default();
+        for number in 0..4 {
+            let near = level.near(&output, &budget).unwrap();
+            let before = energy(level, &output, &near, &matches);
+            let round = Round { seed: 1, number, tries: 3 };
+            let matched = matching(level, &output, &near, &matches, &layout.around, (round, &budget)).unwrap();
+            assert!(matched.energy.1 <= matched.energy.0);
+            matches = matched.matches;
+            let after = energy(level, &output, &near, &matches);
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-3 * (1.0 + a.abs());
+            assert!(after <= before && close(before, matched.energy.0), "{before} {after} {:?}", matched.energy);
+            let mut pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
+            let moved = merge(level, &mut output, &near, &matches, &mut pulls, &budget).unwrap();
+            assert!(moved.energy <= after && close(moved.energy, energy(level, &output, &near, &matches)));
+            attributes(level, &mut output, &near, &matches, &mut pulls);
+            let directed = energy(level, &output, &near, &matches);
+            assert!(directed <= moved.energy + 1e-3 * moved.energy.abs(), "{directed} {}", moved.energy);
+            let near = level.near(&output, &budget).unwrap();
+            let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
+            let before = level.energy(&output, &near, &pulls, &matches);
+            control(level, &mut output, &near, &matches, &pulls, &budget).unwrap();
+            let near = level.near(&output, &budget).unwrap();
+            let controlled = energy(level, &output, &near, &matches);
+            assert!(controlled <= before + 1e-3 * before.abs(), "{controlled} {before}");
+        }
+    });
+}
+
+#[test]
+fn slopes_are_those_of_finite_differences() {
+    noisy(|level, _, output, matches| {
+        let budget = Budget::default();
+        let near = level.near(&output, &budget).unwrap();
+        let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
+        let slopes = slopes(level, &output, &near, &pulls);
+        let size = slopes.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        let h = 0.02 * level.pattern.spacing;
+        let (mut off, mut count) = (0.0, 0.0);
+        for i in (0..output.places.len()).step_by(7) {
+            for k in 0..2 {
+                let at = |h: f64| {
+                    let mut moved = output.clone();
+                    moved.places[i][k] += h;
+                    energy(level, &moved, &near, &matches)
+                };
+                off += ((at(h) - at(-h)) / (2.0 * h) - slopes[i][k]).abs();
+                count += 1.0;
+            }
+        }
+        // The table of the field is read with errors of about one per cent.
+        assert!(off / count < 0.02 * size, "{} of {size}", off / count);
+    });
+}
+
+#[test]
+fn a_look_up_is_the_sum_over_all_pairs() {
+    let points = wave();
+    let budget = Budget::default();
+    let prepared = Prepared::new(Arc::new(points.clone()), &StructureParams::default(), &budget).unwrap();
+    let pattern = &*prepared.pattern;
+    let mut scene = Scene {
+        x: Vec::new(),
+        a: Vec::new(),
+        e: points.positions,
+        b: Vec::new(),
+        q: Vector::ZERO,
+        m: Vector::xy(0.5, 0.0),
+        rotation: Matrix::identity(),
+        scale: 1.0,
+        sigma: prepared.sigma,
+        delta: 0.1,
+    };
+    scene.b = pattern.weights.iter().map(|w| w.iter().map(|&v| f64::from(v)).collect()).collect();
+    let kernel = Kernel::new(scene.sigma, scene.delta, [true, true], Window::Gaussian);
+    let tables = Tables::new(pattern, kernel, &budget).unwrap();
+    let constant = scene.w(Vector::ZERO, Vector::ZERO);
+    for u in [Vector::xy(0.0, 0.0), Vector::xy(0.03, 0.05), Vector::xy(-0.11, 0.02), Vector::xy(0.14, -0.04)] {
+        let weights = pattern.weights[3];
+        let own: Vec<f64> = weights.iter().map(|&v| f64::from(v)).collect();
+        let exact: f64 = (0..scene.e.len())
+            .map(|j| {
+                let v = scene.e[j] - scene.m;
+                own.iter().zip(&scene.b[j]).map(|(a, b)| a * b).sum::<f64>() * scene.w(u, v) / constant
+            })
+            .sum();
+        let y = std::array::from_fn(|k| (scene.m[k] + tables.kernel.inward[k] * u[k]) as f32);
+        let found = tables.kernel.weights(&u.0).1 * f64::from(tables.field.project(&y, &weights));
+        assert!((found - exact).abs() < 0.02, "{found} for {exact} at {u:?}");
+    }
+}
+
+#[test]
+fn a_turned_and_scaled_output_is_the_same_problem() {
+    noisy(|level, _, output, matches| {
+        let budget = Budget::default();
+        let near = level.near(&output, &budget).unwrap();
+        let before = energy(level, &output, &near, &matches);
+        let motion = Similarity::about(Vector::ZERO, Vector::xy(3.0, -2.0), Matrix::rotation(0.8), 1.7);
+        let sites: Vec<_> = level
+            .sites
+            .iter()
+            .map(|s| crate::Site {
+                place: motion.apply(s.place),
+                rotation: motion.rotation.compose(&s.rotation),
+                scale: 1.7,
+                ..*s
+            })
+            .collect();
+        let mut moved = output.clone();
+        for i in 0..moved.places.len() {
+            moved.places[i] = motion.apply(output.places[i]);
+            moved.weights[i] = level.pattern.channels.turned(&output.weights[i], &motion.rotation);
+        }
+        let turned = Level { sites: &sites, ..*level };
+        let after = energy(&turned, &moved, &near, &matches);
+        assert!((after - before).abs() < 1e-3 * before.abs(), "{after} {before}");
+    });
+}

@@ -98,7 +98,8 @@ impl Natural {
         let gaps = shown.gaps(budget)?;
         let mut all: Vec<f64> = gaps.iter().map(|seen| seen.gap).collect();
         all.sort_by(f64::total_cmp);
-        let otherwise = low(&all, COMMON).unwrap_or(0.0).min(tolerated);
+        // Where no two elements are seen beside each other, none are to be.
+        let otherwise = low(&all, COMMON).unwrap_or(tolerated).min(tolerated);
         let kinds = if library.classes() <= TABLE { library.classes() } else { 0 };
         let narrowest = narrowest(&gaps, kinds, otherwise, tolerated);
         let widest = narrowest.iter().map(|&gap| f64::from(gap)).fold(otherwise, f64::max);
@@ -253,9 +254,16 @@ impl<'a, const D: usize> Shown<'a, D> {
         gaps.into_iter().map(clear).collect()
     }
 
+    /// Mean spacing of the elements, whatever strokes there are.
+    fn spacing(&self) -> f64 {
+        let view = &self.library.view;
+        let shown = self.poses.iter().filter(|pose| view.contains(pose.centre)).count();
+        self.library.spacing.max((view.measure() / shown.max(1) as f64).powf(1.0 / D as f64))
+    }
+
     /// Gaps between neighbouring elements.
     fn gaps(&self, budget: &Budget) -> Result<Vec<Seen<D>>> {
-        let enough = self.library.spacing;
+        let enough = self.spacing();
         let of = |a: &Pose<D>| {
             let mut found = Vec::new();
             let radius = self.inks.radius(a);

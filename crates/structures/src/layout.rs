@@ -5,7 +5,10 @@ use arabesque_core::{Budget, Domain, Error, Result};
 use crate::{
     energy::links::{Lists, SiteIndex, neighbours},
     prepared::Prepared,
-    territory::{Site, SitePlan, Territory},
+    territory::{
+        plan::{SitePlan, Territory},
+        site::Site,
+    },
 };
 
 /// Neighbours are sites within so many steps.

@@ -66,9 +66,10 @@ pub use params::{Start, StructureParams, Window};
 pub use prepared::Prepared;
 pub use request::{PlacedElement, StructureOutcome, StructureRequest};
 pub use territory::{
-    Site, SitePlan, Territory,
     flat::Flat,
+    plan::{SitePlan, Territory},
     shell::Shell,
+    site::Site,
     solid::Solid,
     tube::{Along, Thread, Tube},
 };

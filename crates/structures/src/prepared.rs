@@ -12,7 +12,7 @@ use crate::{
         repetition::{Repetition, repetition},
     },
     params::StructureParams,
-    territory::SitePlan,
+    territory::plan::SitePlan,
 };
 
 /// Share of what repeats that the window is by itself.

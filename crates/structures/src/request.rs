@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use arabesque_core::{Budget, EnergyPoint, PointSet, Similarity, StopReason, Warning};
 
-use crate::territory::Territory;
+use crate::territory::plan::Territory;
 
 /// What to make from a prepared exemplar.
 #[derive(Clone, Debug)]

@@ -2,7 +2,10 @@
 
 use arabesque_core::{Bounds, Budget, Domain, Error, Fields, Lattice, Matrix, Result, Vector};
 
-use super::{Site, SitePlan, Territory};
+use super::{
+    plan::{SitePlan, Territory},
+    site::Site,
+};
 
 /// A box, a torus or a region. A pattern that repeats along fewer directions than there are lies along the longest sides of the box,
 /// in the plane or on the line on which its own base is.

@@ -5,7 +5,10 @@ use std::{collections::VecDeque, sync::Arc};
 use arabesque_core::{Bounds, Budget, Domain, Error, Matrix, Result, ScalarField, Vector};
 use arabesque_surface::{DirectionField, MeshIndex, scatter};
 
-use super::{Site, SitePlan, Territory};
+use super::{
+    plan::{SitePlan, Territory},
+    site::Site,
+};
 use crate::energy::links::neighbours;
 
 /// Sites are drawn nearer to each other than they are in a grid of the same number.

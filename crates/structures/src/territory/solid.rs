@@ -5,7 +5,10 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Budget, Domain, Error, Fields, Matrix, Result, Vector};
 use arabesque_surface::{MeshIndex, inside_grid};
 
-use super::{Site, SitePlan, Territory};
+use super::{
+    plan::{SitePlan, Territory},
+    site::Site,
+};
 
 /// The inside of a closed mesh. Structures are made a little beyond it and cut at its surface.
 #[derive(Clone, Debug)]

@@ -2,7 +2,10 @@
 
 use arabesque_core::{Bounds, Budget, Domain, Error, Matrix, Result, Vector, arc_lengths, carried};
 
-use super::{Site, SitePlan, Territory};
+use super::{
+    plan::{SitePlan, Territory},
+    site::Site,
+};
 
 /// A number that varies along a curve: at shares of the length in rising order, linear in between and constant beyond.
 #[derive(Clone, Debug, PartialEq)]

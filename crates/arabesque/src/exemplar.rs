@@ -118,6 +118,9 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
     if found.is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
         return page.map(|page| (page, found));
     }
+    if options.method != svg::Method::Auto && period.is_none() {
+        return page.map(|page| (page, None));
+    }
     // Strokes fit too easily to be taken for a period where they show enough as they are.
     let is_net = matches!(&page, Ok(page) if !page.exemplar.curves.is_empty());
     if let Some(period) = period.filter(|_| !is_net) {
@@ -239,7 +242,7 @@ mod tests {
     fn later_methods_are_refused_by_name() {
         let err = LoadedExemplar::read(&Input::file("a.csv"), b"0,0\n1,1\n", Method::Structures, &Budget::default())
             .unwrap_err();
-        assert!(err.to_string().contains("structures are not handled yet"));
+        assert!(err.to_string().contains("structures are points"));
     }
 
     #[test]

@@ -212,9 +212,9 @@ fn strokes_wider_than_their_spacing_are_told_once() {
 fn an_exemplar_smaller_than_a_neighbourhood_is_told() {
     let folder = Folder::new();
     folder.write("tiny.svg", svg("10", "10", "0 0 10 10", &(stroke("M0 5H10") + &stroke("M5 0V10"))));
-    let told = stderr(&folder.ok("fill tiny.svg --size 40x40 -o out.svg"));
+    let told = stderr(&folder.ok("fill tiny.svg --exemplar-tile=no --size 40x40 -o out.svg"));
     assert!(told.contains("hardly larger than one neighbourhood: 10.0000 across"), "{told}");
-    let message = folder.fails(2, "fill tiny.svg --size 40x40 --radius 20 -o other.svg");
+    let message = folder.fails(2, "fill tiny.svg --exemplar-tile=no --size 40x40 --radius 20 -o other.svg");
     assert!(message.contains("radius = 20: expected at most 10"), "{message}");
 }
 

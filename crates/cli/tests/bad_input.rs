@@ -26,7 +26,7 @@ fn what_is_no_exemplar() {
         ("blank.svg", svg("80", "80", "0 0 80 80", ""), "no element"),
         (
             "frame.svg",
-            svg("80", "80", "0 0 80 80", "<path d=\"M0 10L10 20L0 30Z\"/><path d=\"M70 80L75 70L80 75V80Z\"/>"),
+            svg("80", "80", "0 0 80 80", "<circle cx=\"0\" cy=\"20\" r=\"10\"/><circle cx=\"80\" cy=\"70\" r=\"8\"/>"),
             "frame",
         ),
         ("empty.csv", String::new(), "no point"),

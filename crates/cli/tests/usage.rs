@@ -46,8 +46,10 @@ fn what_is_missing_or_contradicts_itself() {
 }
 
 #[test]
-fn later_methods_are_honest() {
+fn a_drawing_is_no_structure() {
     let folder = Folder::new();
-    let message = folder.fails(2, "fill leaves.svg --size 80x80 --method structures -o a.svg");
-    assert!(message.contains("not handled yet"), "{message}");
+    let message = folder.fails(3, "fill leaves.svg --size 80x80 --method structures -o a.ply");
+    assert!(message.contains("leaves.svg"), "{message}");
+    let message = folder.fails(3, "fill leaves.svg --along leaves.svg -o a.svg");
+    assert!(message.contains("along for an exemplar that is no structure of points"), "{message}");
 }

@@ -105,8 +105,16 @@ fn is_heaped(units: &Units, cell: &Cell) -> bool {
 }
 
 /// Whether a page that shows too little to be continued may be one period: nothing is drawn beyond its edges that does not go on.
-pub(crate) fn is_possible(units: &Units, links: &Links, cell: &Cell) -> bool {
-    !units.all.is_empty() && !is_clipped(units) && is_drawn_to_fit(links, cell) && !is_heaped(units, cell)
+///
+/// Strokes have to go on along both axes: a few that lie within the page are a drawing, and no swatch.
+pub(crate) fn is_possible(units: &Units, pieces: &[Piece], links: &Links, cell: &Cell) -> bool {
+    let has_lines = units.all.iter().any(|unit| unit.is_stroked && !unit.is_filled);
+    let goes_on = || (0..2).all(|axis| counts(pieces, links, cell, axis)[0] > 0);
+    !units.all.is_empty()
+        && !is_clipped(units)
+        && is_drawn_to_fit(links, cell)
+        && !is_heaped(units, cell)
+        && (!has_lines || goes_on())
 }
 
 /// How much of what the edges across an axis cut goes on, and how much they cut.

@@ -79,7 +79,7 @@ fn of_page(
         Tiling::Page => false,
         Tiling::Auto => is_period(&found, &pieces, &links, &cell),
         Tiling::Likely => off.is_none() && is_likely(&found, &pieces, &links, &cell),
-        Tiling::Possible => off.is_none() && is_possible(&found, &links, &cell),
+        Tiling::Possible => off.is_none() && is_possible(&found, &pieces, &links, &cell),
         Tiling::Period => true,
     };
     if !is_taken {

@@ -26,7 +26,7 @@ fn what_is_no_exemplar() {
         ("blank.svg", svg("80", "80", "0 0 80 80", ""), "no element"),
         (
             "frame.svg",
-            svg("80", "80", "0 0 80 80", "<circle cx=\"0\" cy=\"20\" r=\"10\"/><circle cx=\"80\" cy=\"70\" r=\"8\"/>"),
+            svg("80", "80", "0 0 80 80", "<path d=\"M0 10a8 8 0 0 1 0 16z\"/><path d=\"M80 13a8 8 0 0 0 0 16z\"/>"),
             "frame",
         ),
         ("empty.csv", String::new(), "no point"),

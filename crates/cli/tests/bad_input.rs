@@ -26,7 +26,13 @@ fn what_is_no_exemplar() {
         ("blank.svg", svg("80", "80", "0 0 80 80", ""), "no element"),
         (
             "frame.svg",
-            svg("80", "80", "0 0 80 80", "<path d=\"M0 10a8 8 0 0 1 0 16z\"/><path d=\"M80 13a8 8 0 0 0 0 16z\"/>"),
+            svg(
+                "80",
+                "80",
+                "0 0 80 80",
+                "<path d=\"M0 10a8 8 0 0 1 0 16z\"/><path d=\"M80 13a8 8 0 0 0 0 16z\"/>\
+             <path d=\"M30 80a8 8 0 0 1 16 0z\"/><path d=\"M33 0a8 8 0 0 0 16 0z\"/>",
+            ),
             "frame",
         ),
         ("empty.csv", String::new(), "no point"),

@@ -110,6 +110,10 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
         Ok(drawing) if drawing.exemplar.period.is_some() => (read(svg::Tiling::Page), Some(drawing)),
         page => (page, None),
     };
+    // What is too large, or was stopped, is not read once more.
+    if matches!(page, Err(Error::Limit { .. } | Error::Stopped { .. })) {
+        return page.map(|page| (page, None));
+    }
     let found = match &page {
         Ok(page) if period.is_some() || shown(page) <= SMALL => regular(&page.exemplar, budget)?,
         _ => None,

@@ -119,21 +119,27 @@ impl<'a, const D: usize> Stage<'a, D> {
         Ok(Self { prepared, request, budget, layout, scales })
     }
 
+    /// The layout and the pattern as `tables` see them.
+    fn seen_by<'t>(&'t self, tables: &'t Tables<D>) -> Level<'t, D> {
+        let pattern = &*self.prepared.pattern;
+        Level {
+            pattern,
+            tables,
+            sites: &self.layout.sites,
+            index: &self.layout.index,
+            domain: &self.layout.domain,
+            shifts: &self.prepared.repetition.shifts,
+            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
+        }
+    }
+
     fn level(&self, n: usize, state: &mut State<D>, watch: &mut dyn Watch<PointSet<D>>) -> Result<ControlFlow<()>> {
         let scale = self.scales[n];
         let pattern = &*self.prepared.pattern;
         let params = &self.prepared.params;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
         let tables = Tables::new(pattern, kernel, &self.budget)?;
-        let level = Level {
-            pattern,
-            tables: &tables,
-            sites: &self.layout.sites,
-            index: &self.layout.index,
-            domain: &self.layout.domain,
-            shifts: &self.prepared.repetition.shifts,
-            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
-        };
+        let level = self.seen_by(&tables);
         if n == 0 {
             self.start(&level, state)?;
         }
@@ -238,15 +244,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let pattern = &*self.prepared.pattern;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);
         let tables = Tables::new(pattern, kernel, &budget)?;
-        let level = Level {
-            pattern,
-            tables: &tables,
-            sites: &self.layout.sites,
-            index: &self.layout.index,
-            domain: &self.layout.domain,
-            shifts: &self.prepared.repetition.shifts,
-            usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
-        };
+        let level = self.seen_by(&tables);
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;
         let sources = sources(&level, &state.output, &near, &matches);

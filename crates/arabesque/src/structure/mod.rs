@@ -5,7 +5,7 @@ mod place;
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, PointSet, Result, Warning, Watch};
+use arabesque_core::{Error, PointSet, Result, StopReason, Unobserved, Warning, Watch};
 use arabesque_io::geometry::Cloud;
 use arabesque_structures::{Prepared as Engine, StructureOutcome, StructureRequest};
 use arabesque_surface::{SurfaceParams, reconstruct};
@@ -122,10 +122,12 @@ impl Ready for Structure {
 /// The surface of what was made.
 fn surfaced(outcome: StructureOutcome<3>, params: &SurfaceParams, context: &RunContext<'_>) -> Result<SurfaceMade> {
     let StructureOutcome { points, warnings, stopped, .. } = outcome;
-    let mut found = reconstruct(&points, params, None, context.budget(), &mut arabesque_core::Unobserved)?;
+    // The surface of the best so far has an account of its own, as its file has.
+    let budget = if stopped == StopReason::Finished { context.budget().clone() } else { context.budget().fresh() };
+    let mut found = reconstruct(&points, params, None, &budget, &mut Unobserved)?;
     let own: Vec<Warning> = std::mem::take(&mut found.warnings);
     found.warnings = warnings.into_iter().chain(own).collect();
-    if found.stopped == arabesque_core::StopReason::Finished {
+    if found.stopped == StopReason::Finished {
         found.stopped = stopped;
     }
     Ok(SurfaceMade::new(found))

@@ -78,7 +78,12 @@ pub(super) fn in_space(
     };
     let domain = match (place, &mut *job) {
         ("size", Structures { size: Some(size), .. }) => Domain::Box(sheet(size)?),
-        ("tile", Structures { tile: Some(size), .. }) => Domain::Torus(sheet(size)?),
+        ("tile", Structures { tile: Some(size), .. }) => {
+            // A sheet closes up sideways alone: across itself the next one is far away.
+            let mut around = sheet(size)?;
+            around.max[2] += around.size().norm();
+            Domain::Torus(around)
+        }
         ("box", Structures { cuboid: Some(cuboid), .. }) => Domain::Box(cuboid.bounds()),
         ("along", Structures { along: Some(input), .. }) => {
             let paths = match curves(input, context)? {

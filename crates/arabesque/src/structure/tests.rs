@@ -1,7 +1,5 @@
 //! Structures through the door.
 
-use arabesque_core::Unobserved;
-
 use super::*;
 use crate::{Format, Geometry, Input, OutputOptions, Recipe, Resources, recipe_in};
 

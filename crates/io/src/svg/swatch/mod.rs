@@ -9,6 +9,7 @@ pub(crate) mod cell;
 pub(crate) mod fit;
 pub(crate) mod found;
 pub(crate) mod links;
+pub(crate) mod meet;
 pub(crate) mod pattern;
 pub(crate) mod period;
 pub(crate) mod pieces;

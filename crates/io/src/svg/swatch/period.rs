@@ -20,6 +20,7 @@ use crate::svg::{
         fit::{Ending, Misfit, misfit},
         found::{MOST, is_likely, is_period, is_possible},
         links::{Links, links},
+        meet::meet,
         pattern::{Painted, painted},
         pieces::{Piece, pieces},
         units::{Unit, Units, units},
@@ -73,7 +74,7 @@ fn of_page(
     let cell = Cell { frame, to_root: Affine::IDENTITY };
     let mut found = units(roots, &cell, source.budget)?;
     found.all.retain(|unit| !is_frame_mark(&unit.node.meta));
-    let (pieces, links) = taken_apart(source, &found, &cell)?;
+    let (mut pieces, mut links) = taken_apart(source, &found, &cell)?;
     let off = misfit(&pieces, &found.all, &links, (&cell, Ending::Whole));
     let is_taken = match tiling {
         Tiling::Page => false,
@@ -91,6 +92,7 @@ fn of_page(
     if let Some(off) = off {
         return Err(does_not_fit(source, &off, &found.all[off.unit]));
     }
+    meet(&mut pieces, &mut links, &found.all, &cell, source.budget)?;
     let period = Period { cell, units: &found.all, pieces: &pieces, links: &links };
     period.unroll(source, root).map(Some)
 }
@@ -128,7 +130,8 @@ fn of_pattern(source: &Source<'_>, root: &Rc<Node>, painted: Painted) -> Result<
         let problem = format!("{name} draws nothing in its box");
         return Err(Error::input(source.name, problem, "draw something inside of x, y, width and height"));
     }
-    let (pieces, links) = taken_apart(source, &found, &cell)?;
+    let (mut pieces, mut links) = taken_apart(source, &found, &cell)?;
+    meet(&mut pieces, &mut links, &found.all, &cell, source.budget)?;
     let period = Period { cell, units: &found.all, pieces: &pieces, links: &links };
     let unrolled = period.unroll(source, root)?;
     let window = unrolled.window;

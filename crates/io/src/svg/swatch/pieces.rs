@@ -26,6 +26,11 @@ impl Chain {
         of.map_or(Point::ZERO, |s| if which == 0 { s.start() } else { s.end() })
     }
 
+    /// Whether it is no more than a place of an edge where an outline turns.
+    pub(crate) fn is_turn(&self) -> bool {
+        matches!(self.segments[..], [PathSeg::Line(line)] if line.p0 == line.p1)
+    }
+
     /// The way out of it at an end, of length 1.
     pub(crate) fn way_out(&self, which: usize) -> Vec2 {
         let at = self.end(which);

@@ -99,6 +99,19 @@ fn an_edge_that_does_not_fit_is_told_with_its_place() {
 }
 
 #[test]
+fn cuts_that_meet_in_part_are_one_thing() {
+    let drawing = period([40, 40], "<path d='M0 10H8V30H0z'/><path d='M40 10H34V20H40z'/>");
+    assert!(has_areas(&drawing, &[220.0]));
+    assert!((per_period(&drawing) - 1.0).abs() < 1e-9);
+    // Beside what goes on, the outline follows the edge, on either side and with two parts at once.
+    let drawing = period([40, 40], "<path d='M0 5H8V35H0z'/><path d='M40 2H34V10H40z'/><path d='M40 20H34V25H40z'/>");
+    assert!(has_areas(&drawing, &[240.0 + 48.0 + 30.0]));
+    // Each key is joined to the next ones by parts of its sides.
+    let keys = period([35, 35], "<path d='M0 0h35v5H5v25h20V15h-5v5h-5V10h15v25H0z'/>");
+    assert_eq!(keys.exemplar.elements.len(), 0);
+}
+
+#[test]
 fn pages_that_fit_by_chance_or_not_at_all_stay_pages() {
     let squares: String = (0..25)
         .map(|k| format!("<rect x='{}' y='{}' width='20' height='20'/>", k % 5 * 20, k / 5 * 20))

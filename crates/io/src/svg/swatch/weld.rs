@@ -134,10 +134,15 @@ impl Welder<'_> {
         let mut found: BTreeMap<usize, Welded> = BTreeMap::new();
         let filled: Vec<usize> = (0..self.pieces.len()).filter(|&p| self.pieces[p].is_filled).collect();
         let mut order = Vec::new();
-        for (number, tile) in self.layout.tiles().enumerate() {
-            for &piece in &filled {
-                let group = groups[number * self.pieces.len() + piece];
-                for chain in 0..self.pieces[piece].chains.len() {
+        let of_piece = |piece: usize| (0..self.pieces[piece].chains.len()).map(move |chain| (piece, chain));
+        let all: Vec<(usize, usize)> = filled.iter().copied().flat_map(of_piece).collect();
+        // Turns along an edge have no way of their own: outlines keep that of the chains that they were drawn with.
+        let (turns, drawn): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|&(piece, chain)| self.pieces[piece].chains[chain].is_turn());
+        for chains in [drawn, turns] {
+            for (number, tile) in self.layout.tiles().enumerate() {
+                for &(piece, chain) in &chains {
+                    let group = groups[number * self.pieces.len() + piece];
                     let Some(outline) = self.outline(Stop { tile, piece, chain, which: 0 }) else { continue };
                     let unit = self.pieces[piece].unit;
                     let welded = found.entry(group).or_insert_with(|| {

@@ -67,14 +67,25 @@ pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -
     let gather = |known: &[(Vector<2>, usize)]| -> Result<Found<'_>> {
         let mut found = Found::new((lattice, tolerance), known, budget);
         let touches = |e: u32| touches(&exemplar.elements[e as usize].outline.bounds(), &exemplar.window);
-        // What touches the frame may be cut there: it may take a node of others, but says nothing by itself.
-        for may_be_cut in [false, true] {
-            for (class, members) in &groups {
-                for &e in members.iter().filter(|&&e| touches(e) == may_be_cut) {
-                    let place = place_of(&exemplar.elements[e as usize], repeat.anchor);
-                    found.add(e, *class, place, may_be_cut)?;
+        let place = |e: u32| place_of(&exemplar.elements[e as usize], repeat.anchor);
+        for (class, members) in &groups {
+            for &e in members.iter().filter(|&&e| !touches(e)) {
+                found.add(e, *class, place(e), false)?;
+            }
+        }
+        // What touches the frame may be cut there: it may take a node of others, but says nothing by itself, unless it is
+        // like what lies in the middle.
+        let mut whole = Vec::new();
+        for (class, members) in &groups {
+            let is_whole = members.iter().any(|&e| !touches(e));
+            for &e in members.iter().filter(|&&e| touches(e)) {
+                if !found.add(e, *class, place(e), true)? && is_whole {
+                    whole.push((e, *class));
                 }
             }
+        }
+        for (e, class) in whole {
+            found.add(e, class, place(e), false)?;
         }
         Ok(found)
     };
@@ -127,7 +138,9 @@ impl<'a> Found<'a> {
         ((p[0] / side).floor() as i64, (p[1] / side).floor() as i64)
     }
 
-    fn add(&mut self, element: u32, class: usize, place: Vector<2>, may_be_cut: bool) -> Result<()> {
+    /// Adds an element at a node of an orbit, where one is free, else as the first one of an orbit of its own: not, where it
+    /// `may_be_cut`. Tells whether it was added.
+    fn add(&mut self, element: u32, class: usize, place: Vector<2>, may_be_cut: bool) -> Result<bool> {
         let folded = self.lattice.folded(place);
         let mut best: Option<(bool, f64, usize)> = None;
         let mut looked = 0;
@@ -160,7 +173,7 @@ impl<'a> Found<'a> {
                 self.is_mixed |= is_other;
                 o
             }
-            None if may_be_cut => return Ok(()),
+            None if may_be_cut => return Ok(false),
             None => {
                 self.begin(folded, class);
                 self.budget.within("places in one cell of the repeat", self.orbits.len(), ("elements", MOST))?;
@@ -171,7 +184,7 @@ impl<'a> Found<'a> {
         let (node, residual) = self.lattice.nearest(place - orbit.base);
         taken.insert(node, element);
         orbit.instances.push(Instance { element, node, residual });
-        Ok(())
+        Ok(true)
     }
 
     /// The orbits that hold, moved to the middle of their elements, with their numbers and classes, and the elements of the others.

@@ -26,13 +26,11 @@ const STRETCH: usize = 48;
 #[derive(Clone, Debug)]
 pub(crate) struct Painted<'a> {
     pub(crate) outline: &'a Outline<2>,
-    /// The kinds of what it is, from bottom to top; nothing is counted between two things of one kind.
-    pub(crate) kinds: Vec<usize>,
     /// Whether it is strokes, not an element.
     pub(crate) is_strokes: bool,
 }
 
-/// How often something of the first kind lies directly below something of the second.
+/// How often the first of two, things or kinds of them, lies directly below the second.
 pub(crate) type Counts = BTreeMap<(usize, usize), u64>;
 
 /// A stretch of a line that something covers.
@@ -42,7 +40,21 @@ struct Stretch {
     which: usize,
 }
 
-/// Counts which kinds lie on which, strokes and elements each on the next above and below of both.
+/// The same for kinds of things, given for each thing the kinds of what it is, from bottom to top; two things of one kind count for
+/// nothing.
+pub(crate) fn by_kind(counts: &Counts, kinds: &[Vec<usize>]) -> Counts {
+    let mut found = Counts::new();
+    for (&(low, high), &n) in counts {
+        if let (Some(&low), Some(&high)) = (kinds[low].last(), kinds[high].first())
+            && low != high
+        {
+            *found.entry((low, high)).or_default() += n;
+        }
+    }
+    found
+}
+
+/// Counts which things lie on which, by their numbers, strokes and elements each on the next above and below of both.
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
@@ -108,20 +120,12 @@ fn sweep(mut line: Vec<Stretch>, painted: &[Painted<'_>], counts: &mut Counts) {
         for others in &present {
             let below = others.range(..new).next_back().map(|&other| (other, new));
             let above = others.range(new + 1..).next().map(|&other| (new, other));
-            for (low, high) in below.into_iter().chain(above) {
-                count(&painted[low], &painted[high], counts);
+            for pair in below.into_iter().chain(above) {
+                *counts.entry(pair).or_default() += 1;
             }
         }
         present[usize::from(painted[new].is_strokes)].insert(new);
         ends.push(Reverse((key(stretch.to), new)));
-    }
-}
-
-fn count(low: &Painted<'_>, high: &Painted<'_>, counts: &mut Counts) {
-    if let (Some(&low), Some(&high)) = (low.kinds.last(), high.kinds.first())
-        && low != high
-    {
-        *counts.entry((low, high)).or_default() += 1;
     }
 }
 
@@ -137,11 +141,11 @@ mod tests {
     }
 
     fn counted(things: &[(Outline<2>, usize, bool)]) -> Counts {
-        let painted: Vec<_> = things
-            .iter()
-            .map(|(outline, kind, is_strokes)| Painted { outline, kinds: vec![*kind], is_strokes: *is_strokes })
-            .collect();
-        counts(&painted, &Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0)), &Budget::default()).unwrap()
+        let painted: Vec<_> =
+            things.iter().map(|(outline, _, is_strokes)| Painted { outline, is_strokes: *is_strokes }).collect();
+        let kinds: Vec<Vec<usize>> = things.iter().map(|(_, kind, _)| vec![*kind]).collect();
+        let window = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
+        by_kind(&counts(&painted, &window, &Budget::default()).unwrap(), &kinds)
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 pub(crate) mod coincide;
 pub(crate) mod covering;
+pub(crate) mod levels;
 pub(crate) mod order;
 pub(crate) mod stacks;
 pub(crate) mod visible;

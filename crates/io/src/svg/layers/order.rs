@@ -71,12 +71,20 @@ pub(crate) fn layered(kinds: &Kinds<'_>, counts: &Counts, budget: &Budget) -> Re
 
 /// Meetings of strokes with something that lie the other way round than most between the same kinds.
 fn weaving(kinds: &Kinds<'_>, counts: &Counts) -> u64 {
+    turns(counts, |kind| kind < kinds.paints).into_iter().map(|(.., few)| few).sum()
+}
+
+/// The pairs of kinds, one of strokes at least, that lie on one another in turn, and how often the other way round than mostly.
+pub(crate) fn turns(counts: &Counts, is_strokes: impl Fn(usize) -> bool) -> Vec<(usize, usize, u64)> {
     let mut pairs: BTreeMap<(usize, usize), [u64; 2]> = BTreeMap::new();
-    for (&(low, high), &n) in counts.iter().filter(|((low, high), _)| low.min(high) < &kinds.paints) {
+    for (&(low, high), &n) in counts.iter().filter(|((low, high), _)| is_strokes(*low) || is_strokes(*high)) {
         pairs.entry((low.min(high), low.max(high))).or_default()[usize::from(low > high)] += n;
     }
-    let fewer = pairs.values().map(|n| (n[0].min(n[1]), n[0] + n[1]));
-    fewer.filter(|&(few, all)| few > FEW && few as f64 > WEAVING * all as f64).map(|(few, _)| few).sum()
+    let fewer = pairs.into_iter().map(|((a, b), n)| (a, b, n[0].min(n[1]), n[0] + n[1]));
+    fewer
+        .filter(|&(.., few, all)| few > FEW && few as f64 > WEAVING * all as f64)
+        .map(|(a, b, few, _)| (a, b, few))
+        .collect()
 }
 
 #[cfg(test)]

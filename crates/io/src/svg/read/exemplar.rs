@@ -8,10 +8,8 @@ use kurbo::Affine;
 
 use crate::{
     svg::{
-        drawing::{Drawing, Job, Layer, Page, Stroke},
+        drawing::{Drawing, Job, Page, Stroke},
         layers::{
-            covering::{Counts, Painted, counts},
-            order::{Kinds, Layered, layered},
             stacks::{Stacked, stacked},
             visible::keep_visible,
         },
@@ -21,6 +19,7 @@ use crate::{
             document::{Document, Opened, parts},
             domain::shape,
             flow::strokes,
+            layers::{Order, Sorted, layers},
             missing_paints::note_missing_paints,
         },
         reason::{Reason, Understood},
@@ -98,7 +97,11 @@ impl Document<'_> {
         let (lines, items): (Vec<Item>, Vec<Item>) = std::mem::take(&mut found.items).into_iter().partition(is_curve);
         let mut definitions = Definitions::new(source, "exemplar");
         let mut gatherer = Gatherer::new(&painter, &mut definitions, window, self.options.dashes);
-        let styles_of = lines.iter().map(|item| gathered(&mut gatherer, item)).collect::<Result<Vec<_>>>()?;
+        let order = Order { is_line: &is_line, lines: &lines, items: &items };
+        let (meetings, levels) = order.meetings(source, &window)?;
+        let leveled = lines.iter().zip(levels);
+        let styles_of =
+            leveled.map(|(item, level)| gathered(&mut gatherer, item, level)).collect::<Result<Vec<_>>>()?;
         let found_curves = gatherer.finish()?;
         let paints = found_curves.styles.len();
         let stack = stacked(found_curves, &window, source.budget)?;
@@ -110,14 +113,10 @@ impl Document<'_> {
         if elements.is_empty() && stack.curves.is_empty() && stack.areas.is_empty() {
             return Err(nothing_found(source, &found));
         }
-        let drawn = Drawn { is_line: &is_line, lines: &lines, styles_of: &styles_of, items: &items, classes: &classes };
-        let layers = layers(source, &drawn, (paints, &stack.paints), &window)?;
-        let Stacked { curves, mut areas, fills, styles, strokes, .. } = stack;
-        let is_opaque = |k: usize| {
-            !fills[k].paint.contains("opacity") && !fills[k].paint.contains("url(") && fills[k].effects.is_empty()
-        };
-        keep_visible(&mut areas, &is_opaque, source.budget)?;
-        let (areas, fills) = seen(areas, fills, &window);
+        let sorted = Sorted { is_line: &is_line, styles_of: &styles_of, classes: &classes, meetings: &meetings };
+        let layers = layers(source, &sorted, (paints, &stack.paints))?;
+        let Stacked { curves, areas, fills, styles, strokes, .. } = stack;
+        let (areas, fills) = seen(source, areas, fills, &window)?;
         let contents = Contents { elements, classes: classes.classes, curves, areas, styles };
         let period = unrolled.as_ref().map(|unrolled| unrolled.period);
         let exemplar = Exemplar { period, ..Exemplar::with_curves(source.name, contents, window)? };
@@ -157,57 +156,27 @@ impl Document<'_> {
     }
 }
 
-/// Adds the strokes of an item. Returns their styles.
-fn gathered(gatherer: &mut Gatherer<'_, '_, '_, '_>, item: &Item) -> Result<Vec<usize>> {
+/// Adds the strokes of an item, in one of the levels of its look. Returns their styles.
+fn gathered(gatherer: &mut Gatherer<'_, '_, '_, '_>, item: &Item, level: usize) -> Result<Vec<usize>> {
     let before = gatherer.count();
+    gatherer.level = level;
     gatherer.add(item)?;
     Ok(gatherer.styles_from(before))
 }
 
-/// What a drawing shows, sorted into strokes and elements.
-struct Drawn<'a> {
-    /// Of each item in drawing order, whether it is strokes.
-    is_line: &'a [bool],
-    lines: &'a [Item],
-    /// The styles of each of the lines.
-    styles_of: &'a [Vec<usize>],
-    items: &'a [Item],
-    classes: &'a Classes,
-}
-
-/// The layers of a drawing, given how many paints there are and those of each style.
-fn layers(
+/// What is seen of areas, with their fills: where others hide nothing of them, and in the frame.
+fn seen(
     source: &Source<'_>,
-    drawn: &Drawn<'_>,
-    (paints, styles): (usize, &[Vec<usize>]),
+    mut areas: Vec<Area<2>>,
+    fills: Vec<Stroke>,
     window: &Bounds<2>,
-) -> Result<Vec<Layer>> {
-    let element = drawn.is_line.iter().position(|is_line| !is_line);
-    let elements_first = element.is_some() && element < drawn.is_line.iter().position(|&is_line| is_line);
-    let kinds = Kinds { paints, classes: drawn.classes.classes.len(), styles, elements_first };
-    let seen = if paints > 1 || paints == 1 && element.is_some() {
-        let lines = drawn.lines.iter().zip(drawn.styles_of).map(|(item, styles)| (item, styles.clone()));
-        let elements = drawn.items.iter().zip(&drawn.classes.members).map(|(item, m)| (item, vec![paints + m.0]));
-        let (mut lines, mut elements) = (lines, elements);
-        let next = |&is_line: &bool| {
-            let next = if is_line { lines.next() } else { elements.next() };
-            next.map(|(item, kinds)| Painted { outline: &item.outline, kinds, is_strokes: is_line })
-        };
-        counts(&drawn.is_line.iter().filter_map(next).collect::<Vec<_>>(), window, source.budget)?
-    } else {
-        Counts::new()
+) -> Result<(Vec<Area<2>>, Vec<Stroke>)> {
+    let is_opaque = |k: usize| {
+        !fills[k].paint.contains("opacity") && !fills[k].paint.contains("url(") && fills[k].effects.is_empty()
     };
-    let Layered { layers, weaving } = layered(&kinds, &seen, source.budget)?;
-    if weaving > 0 {
-        source.notes.add(Note::Weaving, String::new);
-    }
-    Ok(layers)
-}
-
-/// The areas of which something is left in the frame, with their fills.
-fn seen(areas: Vec<Area<2>>, fills: Vec<Stroke>, window: &Bounds<2>) -> (Vec<Area<2>>, Vec<Stroke>) {
+    keep_visible(&mut areas, &is_opaque, source.budget)?;
     let shows = |area: &Area<2>| !area.outline.rings.is_empty() && area.outline.bounds().intersects(window);
-    areas.into_iter().zip(fills).filter(|(area, _)| shows(area)).unzip()
+    Ok(areas.into_iter().zip(fills).filter(|(area, _)| shows(area)).unzip())
 }
 
 /// What everything was taken for, by reasons.

@@ -9,6 +9,7 @@ pub(crate) mod flow;
 pub(crate) mod guides;
 pub(crate) mod host_document;
 pub(crate) mod host_text;
+pub(crate) mod layers;
 pub(crate) mod matcher;
 pub(crate) mod missing_paints;
 pub(crate) mod painted_areas;

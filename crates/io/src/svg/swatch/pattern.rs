@@ -200,20 +200,19 @@ impl<'a> Server<'a, '_, '_> {
         }
     }
 
-    /// From the content to the cell.
+    /// From the content to the cell: x and y are where the content has its origin, whatever its units are.
     fn to_cell(&self, frame: Rect) -> Result<Affine> {
+        let origin = Affine::translate(frame.origin().to_vec2());
         if let Some(with_box) = self.chain.iter().find(|n| n.attribute("viewBox").is_some()) {
             let fit = length::fit(self.source, *with_box, frame.width(), frame.height())?;
-            let shift = frame.origin().to_vec2() + kurbo::Vec2::new(fit.shift[0], fit.shift[1]);
-            return Ok(Affine::translate(shift) * Affine::scale_non_uniform(fit.scale[0], fit.scale[1]));
+            let shift = Affine::translate(kurbo::Vec2::new(fit.shift[0], fit.shift[1]));
+            return Ok(origin * shift * Affine::scale_non_uniform(fit.scale[0], fit.scale[1]));
         }
         if self.attribute("patternContentUnits") == Some("objectBoundingBox") {
             let filled = self.filled();
-            return Ok(Affine::translate(filled.origin().to_vec2())
-                * Affine::scale_non_uniform(filled.width(), filled.height()));
+            return Ok(origin * Affine::scale_non_uniform(filled.width(), filled.height()));
         }
-        // In user space the content lies where it is stated, whatever x and y are.
-        Ok(Affine::IDENTITY)
+        Ok(origin)
     }
 
     fn content(&self) -> Result<Rc<Node>> {

@@ -173,6 +173,12 @@ fn patterns_have_their_own_units_and_transforms() {
     assert!((size[0] - 8.0).abs() < 0.1 && (size[1] - 4.0).abs() < 0.1, "{size:?}");
     let viewed = "width='20' height='20' patternUnits='userSpaceOnUse' viewBox='0 0 10 10'";
     assert!(has_areas(&pattern(viewed, dot).unwrap(), &[36.0 * PI]));
+    // The content has its origin at x and y.
+    let shifted = "x='4' y='3' width='10' height='10' patternUnits='userSpaceOnUse'";
+    assert!(has_areas(&pattern(shifted, dot).unwrap(), &[9.0 * PI]));
+    let boxed = "x='.02' y='.03' width='.1' height='.2' patternContentUnits='objectBoundingBox'";
+    let drawing = pattern(boxed, "<rect x='.01' y='.02' width='.08' height='.16'/>").unwrap();
+    assert!(has_areas(&drawing, &[16.0 * 16.0]));
     let inherited = "<pattern id='q' width='10' height='10' patternUnits='userSpaceOnUse'><circle cx='5' cy='5' r='3'/>\
                      </pattern><pattern id='p' href='#q' patternTransform='scale(3)'/>\
                      <rect width='200' height='100' fill='url(#p)'/>";

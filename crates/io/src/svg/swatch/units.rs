@@ -189,7 +189,7 @@ impl Taker<'_> {
         if !is_plain || !is_open(node, self.cell, Affine::IDENTITY) {
             return None;
         }
-        Some((look(node, world), world * geometry.path.clone()))
+        Some((first_look(node, Affine::IDENTITY), world * geometry.path.clone()))
     }
 
     /// Takes what a group holds that an edge cuts; what cannot be opened is clipped.
@@ -215,11 +215,12 @@ fn is_open(node: &Node, cell: &Cell, parent: Affine) -> bool {
     is_clear && is_plain && if let [only] = node.children() { is_open(only, cell, world) } else { true }
 }
 
-/// How a node with one shape is painted, as text.
-fn look(node: &Node, world: Affine) -> String {
+/// How the first shape of a node is painted, as text.
+pub(crate) fn first_look(node: &Node, parent: Affine) -> String {
     let mut text: String = node.own.iter().map(|(name, value)| format!("{name}:{value};")).collect();
+    let world = parent * node.transform;
     match &node.content {
-        Content::Group(children) => text.extend(children.iter().map(|child| look(child, world))),
+        Content::Group(children) => text.extend(children.first().map(|child| first_look(child, world))),
         Content::Shape(_) => {
             text.extend(node.style.attributes().map(|(name, value)| format!("{name}={value};")));
             if node.style.strokes() {

@@ -69,6 +69,8 @@ pub(crate) struct Gatherer<'a, 's, 'i, 'd> {
     pub(crate) window: Bounds<2>,
     dashes: Dashes,
     found: Curves,
+    /// What is added is painted in this one of the levels of its look.
+    pub(crate) level: usize,
     /// Index into the styles by paint.
     style_of: BTreeMap<String, usize>,
     /// What was found already, to tell strokes that lie on top of each other.
@@ -83,7 +85,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         dashes: Dashes,
     ) -> Self {
         let (found, style_of, seen) = (Curves::default(), BTreeMap::new(), Seen::new(&window));
-        Self { painter, definitions, window, dashes, found, style_of, seen }
+        Self { painter, definitions, window, dashes, found, level: 0, style_of, seen }
     }
 
     /// Adds the strokes of an item.
@@ -364,7 +366,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
     /// The style of that paint in that layer.
     fn style(&mut self, stroke: &Stroke, meta: &Meta) -> usize {
         let mut key = stroke.key();
-        let _ = write!(key, "|{}", stroke.layer.as_deref().unwrap_or_default());
+        let _ = write!(key, "|{}|{}", stroke.layer.as_deref().unwrap_or_default(), self.level);
         if let Some(known) = self.style_of.get(&key) {
             return *known;
         }

@@ -6,10 +6,10 @@ use arabesque_core::{Budget, Error, Exemplar, Outline, Result, Vector, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
-    svg::{self, Dashes, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, ReadOptions, Unit},
+    svg::{self, Dashes, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, Parts, ReadOptions, Reason, Unit},
     table::csv::{self, Points},
 };
-use arabesque_patterns::{Regular, regular};
+use arabesque_patterns::{Regular, regular, repeat::Extent};
 
 use crate::recipe::{Input, Reading};
 
@@ -62,6 +62,31 @@ impl LoadedExemplar {
 
 /// Reads a drawing as what can be continued best, and how it repeats, where that is found out on the way.
 fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
+    let (drawing, known) = read_parts(text, options.clone(), budget)?;
+    if has_recurring_parts(&drawing) {
+        // What a repeat keeps in place needs not be put together.
+        let apart = read_parts(text, ReadOptions { parts: Parts::Apart, ..options }, budget);
+        if let Ok((apart, known)) = apart
+            && repeats(&apart, budget)?
+        {
+            return Ok((apart, known));
+        }
+    }
+    Ok((drawing, known))
+}
+
+/// Whether loose parts were put together, because they come together in the same way again and again.
+pub(crate) fn has_recurring_parts(drawing: &Drawing) -> bool {
+    drawing.understood.iter().any(|known| known.reason == Reason::Recurring)
+}
+
+/// Whether a drawing repeats in all directions.
+pub(crate) fn repeats(drawing: &Drawing, budget: &Budget) -> Result<bool> {
+    Ok(regular(&drawing.exemplar, budget)?.is_some_and(|found| found.repeat().extent == Extent::Plane))
+}
+
+/// Reads a drawing with its loose parts as the options say.
+fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
     let (drawing, mut known) = match options.tiling {
         svg::Tiling::Auto => page_or_period(text, &options, budget)?,
         _ => (svg::read_exemplar(text, &options)?, None),
@@ -191,6 +216,7 @@ pub(crate) fn points_as_drawing(points: &Exemplar<2>) -> Drawing {
         fills: Vec::new(),
         layers: vec![Layer::all_elements(&exemplar)],
         background: None,
+        parts: Parts::default(),
         definitions: String::new(),
         page: Page { view: exemplar.window, unit: Unit::Px, unit_per_user: DOT_SPACING_PIXELS / spacing },
         job: Job::default(),

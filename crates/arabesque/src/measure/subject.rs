@@ -74,6 +74,7 @@ pub(super) fn read(
     let text = file::decode_text(name, bytes, budget)?;
     let mut options = ReadOptions { budget: budget.clone(), ..reading.of_drawings(name)? };
     options.tiling = Tiling::Page;
+    options.parts = own.parts;
     options.large_fills = if own.exemplar.areas.is_empty() { LargeFills::Lines } else { LargeFills::Areas };
     if reading.method == crate::recipe::Method::Auto {
         // Strokes that touch on a spoiled page are no net where the exemplar has none, and so the other way round.

@@ -3,11 +3,12 @@
 use arabesque_core::{Border, Bounds, Budget, Error, Result, Shape, Vector, Warning};
 use arabesque_io::{
     file,
-    svg::{Document, Drawing, HostDocument, LargeFills, ReadOptions, Tiling},
+    svg::{Document, Drawing, HostDocument, LargeFills, Parts, ReadOptions, Tiling},
 };
 use arabesque_patterns::regular;
 
 use crate::{
+    exemplar::{has_recurring_parts, repeats},
     method::Preparation,
     plane::{
         exemplar::{PlaneExemplar, RegionOfFile},
@@ -31,7 +32,7 @@ pub(crate) fn read(redo: &Redo, large_fills: LargeFills, preparation: &mut Prepa
     let name = preparation.exemplar.name().to_owned();
     let text = drawing_text(&name, &bytes, preparation.files.budget())?;
     let own = |region: &Region| if let Region::Own(id) = region { Some(id.clone()) } else { None };
-    let options = ReadOptions {
+    let mut options = ReadOptions {
         budget: preparation.files.budget().clone(),
         method: redo.method.of_drawings()?,
         tiling: Tiling::Page,
@@ -46,6 +47,18 @@ pub(crate) fn read(redo: &Redo, large_fills: LargeFills, preparation: &mut Prepa
         Document::with(&text, options, |document| HostFile { document, name: &name, files }.split(redo, &mut warnings))
     };
     let (mut drawing, mut region) = split(&options)?;
+    if has_recurring_parts(&drawing) {
+        // What a repeat keeps in place needs not be put together.
+        let apart = ReadOptions { parts: Parts::Apart, ..options.clone() };
+        if let Ok(found) = split(&apart)
+            && repeats(&found.0, files.budget())?
+        {
+            (drawing, region) = found;
+            options = apart;
+        } else {
+            (drawing, region) = split(&options)?;
+        }
+    }
     if !drawing.exemplar.areas.is_empty() && regular(&drawing.exemplar, files.budget())?.is_none() {
         // Without a repeat, lines are all that can be made of areas.
         (drawing, region) = split(&ReadOptions { large_fills: LargeFills::Lines, ..options })?;

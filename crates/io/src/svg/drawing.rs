@@ -8,7 +8,7 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Decimals, Drawn, Exemplar, FlowStroke, Outline, Path, Placement, Shape, Warning};
 
 use crate::{
-    svg::reason::Understood,
+    svg::{options::Parts, reason::Understood},
     text::{path_data::path_data, unit::Unit},
 };
 
@@ -166,6 +166,8 @@ pub struct Drawing {
     /// Markup that fills the frame behind everything, in exemplar coordinates: repeated over the output page as it is
     /// where it is a plain colour. `None` without a background.
     pub background: Option<String>,
+    /// How loose parts were taken.
+    pub parts: Parts,
     /// Content of `<defs>` that the fragments refer to: gradients, clips, masks, patterns, filters, symbols.
     pub definitions: String,
     /// Size and units of the exemplar's page.

@@ -25,7 +25,7 @@ pub use crate::text::unit::Unit;
 pub use cell::{RepeatCell, with_cell};
 pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page, Placed, Stroke};
 pub use namespace::NAMESPACE;
-pub use options::{Dashes, LargeFills, Method, ReadOptions, Tiling};
+pub use options::{Dashes, LargeFills, Method, Parts, ReadOptions, Tiling};
 pub use palette::PALETTE;
 pub use read::{
     document::Document,

@@ -53,6 +53,16 @@ pub enum Dashes {
     Apart,
 }
 
+/// What loose parts are that come together in the same way again and again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Parts {
+    /// One element each time: a flower of petals and a heart.
+    #[default]
+    Together,
+    /// Elements of their own, which a repeat keeps in place.
+    Apart,
+}
+
 /// How an SVG file is to be read.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
@@ -66,6 +76,8 @@ pub struct ReadOptions {
     pub large_fills: LargeFills,
     /// What dashes are. Default: [`Dashes::OfStroke`].
     pub dashes: Dashes,
+    /// What loose parts are. Default: [`Parts::Together`].
+    pub parts: Parts,
     /// Ids (or labels) of items that are not part of the drawing, because they only say where something is. Default:
     /// none.
     pub without: Vec<String>,
@@ -82,6 +94,7 @@ impl ReadOptions {
             tiling: Tiling::default(),
             large_fills: LargeFills::default(),
             dashes: Dashes::default(),
+            parts: Parts::default(),
             without: Vec::new(),
             budget: Budget::default(),
         }

@@ -51,6 +51,8 @@ pub enum Reason {
     Touching,
     /// Things with clear space around them.
     Together,
+    /// Parts that come together in the same way again and again.
+    Recurring,
     /// A stroke of no length.
     Dot,
     /// A fill too large for an element.
@@ -99,7 +101,7 @@ impl Reason {
     pub fn taken_for(self) -> &'static str {
         match self {
             Self::Fill | Self::Piece | Self::Group | Self::MarkedElement | Self::Stroke | Self::Touching => "elements",
-            Self::Together | Self::Dot | Self::Large => "elements",
+            Self::Together | Self::Recurring | Self::Dot | Self::Large => "elements",
             Self::MarkedCurve | Self::Through | Self::Vast | Self::Crowded | Self::Beside | Self::Asked => "curves",
             Self::Traced | Self::Band | Self::HandBand | Self::BandOutline => "curves",
             Self::Area => "areas",
@@ -118,6 +120,7 @@ impl Reason {
             Self::Stroke => "strokes joined to no net",
             Self::Touching => "strokes that touch one another or a fill, joined to no net",
             Self::Together => "loose parts close together, with clear space around them",
+            Self::Recurring => "loose parts that lie together in the same way again and again",
             Self::Dot => "dots: strokes of no length with round or square caps",
             Self::Large => "fills larger than half of the frame",
             Self::MarkedCurve => "marked as curves",

@@ -10,6 +10,7 @@ use crate::exemplar::{
     features::Feature,
     kinds::kinds,
     places::{Placed, Places},
+    upright::upright,
 };
 
 /// Random places that are tried where most of the window is a hole.
@@ -39,6 +40,8 @@ pub(crate) struct Library<const D: usize> {
     pub(crate) differences: Differences,
     /// Distance from the centre to the farthest ink of each element.
     pub(crate) radius: Numbered<f64>,
+    /// Whether each element keeps its angle.
+    pub(crate) upright: Numbered<bool>,
     /// Whether each element may be copied.
     pub(crate) copyable: Numbered<bool>,
     /// How far ink reaches from the centre of an element, those left out that are out of all proportion.
@@ -93,6 +96,7 @@ impl<const D: usize> Library<D> {
         let radius: Numbered<_> = elements.iter().map(|e| e.outline.radius(e.centre)).collect();
         let far = farthest(&exemplar.window);
         Ok(Self {
+            upright: upright(exemplar, &members, budget)?,
             differences: Differences::new(
                 elements.iter().map(|e| Feature::of(e, spacing)).collect(),
                 members.iter().map(Vec::as_slice),

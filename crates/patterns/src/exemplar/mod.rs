@@ -14,3 +14,4 @@ pub(crate) mod level_exemplar;
 pub(crate) mod library;
 pub(crate) mod places;
 pub(crate) mod samples;
+pub(crate) mod upright;

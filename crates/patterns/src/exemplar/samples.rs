@@ -148,10 +148,11 @@ pub(crate) fn pose_of<const D: usize>(
     offsets: &[Vector<D>],
     positions: &[Vector<D>],
     scale: f64,
-    fallback: arabesque_core::Matrix<D>,
+    (fallback, keeps_angle): (arabesque_core::Matrix<D>, bool),
 ) -> Similarity<D> {
-    if offsets.len() == 1 {
-        return Similarity::about(offsets[0], positions[0], fallback, scale);
+    if offsets.len() == 1 || keeps_angle {
+        let middle = |all: &[Vector<D>]| all.iter().fold(Vector::ZERO, |sum, p| sum + *p) * (1.0 / all.len() as f64);
+        return Similarity::about(middle(offsets), middle(positions), fallback, scale);
     }
     Similarity::fit(offsets, positions, scale, fallback)
 }

@@ -326,7 +326,8 @@ impl<'a, const D: usize> State<'a, D> {
             let parts = &self.level.parts[live.item.source];
             let frame = self.request.fields.frame(position[range.start]);
             let fallback = frame.rotation.compose(&live.turn);
-            let pose = pose_of(parts, &position[range.clone()], frame.element_scale, fallback);
+            let keeps_angle = self.library.upright[live.item.source];
+            let pose = pose_of(parts, &position[range.clone()], frame.element_scale, (fallback, keeps_angle));
             let centre = self.request.domain.wrap(pose.apply(Vector::ZERO));
             let item = &mut self.items[i];
             item.item.position = centre;

@@ -2,12 +2,12 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Role, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Vector};
 
 use crate::repeat::{
     lines::{AT_FRAME, Feature, Lines},
     looks,
-    unknown::{Unknown, touches},
+    unknown::{Unknown, may_be_cut},
 };
 
 /// Which elements count as one kind of mark.
@@ -74,14 +74,17 @@ impl Marks {
         anchor: Anchor,
         budget: &Budget,
     ) -> Result<Option<Self>> {
+        let exact = looks::looks(exemplar, looks::ALIKE, budget)?;
         let looks = match kinds {
-            Kinds::Looks => match looks::looks(exemplar, looks::ALIKE, budget)? {
-                Some(looks) => looks,
+            Kinds::Looks => match &exact {
+                Some(looks) => looks.clone(),
                 None => return Ok(None),
             },
             Kinds::Classes => exemplar.elements.iter().map(|e| e.class as u32).collect(),
             Kinds::Any => vec![0; exemplar.elements.len()],
         };
+        // With too many looks, each is taken for one of its own.
+        let exact = exact.unwrap_or_else(|| (0..exemplar.elements.len() as u32).collect());
         let mut number: BTreeMap<(Option<u32>, Option<Feature>), u32> = BTreeMap::new();
         let mut kind = |key| {
             let next = number.len() as u32;
@@ -91,12 +94,13 @@ impl Marks {
         let window = exemplar.window;
         // Features nearer to the frame are not looked at.
         let from_frame = 1.01 * AT_FRAME * exemplar.view().side();
+        let may_be_cut = may_be_cut(exemplar, &exact);
         for (e, (element, look)) in (0..).zip(exemplar.elements.iter().zip(looks)) {
             let place = place_of(element, anchor);
             let extent =
                 if element.outline.rings.is_empty() { Bounds::new(place, place) } else { element.outline.bounds() };
-            // What touches the frame may be cut there, and look like another thing.
-            let is_context = element.role == Role::Context || touches(&extent, &window);
+            // What was cut at the frame looks like another thing.
+            let is_context = may_be_cut[e as usize];
             all.push(Mark { place, kind: kind((Some(look), None)), extent, element: Some(e), is_context });
         }
         for &(place, feature) in &lines.features {

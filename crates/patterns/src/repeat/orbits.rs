@@ -9,8 +9,9 @@ use crate::{
     repeat::{
         description::Repeat,
         lattice::{Lattice, Node},
+        looks::{self, looks},
         marks::place_of,
-        unknown::{drawn, touches},
+        unknown::{drawn, may_be_cut, touches},
     },
 };
 
@@ -64,22 +65,23 @@ pub(crate) fn orbits(exemplar: &Exemplar<2>, repeat: &Repeat, budget: &Budget) -
     // Common classes first: an exception among them takes one of their nodes, and no orbit of its own.
     let mut groups: Vec<_> = groups.into_iter().collect();
     groups.sort_by_key(|(class, members)| (std::cmp::Reverse(members.len()), *class));
+    let exact = looks(exemplar, looks::ALIKE, budget)?.unwrap_or_else(|| (0..exemplar.elements.len() as u32).collect());
+    let cut = may_be_cut(exemplar, &exact);
+    let touches = |e: u32| touches(&exemplar.elements[e as usize].outline.bounds(), &exemplar.window);
     let gather = |known: &[(Vector<2>, usize)]| -> Result<Found<'_>> {
         let mut found = Found::new((lattice, tolerance), known, budget);
-        let touches = |e: u32| touches(&exemplar.elements[e as usize].outline.bounds(), &exemplar.window);
         let place = |e: u32| place_of(&exemplar.elements[e as usize], repeat.anchor);
         for (class, members) in &groups {
             for &e in members.iter().filter(|&&e| !touches(e)) {
                 found.add(e, *class, place(e), false)?;
             }
         }
-        // What touches the frame may be cut there: it may take a node of others, but says nothing by itself, unless it is
-        // like what lies in the middle.
+        // What touches the frame may be cut there: it may take a node of others, but says nothing by itself, unless one that
+        // looks like it is whole.
         let mut whole = Vec::new();
         for (class, members) in &groups {
-            let is_whole = members.iter().any(|&e| !touches(e));
             for &e in members.iter().filter(|&&e| touches(e)) {
-                if !found.add(e, *class, place(e), true)? && is_whole {
+                if !found.add(e, *class, place(e), true)? && !cut[e as usize] {
                     whole.push((e, *class));
                 }
             }

@@ -1,5 +1,7 @@
 //! Where an exemplar does not show what it would.
 
+use std::collections::BTreeMap;
+
 use arabesque_core::{Bounds, Element, Exemplar, Role, Vector};
 
 /// What is this near to the frame touches it, as a share of its diagonal.
@@ -10,9 +12,30 @@ const CELLS: usize = 512;
 
 /// Whether a box touches a side of the frame from inside, or reaches just over it.
 pub(crate) fn touches(extent: &Bounds<2>, window: &Bounds<2>) -> bool {
+    touched(extent, window) != [false; 2]
+}
+
+/// The same for the sides across each axis.
+fn touched(extent: &Bounds<2>, window: &Bounds<2>) -> [bool; 2] {
     let near = TOUCH * window.size().norm();
     let is_at = |a: f64, b: f64| (a - b).abs() <= near;
-    (0..2).any(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
+    [0, 1].map(|k| is_at(extent.min[k], window.min[k]) || is_at(extent.max[k], window.max[k]))
+}
+
+/// Which elements the frame may have cut: those that touch a side of it, unless one of the same look lies away from the sides across
+/// that axis. `looks`: a number for each element.
+pub(crate) fn may_be_cut(exemplar: &Exemplar<2>, looks: &[u32]) -> Vec<bool> {
+    let sides = |e: &Element<2>| touched(&e.outline.bounds(), &exemplar.window);
+    let mut is_whole: BTreeMap<u32, [bool; 2]> = BTreeMap::new();
+    for (element, look) in exemplar.elements.iter().zip(looks).filter(|(e, _)| e.role == Role::Source) {
+        let (is_whole, touched) = (is_whole.entry(*look).or_default(), sides(element));
+        (0..2).for_each(|k| is_whole[k] |= !touched[k]);
+    }
+    let may_be = |(element, look): (&Element<2>, &u32)| {
+        let (touched, is_whole) = (sides(element), is_whole.get(look).copied().unwrap_or_default());
+        element.role == Role::Context || (0..2).any(|k| touched[k] && !is_whole[k])
+    };
+    exemplar.elements.iter().zip(looks).map(may_be).collect()
 }
 
 /// The box around everything, where nothing reaches the frame: what lies beyond it is a margin. `None` where something does.
@@ -98,6 +121,27 @@ mod tests {
     use arabesque_core::{Class, Outline, Similarity};
 
     use super::*;
+
+    /// Elements with boxes at these places, of a side of 10, in a frame of 100.
+    fn squares(places: &[(f64, f64)]) -> Exemplar<2> {
+        let of = |&(x, y): &(f64, f64)| {
+            let ring = [(x, y), (x + 10.0, y), (x + 10.0, y + 10.0), (x, y + 10.0)].map(|(x, y)| Vector::xy(x, y));
+            let outline = Outline { rings: vec![ring.to_vec()] };
+            let (centre, lean, role) = (Vector::xy(x + 5.0, y + 5.0), [Vector::ZERO; 3], Role::Source);
+            Element { class: 0, centre, pose: Similarity::shift(centre), outline, colour: [0.0; 3], lean, role }
+        };
+        let window = Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0));
+        let elements = places.iter().map(of).collect();
+        Exemplar::new("t", elements, vec![Class { name: "a".into() }], window).unwrap()
+    }
+
+    #[test]
+    fn what_looks_like_something_away_from_the_frame_is_not_cut() {
+        let places = [(0.0, 40.0), (40.0, 0.0), (90.0, 90.0), (50.0, 50.0)];
+        assert_eq!(may_be_cut(&squares(&places), &[0, 0, 1, 2]), [false, false, true, false], "one at either side");
+        assert_eq!(may_be_cut(&squares(&places), &[0, 1, 2, 2]), [true, true, false, false]);
+        assert_eq!(may_be_cut(&squares(&[(0.0, 0.0), (0.0, 60.0)]), &[0, 0]), [true, true], "halves at one side");
+    }
 
     #[test]
     fn only_what_lies_in_boxes_of_cut_elements_is_unknown() {

@@ -56,6 +56,12 @@ pub(crate) fn levels(meetings: &Meetings<'_>) -> Vec<usize> {
         return none;
     }
     let in_levels = |k: usize| is_line[k] && in_turn.contains(&looks[k]);
+    // Of what meets nothing, as at the side of a page, the level is not to be told.
+    let met: BTreeSet<usize> =
+        counts.keys().filter(|(a, b)| in_levels(*a) && in_levels(*b)).flat_map(|(a, b)| [*a, *b]).collect();
+    if (0..looks.len()).any(|k| in_levels(k) && !met.contains(&k)) {
+        return none;
+    }
     (0..looks.len()).map(|k| if in_levels(k) { level[k] } else { 0 }).collect()
 }
 
@@ -81,6 +87,13 @@ mod tests {
     #[test]
     fn what_lies_on_the_same_looks_everywhere_needs_none() {
         assert_eq!(of(&[(0, &[]), (0, &[]), (1, &[0, 1]), (1, &[0, 1])]), [0; 4]);
+    }
+
+    #[test]
+    fn where_one_meets_nothing_there_are_none() {
+        let lines = [(0, &[][..]), (0, &[]), (1, &[0, 1]), (1, &[0, 1]), (0, &[2, 3]), (0, &[2, 3])];
+        assert_eq!(of(&lines), [0, 0, 1, 1, 2, 2]);
+        assert_eq!(of(&[&lines[..], &[(0, &[][..])]].concat()), [0; 7]);
     }
 
     #[test]

@@ -79,7 +79,7 @@ impl Document<'_> {
                 *root = without_idle_clips(&painter, root, context.parent, window)?;
             }
         }
-        let mut found = select(&painter, scope.frame, self.options.method, &scope.roots)?;
+        let mut found = select(&painter, scope.frame, (self.options.method, self.options.parts), &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
         if unrolled.is_some() {
@@ -136,6 +136,7 @@ impl Document<'_> {
             fills,
             layers,
             background,
+            parts: self.options.parts,
             definitions,
             page,
             job,

@@ -73,7 +73,7 @@ impl Document<'_> {
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
         let roots = [(Surroundings::new(Affine::IDENTITY).without(&self.options.without), root)];
-        let mut found = select(&painter, page.view, self.options.method, &roots)?;
+        let mut found = select(&painter, page.view, (self.options.method, self.options.parts), &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         if self.options.method != Method::Elements {
             self.take_lines(source, &painter, &mut found, &page.view)?;

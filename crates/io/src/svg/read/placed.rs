@@ -53,7 +53,8 @@ impl Document<'_> {
                 (false, false) => Method::Auto,
             };
             let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
-            let found = select(&painter, page.view, method, &[(Surroundings::new(Affine::IDENTITY), root)])?;
+            let found =
+                select(&painter, page.view, (method, drawing.parts), &[(Surroundings::new(Affine::IDENTITY), root)])?;
             let sorter = Sorter {
                 painter: &painter,
                 matcher: Matcher::new(drawing),

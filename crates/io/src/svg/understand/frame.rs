@@ -1,6 +1,6 @@
 //! The frame of an exemplar, and what lies on it.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use arabesque_core::{Bounds, Outline, Role, Vector};
 use kurbo::{Affine, BezPath, ParamCurve as _};
@@ -48,8 +48,8 @@ pub(crate) fn role(item: &Item, frame: Option<&Bounds<2>>) -> Role {
     if is_cut { Role::Context } else { Role::Source }
 }
 
-/// Whether each item is whole. What lies along the frame but is as large and as coloured as something that does not is
-/// a tile that ends there, not a larger thing that is cut.
+/// Whether each item is whole. What lies along a side of the frame but is as large and as coloured as something that lies
+/// away from the sides across that axis is a tile that ends there, not a larger thing that is cut.
 pub(crate) fn roles(items: &[Item], frame: Option<&Bounds<2>>) -> Vec<Role> {
     let mut roles: Vec<Role> = items.iter().map(|item| role(item, frame)).collect();
     let Some(frame) = frame else { return roles };
@@ -62,10 +62,19 @@ pub(crate) fn roles(items: &[Item], frame: Option<&Bounds<2>>) -> Vec<Role> {
     if roles.iter().all(|role| *role == Role::Source) {
         return roles;
     }
-    let whole: BTreeSet<_> =
-        items.iter().zip(&roles).filter(|(_, r)| **r == Role::Source).map(|(i, _)| key(i)).collect();
+    let near = NEAR * longer(frame);
+    let away = |item: &Item| {
+        let extent = item.outline.bounds();
+        [0, 1].map(|k| extent.min[k] > frame.min[k] + near && extent.max[k] < frame.max[k] - near)
+    };
+    let mut whole: BTreeMap<_, [bool; 2]> = BTreeMap::new();
+    for (item, role) in items.iter().zip(&roles).filter(|(item, _)| !item.is_cut) {
+        let (whole, away) = (whole.entry(key(item)).or_default(), away(item));
+        (0..2).for_each(|k| whole[k] |= away[k] || *role == Role::Source);
+    }
     for (item, role) in items.iter().zip(&mut roles) {
-        if *role == Role::Context && !item.is_cut && whole.contains(&key(item)) {
+        let (whole, away) = (whole.get(&key(item)).copied().unwrap_or_default(), away(item));
+        if *role == Role::Context && !item.is_cut && (0..2).all(|k| whole[k] || away[k]) {
             *role = Role::Source;
         }
     }

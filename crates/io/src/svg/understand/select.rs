@@ -19,7 +19,7 @@ use kurbo::Affine;
 use roxmltree::NodeId;
 
 use crate::svg::{
-    options::Method,
+    options::{Method, Parts},
     parse::{
         geometry::{self, Geometry, Painted},
         guard,
@@ -40,7 +40,7 @@ use crate::svg::{
         compound::Compound,
         item::{HALF, Item, Kind, Origin, Selection, size_of_fill},
         join::join,
-        parts::{components::sort_strokes, hidden::drop_hidden},
+        parts::{alike::put_alike_together, components::sort_strokes, hidden::drop_hidden},
         surroundings::Surroundings,
     },
 };
@@ -81,7 +81,7 @@ struct Selector<'a, 's, 'i> {
 pub(crate) fn select(
     painter: &Painter<'_, '_>,
     frame: Bounds<2>,
-    method: Method,
+    (method, parts): (Method, Parts),
     roots: &[(Surroundings, Rc<Node>)],
 ) -> Result<Selection> {
     let mut opened: Vec<NodeId> = Vec::new();
@@ -106,7 +106,11 @@ pub(crate) fn select(
                     found.items = sort_strokes(found.items, painter, frame)?;
                 }
                 drop_hidden(&mut found, painter.source)?;
-                return join(found, painter, frame, method);
+                let mut found = join(found, painter, frame, method)?;
+                if parts == Parts::Together && method != Method::Curves {
+                    found.items = put_alike_together(found.items, painter, frame)?;
+                }
+                return Ok(found);
             }
         }
     }

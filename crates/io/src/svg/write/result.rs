@@ -111,6 +111,7 @@ mod tests {
     use crate::{
         svg::{
             drawing::{Drawing, Fragment, Job, Layer, Page},
+            options::Parts,
             write::{document::recipe_of, sheet::Style, text::rectangle},
         },
         text::unit::Unit,
@@ -140,6 +141,7 @@ mod tests {
             fills: Vec::new(),
             layers: vec![Layer::all_elements(&exemplar)],
             background: Some("<rect width=\"10\" height=\"10\" fill=\"#fed\"/>".into()),
+            parts: Parts::Together,
             definitions: String::new(),
             page: Page { view: exemplar.window, unit: Unit::Mm, unit_per_user: 2.0 },
             job: Job::default(),

@@ -22,6 +22,7 @@ use crate::svg::{
         item::{HALF, Item, Kind, Origin},
         join::{SEAM, connected},
         parts::{
+            beside::{PAIR as PART, is_part_of},
             crowds::crowds,
             groups::{is_small_fill, together},
         },
@@ -63,7 +64,7 @@ pub(crate) fn sort_strokes(mut items: Vec<Item>, painter: &Painter<'_, '_>, fram
         .collect();
     let pens = pens(&items);
     weave(&mut pieces, &items, &pens, &frame, painter.source.budget)?;
-    claim(&mut pieces, &items, &pens, painter)?;
+    claim(&mut pieces, &items, &pens, (painter, &frame))?;
     if let [piece] = pieces.as_mut_slice()
         && items.len() == 1
         && !piece.is_at_side
@@ -165,7 +166,12 @@ fn weave(pieces: &mut [Component], items: &[Item], pens: &[usize], frame: &Bound
 }
 
 /// Gives small pieces to the nets that they are painted like, where these are near or the frame may have cut them off.
-fn claim(pieces: &mut [Component], items: &[Item], pens: &[usize], painter: &Painter<'_, '_>) -> Result<()> {
+fn claim(
+    pieces: &mut [Component],
+    items: &[Item],
+    pens: &[usize],
+    (painter, frame): (&Painter<'_, '_>, &Bounds<2>),
+) -> Result<()> {
     let is_net = |piece: &Component| matches!(piece.fate, Fate::Net(_));
     let nets: BTreeSet<usize> =
         pieces.iter().filter(|piece| is_net(piece)).flat_map(|piece| piece.pens(pens)).collect();
@@ -206,9 +212,36 @@ fn claim(pieces: &mut [Component], items: &[Item], pens: &[usize], painter: &Pai
         },
     )?;
     painter.source.budget.spend(PAIR * (EDGE_PAIRS - left.0))?;
-    at_side.into_iter().for_each(|k| pieces[k].fate = Fate::Net(Reason::Beside));
     agree(pieces, &near_net, items);
+    let whole: Vec<usize> = near_net.keys().copied().filter(|&k| pieces[k].fate == Fate::Element).collect();
+    for k in at_side {
+        if !is_cut_off(&pieces[k], whole.iter().map(|&w| &pieces[w]), (items, pens), (frame, painter.source.budget))? {
+            pieces[k].fate = Fate::Net(Reason::Beside);
+        }
+    }
     Ok(())
+}
+
+/// Things of a pen that something at a side of the frame is compared with.
+const MODELS: usize = 8;
+
+/// Whether something at a side of the frame is what that has left of a thing like one of the `whole` ones.
+fn is_cut_off<'c>(
+    piece: &Component,
+    whole: impl Iterator<Item = &'c Component>,
+    (items, pens): (&[Item], &[usize]),
+    (frame, budget): (&Bounds<2>, &Budget),
+) -> Result<bool> {
+    let outlines = |piece: &Component| piece.members.iter().map(|&i| &items[i].outline).collect::<Vec<_>>();
+    let part = outlines(piece);
+    for model in whole.filter(|model| pens[model.members[0]] == pens[piece.members[0]]).take(MODELS) {
+        let (is_part, looked) = is_part_of(&part, &outlines(model), frame);
+        budget.spend(PART * looked)?;
+        if is_part {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Claims for nets the pieces of a kind, drawn with one width, most of which are near a net: all of them or none.
@@ -293,7 +326,10 @@ fn small_only(
 }
 
 /// One item of each group, in the order of their first members.
-fn merge(
+///
+/// # Errors
+/// As [`Budget::spend`].
+pub(crate) fn merge(
     items: &[Item],
     groups: &[Vec<usize>],
     reason: Reason,

@@ -17,7 +17,7 @@ pub(crate) struct Link {
     pub(crate) ends: (usize, usize),
 }
 
-/// The links that connect all things no farther apart than `most`, shortest first.
+/// The links that connect all things no farther apart than `most`, shortest first; what lies in another is at no distance from it.
 ///
 /// # Errors
 /// As [`Budget::spend`].
@@ -38,7 +38,10 @@ pub(crate) fn links(outlines: &[&Outline<2>], most: f64, budget: &Budget) -> Res
             budget,
             |i, j| {
                 if sets.of(i) != sets.of(j) {
-                    let (gap, cost) = gap(&edges[i], &edges[j], reach);
+                    let (apart, cost) = gap(&edges[i], &edges[j], reach);
+                    let holds =
+                        |a: usize, b: usize| outlines[b].points().next().is_some_and(|p| outlines[a].contains(p));
+                    let gap = if apart > 0.0 && (holds(i, j) || holds(j, i)) { 0.0 } else { apart };
                     looked += cost;
                     pairs.extend((gap <= reach).then_some(Link { gap, ends: (i.min(j), i.max(j)) }));
                 }
@@ -97,5 +100,12 @@ mod tests {
         assert_eq!(found.iter().map(|link| link.gap).collect::<Vec<_>>(), [0.5, 1.0, 1.5]);
         assert_eq!(found[0].ends, (1, 3));
         assert_eq!(links(&all, 1.2, &Budget::default()).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn what_lies_in_another_is_at_no_distance() {
+        let large = Outline { rings: vec![square(0.0).rings[0].iter().map(|&p| p * 20.0).collect()] };
+        let small = Outline { rings: vec![square(0.0).rings[0].iter().map(|&p| p + Vector::xy(15.0, 15.0)).collect()] };
+        assert_eq!(links(&[&large, &small], 50.0, &Budget::default()).unwrap()[0].gap, 0.0);
     }
 }

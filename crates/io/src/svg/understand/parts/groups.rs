@@ -31,11 +31,6 @@ const FARTHEST: f64 = 0.25;
 /// # Errors
 /// As [`Budget::spend`].
 pub(crate) fn together(items: &[Item], frame: Bounds<2>, budget: &Budget) -> Result<Vec<Vec<usize>>> {
-    let is_drawn = |item: &Item| item.parts.iter().any(|(_, node)| node.style.strokes());
-    let is_loose = |item: &Item| {
-        let by_stroke = item.kind == Kind::Element && item.origin != Origin::Fill && item.origin != Origin::Piece;
-        is_small_fill(item) || by_stroke && item.reason.is_loose() && is_drawn(item)
-    };
     let alone = || (0..items.len()).map(|i| vec![i]).collect();
     let parts: Vec<usize> = (0..items.len()).filter(|&i| is_loose(&items[i])).collect();
     if parts.len() < 3 || parts.iter().all(|&i| is_small_fill(&items[i])) {
@@ -70,6 +65,12 @@ fn jumps(links: &[Link], parts: usize) -> Vec<usize> {
     let floor = links.iter().map(|link| link.gap).sum::<f64>() / links.len().max(1) as f64 * 0.02;
     let is_jump = |k: &usize| links[*k].gap >= JUMP * links[*k - 1].gap.max(floor);
     (least..links.len()).rev().filter(is_jump).take(JUMPS).collect()
+}
+
+/// Whether something may be a part of a larger thing.
+pub(crate) fn is_loose(item: &Item) -> bool {
+    let is_drawn = || item.parts.iter().any(|(_, node)| node.style.strokes());
+    is_small_fill(item) || item.kind == Kind::Element && item.reason.is_loose() && is_drawn()
 }
 
 /// Whether something filled may be a part of a thing that is drawn with strokes too.

@@ -1,6 +1,8 @@
 //! Which parts of a drawing are one thing, what kind of thing that is, and what is no part of it at all.
 
+pub(crate) mod alike;
 pub(crate) mod bands;
+pub(crate) mod beside;
 pub(crate) mod cells;
 pub(crate) mod components;
 pub(crate) mod crowds;

@@ -25,6 +25,8 @@ pub(crate) struct Admission<'a> {
     index: GridIndex<2>,
     /// Largest half diagonal of these boxes.
     reach: f64,
+    /// How far beyond the border of a region that is filled again the place of something may lie that was taken out of it.
+    slack: f64,
 }
 
 impl<'a> Admission<'a> {
@@ -40,7 +42,13 @@ impl<'a> Admission<'a> {
             index: GridIndex::new(&centres, reach.max(1e-9), &request.domain),
             kept,
             reach,
+            slack: 0.0,
         }
+    }
+
+    /// The same where nothing stays at the places that are asked about: what was taken out of the region lay up to `slack` from them.
+    pub(crate) fn with_slack(self, slack: f64) -> Self {
+        Self { slack, ..self }
     }
 
     /// Whether an element with this outline and its centre at `p` may be part of the output.
@@ -63,7 +71,7 @@ impl<'a> Admission<'a> {
         }
         if border == Border::Cross || outline.rings.is_empty() {
             // What was taken out of a region that is filled again lay in it or on its border.
-            let slack = self.request.known.map_or(0.0, |known| 1e-9 * known.size().norm());
+            let slack = self.request.known.map_or(0.0, |known| self.slack.max(1e-9 * known.size().norm()));
             return Ok(depth >= -slack);
         }
         if depth < -radius {

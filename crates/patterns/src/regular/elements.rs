@@ -59,7 +59,7 @@ impl Elements<'_> {
     ) -> Result<Placed> {
         let mut placements: Vec<_> = kept(request);
         let (taken, others) = self.taken(grid, request)?;
-        let admission = Admission::new(request, obstacles, others);
+        let admission = Admission::new(request, obstacles, others).with_slack(KEPT * grid.lattice.shorter());
         let nodes = self.nodes(grid, request)?;
         let number: BTreeMap<Node, usize> = nodes.iter().enumerate().map(|(k, &n)| (n, k)).collect();
         let beside = |node: Node| number.get(&grid.wrap(node)).copied();

@@ -40,7 +40,7 @@ pub(crate) fn is_supported(
 ) -> Result<bool> {
     let count = marks.all.len();
     let window = marks.window.grown(1e-6 * marks.window.size().norm());
-    let (mut seen, mut found) = ([0_usize; 2], [0_usize; 2]);
+    let (mut seen, mut found, mut hidden) = ([0_usize; 2], [0_usize; 2], false);
     let mut meter = budget.meter();
     // A stride that shares no factor with the count meets all of them, far apart from one another.
     let stride = (1..).map(|k| (count * 21 / 34).max(1) + k).find(|s| coprime(*s, count)).unwrap_or(1);
@@ -62,6 +62,7 @@ pub(crate) fn is_supported(
                 None => marks.unknown.contains(mark.place + way),
             };
             if partner.is_none() && is_unknown() {
+                hidden |= mark.element.is_some();
                 continue;
             }
             seen[group] += 1;
@@ -75,7 +76,9 @@ pub(crate) fn is_supported(
     }
     let least = least.0.max((least.1 * count as f64) as usize);
     let holds = |g: usize| found[g] as f64 >= ENOUGH * seen[g] as f64;
-    Ok(seen[0] + seen[1] >= 2 * least && holds(0) && holds(1))
+    // Lines alone say nothing of elements whose places are all out of sight.
+    let is_told = seen[0] > 0 || !hidden;
+    Ok(seen[0] + seen[1] >= 2 * least && is_told && holds(0) && holds(1))
 }
 
 fn coprime(a: usize, b: usize) -> bool {

@@ -22,7 +22,7 @@ use crate::{
         part::Part,
         round::round,
     },
-    start::{grow::grow, noise::noise, patches::patches, shake::shake},
+    start::{gaps::fill, grow::grow, noise::noise, patches::patches, shake::shake},
 };
 
 /// The smallest window, in units of the first one.
@@ -272,6 +272,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             let length = params.shake.unwrap_or((SHAKE * self.prepared.pattern.variation).min(0.5));
             shake(&mut output, length * spacing, seed);
         }
+        fill(level, &mut output, step, seed, &self.budget)?;
         (state.output, state.matches) = (output, matches);
         Ok(())
     }

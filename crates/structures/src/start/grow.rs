@@ -31,6 +31,8 @@ const BEST: usize = 4;
 const LOOK: [f64; 4] = [1.8, 1.8, 1.8, 1.3];
 /// Cells of the map of what is there, in one step of the sites.
 const CELLS: [f64; 4] = [2.5, 2.5, 2.5, 1.7];
+/// Jumps cost more where the exemplar ends soon after them, as the next one comes sooner; down to this share of its length.
+const SHORTEST: f64 = 0.2;
 /// Share of what is there already of which the exemplar must show the counterpart around a match.
 const SHOWN: f64 = 0.75;
 /// A new point is no nearer to one like it than this, in spacings.
@@ -274,6 +276,24 @@ impl<const D: usize> Growth<'_, '_, D> {
         sum * stride as f64 / shown.max(0.1) + blind
     }
 
+    /// How far growth can go on from `m` until the exemplar ends, as a share of all of it: from the sites around `q` that are done, past it.
+    fn run(&self, q: usize, around: &[u32], room: &Bounds<D>) -> impl Fn(&Vector<D>) -> f64 + use<D> {
+        let level = self.level;
+        let from = around.iter().filter(|o| self.done[**o as usize]);
+        let outwards = from.fold(Vector::ZERO, |sum, &o| {
+            sum + level.domain.offset(level.sites[o as usize].place, level.sites[q].place)
+        });
+        let along = Vector(level.sites[q].seen(outwards));
+        let (along, room, base) = (along.unit_or_zero(), *room, level.pattern.base);
+        move |m| {
+            let share = |k: usize| {
+                let left = if along[k] > 0.0 { room.max[k] - m[k] } else { m[k] - room.min[k] };
+                left / (room.max[k] - room.min[k]).max(1e-12) / along[k].abs()
+            };
+            (0..D).filter(|&k| base[k] && along[k].abs() > 0.1).map(share).fold(1.0, f64::min)
+        }
+    }
+
     fn site(&mut self, q: usize, around: &[u32], room: &Bounds<D>, seed: u64, budget: &Budget) -> Result<()> {
         let level = self.level;
         let map = self.map(q);
@@ -306,11 +326,14 @@ impl<const D: usize> Growth<'_, '_, D> {
                 // No other match can make up for the jump.
                 random.clear();
             }
-            let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rough(m), *m)).collect();
+            let run = self.run(q, around, room);
+            let mut rated: Vec<(f64, Vector<D>)> =
+                random.par_iter().map(|m| (rough(m) / run(m).max(SHORTEST), *m)).collect();
             rated.sort_by(|a, b| a.0.total_cmp(&b.0));
             rated.truncate(BEST);
             rated.iter_mut().for_each(|r| r.0 = rate(&r.1));
-            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate)).map(|(e, m)| (e + jump, m));
+            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate));
+            let refined = refined.map(|(e, m)| ((e + jump) / run(&m).max(SHORTEST), m));
             let first = carried.into_iter().chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
             best = first.map_or(best, |b| b.1);
         }

@@ -29,6 +29,8 @@ use crate::{
 const SMALLEST: f64 = 0.5;
 /// How far points are shaken, in units of how much their distances vary.
 const SHAKE: f64 = 2.7;
+/// So many times as many rounds and tries where the start was not fitted to anything.
+const UNFITTED: usize = 3;
 /// When more than this share of the sites is in motion, the rest is not left out.
 const WHOLE: f64 = 0.6;
 /// Rounds for the first matches, where the start brings none along.
@@ -172,19 +174,22 @@ impl<'a, const D: usize> Stage<'a, D> {
         let sites = layout.sites.len();
         let mut open = state.within.clone().unwrap_or_else(|| vec![true; sites]);
         let mut energy = None;
-        for round in 0..params.rounds {
-            let draw = Round { seed: self.request.seed, number: (n * 1000 + round) as u64 + 10, tries: params.tries };
+        // What was not fitted to anything before needs more of them.
+        let more = if params.start != Start::Grow { UNFITTED } else { 1 };
+        let rounds = more * params.rounds;
+        for round in 0..rounds {
+            let draw =
+                Round { seed: self.request.seed, number: (n * 1000 + round) as u64 + 10, tries: more * params.tries };
             let settled = self.advance(&level, state, &mut open, draw, &mut energy)?;
             let elements = state.output.places.len();
             let energy = energy.unwrap_or(0.0) / sites as f64;
             state.energy.push(EnergyPoint { level: n, iteration: round, energy, elements });
-            let done = n * params.rounds + round + 1;
-            let total = self.scales.len() * params.rounds;
+            let done = n as f64 + (round + 1) as f64 / rounds as f64;
             let progress = Progress {
                 stage: format!("level {} of {}", n + 1, self.scales.len()).into(),
                 done: round + 1,
-                total: params.rounds,
-                fraction: done as f64 / total as f64,
+                total: rounds,
+                fraction: done / self.scales.len() as f64,
                 energy: Some(energy),
                 count: elements,
             };

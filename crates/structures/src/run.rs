@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
+use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Vector, Warning, Watch};
 
 use crate::{
     energy::{
@@ -18,20 +18,21 @@ use crate::{
     prepared::Prepared,
     request::{StructureOutcome, StructureRequest},
     solve::{
-        attributes::attributes,
         matching::{Round, anywhere, matching, room},
-        merging::merge,
-        sampling::control,
+        part::Part,
+        round::round,
     },
-    start::{grow::grow, noise::noise, patches::patches, shake::shake},
+    start::{gaps::fill, grow::grow, noise::noise, patches::patches, shake::shake},
 };
 
 /// The smallest window, in units of the first one.
 const SMALLEST: f64 = 0.5;
 /// How far points are shaken, in units of how much their distances vary.
 const SHAKE: f64 = 2.7;
-/// Points that move less than this in the mean, in spacings, have settled.
-const SETTLED: f64 = 1e-3;
+/// So many times as many rounds and tries where the start was not fitted to anything.
+const UNFITTED: usize = 3;
+/// When more than this share of the sites is in motion, the rest is not left out.
+const WHOLE: f64 = 0.6;
 /// Rounds for the first matches, where the start brings none along.
 const FIRST: u64 = 4;
 
@@ -40,6 +41,8 @@ const FIRST: u64 = 4;
 struct Scale {
     delta: f64,
     sigma: f64,
+    /// Its layout.
+    layout: usize,
 }
 
 /// What all levels share.
@@ -47,14 +50,19 @@ struct Stage<'a, const D: usize> {
     prepared: &'a Prepared<D>,
     request: &'a StructureRequest<D>,
     budget: Budget,
-    layout: Layout<D>,
+    /// The sites of the last levels, then those of wider windows, which are farther apart.
+    layouts: Vec<Layout<D>>,
     scales: Vec<Scale>,
 }
 
 /// How far a run is.
 struct State<const D: usize> {
     output: Output<D>,
-    matches: Vec<arabesque_core::Vector<D>>,
+    matches: Vec<Vector<D>>,
+    /// The layout of which these are the matches.
+    layout: usize,
+    /// Sites that may change; `None` for all.
+    within: Option<Vec<bool>>,
     energy: Vec<EnergyPoint>,
     stopped: StopReason,
 }
@@ -71,7 +79,14 @@ impl<const D: usize> Prepared<D> {
     ) -> Result<StructureOutcome<D>> {
         let stage = Stage::new(self, request)?;
         let start = kept(&self.pattern, &request.kept)?;
-        let mut state = State { output: start, matches: Vec::new(), energy: Vec::new(), stopped: StopReason::Finished };
+        let mut state = State {
+            output: start,
+            matches: Vec::new(),
+            layout: 0,
+            within: None,
+            energy: Vec::new(),
+            stopped: StopReason::Finished,
+        };
         for n in 0..stage.scales.len() {
             match stage.level(n, &mut state, watch) {
                 Ok(ControlFlow::Continue(())) => {}
@@ -103,31 +118,37 @@ impl<'a, const D: usize> Stage<'a, D> {
         let limits = budget.limits();
         budget.within("points of the result", expected as usize, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected);
-        let mut scales = Vec::new();
+        let (mut scales, mut layouts) = (Vec::new(), vec![layout]);
+        let layout = &layouts[0];
         let spacing = prepared.pattern.spacing;
         let (mut delta, sigma) = (layout.window, prepared.sigma);
         let least = SMALLEST * layout.window;
+        let mut wider = Vec::new();
         while delta > 1.1 * least {
-            scales.push(Scale { delta, sigma });
+            wider.push(layout.spaced(delta, &*request.territory, &budget)?);
+            scales.push(Scale { delta, sigma, layout: wider.len() });
             delta *= prepared.params.shrink;
         }
-        scales.push(Scale { delta: least, sigma });
+        scales.push(Scale { delta: least, sigma, layout: 0 });
         let fine = prepared.params.fine * spacing;
         if fine < sigma {
-            scales.push(Scale { delta: least, sigma: fine });
+            scales.push(Scale { delta: least, sigma: fine, layout: 0 });
         }
-        Ok(Self { prepared, request, budget, layout, scales })
+        layouts.extend(wider);
+        Ok(Self { prepared, request, budget, layouts, scales })
     }
 
     /// The layout and the pattern as `tables` see them.
-    fn seen_by<'t>(&'t self, tables: &'t Tables<D>) -> Level<'t, D> {
+    fn seen_by<'t>(&'t self, layout: usize, tables: &'t Tables<D>) -> Level<'t, D> {
+        let layout = &self.layouts[layout];
         let pattern = &*self.prepared.pattern;
         Level {
             pattern,
             tables,
-            sites: &self.layout.sites,
-            index: &self.layout.index,
-            domain: &self.layout.domain,
+            sites: &layout.sites,
+            open: layout.sites.len(),
+            index: &layout.index,
+            domain: &layout.domain,
             shifts: &self.prepared.repetition.shifts,
             usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
         }
@@ -138,45 +159,37 @@ impl<'a, const D: usize> Stage<'a, D> {
         let pattern = &*self.prepared.pattern;
         let params = &self.prepared.params;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
-        let tables = Tables::new(pattern, kernel, &self.budget)?;
-        let level = self.seen_by(&tables);
+        let tables = Tables::new(pattern, kernel, &self.prepared.fields, &self.budget)?;
+        let level = self.seen_by(scale.layout, &tables);
         if n == 0 {
-            self.start(&level, state)?;
+            self.start(&self.seen_by(0, &tables), state)?;
+        }
+        let (layout, from) = (&self.layouts[scale.layout], &self.layouts[state.layout]);
+        if scale.layout != state.layout {
+            state.matches = layout.carried(from, &state.matches, pattern.base);
+            state.layout = scale.layout;
         }
         let room = room(&level);
-        let mut matches = Matches::new(&level, state.matches.iter().map(|&m| room.clamp(m)).collect());
-        for round in 0..params.rounds {
-            let number = (n * 1000 + round) as u64 + 10;
-            let near = level.near(&state.output, &self.budget)?;
-            let draw = Round { seed: self.request.seed, number, tries: params.tries };
-            let matched = matching(&level, &state.output, &near, &matches, &self.layout.around, (draw, &self.budget))?;
-            debug_assert!(matched.energy.1 <= matched.energy.0 + 1e-9 * matched.energy.0.abs());
-            matches = matched.matches;
-            let mut pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
-            let mut settled = 0.0;
-            let mut energy = 0.0;
-            for _ in 0..params.steps {
-                let moved = merge(&level, &mut state.output, &near, &matches, &mut pulls, &self.budget)?;
-                (settled, energy) = (moved.distance, moved.energy);
-                if moved.distance < SETTLED * pattern.spacing {
-                    break;
-                }
-            }
-            attributes(&level, &mut state.output, &near, &matches, &mut pulls);
-            let near = level.near(&state.output, &self.budget)?;
-            let pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
-            let changed = control(&level, &mut state.output, &near, &matches, &pulls, &self.budget)?;
-            state.matches.clone_from(&matches.places);
+        state.matches.iter_mut().for_each(|m| *m = room.clamp(*m));
+        let sites = layout.sites.len();
+        let mut open = state.within.clone().unwrap_or_else(|| vec![true; sites]);
+        let mut energy = None;
+        // What was not fitted to anything before needs more of them.
+        let more = if params.start != Start::Grow { UNFITTED } else { 1 };
+        let rounds = more * params.rounds;
+        for round in 0..rounds {
+            let draw =
+                Round { seed: self.request.seed, number: (n * 1000 + round) as u64 + 10, tries: more * params.tries };
+            let settled = self.advance(&level, state, &mut open, draw, &mut energy)?;
             let elements = state.output.places.len();
-            let energy = energy / self.layout.sites.len() as f64;
+            let energy = energy.unwrap_or(0.0) / sites as f64;
             state.energy.push(EnergyPoint { level: n, iteration: round, energy, elements });
-            let done = n * params.rounds + round + 1;
-            let total = self.scales.len() * params.rounds;
+            let done = n as f64 + (round + 1) as f64 / rounds as f64;
             let progress = Progress {
                 stage: format!("level {} of {}", n + 1, self.scales.len()).into(),
                 done: round + 1,
-                total: params.rounds,
-                fraction: done as f64 / total as f64,
+                total: rounds,
+                fraction: done / self.scales.len() as f64,
                 energy: Some(energy),
                 count: elements,
             };
@@ -184,21 +197,66 @@ impl<'a, const D: usize> Stage<'a, D> {
             if watch.step(&progress, &|| self.preview(output)).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
-            if settled < SETTLED * pattern.spacing && changed == (0, 0) {
+            if settled {
                 break;
             }
         }
         Ok(ControlFlow::Continue(()))
     }
 
+    /// One round over what is in motion, the sites for which `open` says so; these are other ones afterwards. Returns whether all has settled.
+    fn advance(
+        &self,
+        level: &Level<'_, D>,
+        state: &mut State<D>,
+        open: &mut Vec<bool>,
+        draw: Round,
+        energy: &mut Option<f64>,
+    ) -> Result<bool> {
+        let steps = self.prepared.params.steps;
+        let count = open.iter().filter(|o| **o).count();
+        let whole = state.within.is_none() && count as f64 > WHOLE * open.len() as f64;
+        let layout = &self.layouts[state.layout];
+        let around = &layout.around;
+        let mut moving = vec![false; open.len()];
+        let turn = if whole {
+            let mut matches = Matches::new(level, std::mem::take(&mut state.matches));
+            let turn = round(level, around, (&mut state.output, &mut matches), (draw, steps), &self.budget);
+            state.matches = matches.places;
+            let turn = turn?;
+            turn.rematched.iter().for_each(|&q| moving[q] = true);
+            *energy = Some(turn.energy.1);
+            turn
+        } else {
+            let step = layout.plan.step;
+            let part = Part::new(level, (around, step), &state.output, &state.matches, open, &self.budget)?;
+            let inner = part.level(level);
+            let (mut output, mut matches) = (part.output.clone(), Matches::new(&inner, part.places.clone()));
+            let turn = round(&inner, &part.around, (&mut output, &mut matches), (draw, steps), &self.budget)?;
+            part.back(level, (&output, &matches), (&mut state.output, &mut state.matches));
+            turn.rematched.iter().for_each(|&q| moving[part.numbers[q]] = true);
+            *energy = Some(energy.unwrap_or(turn.energy.0) + turn.energy.1 - turn.energy.0);
+            turn
+        };
+        for &p in &turn.stirred {
+            level.index.windows(level.sites, p, &level.tables.reach, |q, _| moving[q] = true);
+        }
+        if let Some(within) = &state.within {
+            moving.iter_mut().zip(within).for_each(|(m, w)| *m &= *w);
+        }
+        *open = moving;
+        Ok(turn.settled || open.iter().all(|o| !o))
+    }
+
     /// Lays out the first points and matches.
     fn start(&self, level: &Level<'_, D>, state: &mut State<D>) -> Result<()> {
         let (params, seed) = (&self.prepared.params, self.request.seed);
-        let step = self.layout.plan.step;
+        let layout = &self.layouts[0];
+        let step = layout.plan.step;
         let kept = std::mem::take(&mut state.output);
         let spacing = self.prepared.pattern.spacing;
         let (mut output, matches) = match params.start {
-            Start::Grow => grow(level, kept, &self.layout.around, step, seed, &self.budget)?,
+            Start::Grow => grow(level, (kept, &[]), &layout.around, step, seed, &self.budget)?,
             Start::Patches => patches(level, kept, (step, params.patch * spacing), seed),
             Start::Noise => {
                 let output = noise(level, kept, step, seed);
@@ -206,12 +264,11 @@ impl<'a, const D: usize> Stage<'a, D> {
                 let first = |q| {
                     anywhere(&room, &mut arabesque_core::Stream::new(seed, arabesque_core::Stage::new(46), q as u64))
                 };
-                let mut matches = Matches::new(level, (0..self.layout.sites.len()).map(first).collect());
+                let mut matches = Matches::new(level, (0..layout.sites.len()).map(first).collect());
                 let near = level.near(&output, &self.budget)?;
                 for number in 0..FIRST {
                     let draw = Round { seed, number, tries: 8 };
-                    matches =
-                        matching(level, &output, &near, &matches, &self.layout.around, (draw, &self.budget))?.matches;
+                    matches = matching(level, &output, &near, &matches, &layout.around, (draw, &self.budget))?.matches;
                 }
                 (output, matches.places)
             }
@@ -220,6 +277,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             let length = params.shake.unwrap_or((SHAKE * self.prepared.pattern.variation).min(0.5));
             shake(&mut output, length * spacing, seed);
         }
+        fill(level, &mut output, step, seed, &self.budget)?;
         (state.output, state.matches) = (output, matches);
         Ok(())
     }
@@ -230,25 +288,26 @@ impl<'a, const D: usize> Stage<'a, D> {
     }
 
     fn cut(&self, output: &Output<D>, sources: &[usize], groups: Option<&[i32]>) -> Finished<D> {
-        let plan = self.layout.plan;
-        let inside = |p| self.request.territory.contains(self.layout.domain.wrap(p), &plan);
+        let (plan, domain) = (self.layouts[0].plan, &self.layouts[0].domain);
+        let inside = |p| self.request.territory.contains(domain.wrap(p), &plan);
         let mut finished = finish(&self.prepared.pattern, output, sources, groups, inside);
-        finished.points.positions.iter_mut().for_each(|p| *p = self.layout.domain.wrap(*p));
+        finished.points.positions.iter_mut().for_each(|p| *p = domain.wrap(*p));
         finished
     }
 
     fn outcome(&self, state: State<D>) -> Result<StructureOutcome<D>> {
         // What is still to be done with the best so far has an account of its own.
         let budget = self.budget.fresh();
-        let Some(&scale) = self.scales.last() else { return Err(Error::no_result("no level", "allow a window")) };
+        let last = self.scales.iter().rev().find(|s| s.layout == state.layout);
+        let Some(&scale) = last else { return Err(Error::no_result("no level", "allow a window")) };
         let pattern = &*self.prepared.pattern;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);
-        let tables = Tables::new(pattern, kernel, &budget)?;
-        let level = self.seen_by(&tables);
+        let tables = Tables::new(pattern, kernel, &self.prepared.fields, &budget)?;
+        let level = self.seen_by(state.layout, &tables);
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;
         let sources = sources(&level, &state.output, &near, &matches);
-        let groups = groups(&level, &state.output, &near, &matches);
+        let groups = groups(&level, &state.output, &near, &matches, &budget)?;
         let finished = self.cut(&state.output, &sources, groups.as_deref());
         let mut warnings = self.prepared.warnings.clone();
         if finished.points.is_empty() {

@@ -22,13 +22,21 @@ use crate::{
 /// A change must lower the energy by this share of what one point weighs.
 const WORTH: f64 = 0.04;
 /// A point goes, however many there are, when it makes up less of itself than this leaves over, halved.
-const STRAY: f64 = 0.7;
+const STRAY: f64 = 0.97;
 /// Nothing but strays is removed where there are fewer points than in the exemplar in the mean, by this share.
 const EMPTIEST: f64 = -0.04;
+/// The same for rigid elements, of which each is many points.
+const FULLEST: f64 = 0.04;
 /// What is added is no nearer to a point like it than this, in units of the spacing.
 const APART: f64 = 0.45;
 
-/// Adds and removes; how many of each.
+/// Places at which points were added, and at which some were removed.
+pub(crate) struct Changed<const D: usize> {
+    pub(crate) added: Vec<Vector<D>>,
+    pub(crate) removed: Vec<Vector<D>>,
+}
+
+/// Adds and removes points.
 pub(crate) fn control<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
@@ -36,18 +44,18 @@ pub(crate) fn control<const D: usize>(
     matches: &Matches<D>,
     pulls: &[Pull<D>],
     budget: &Budget,
-) -> Result<(usize, usize)> {
+) -> Result<Changed<D>> {
     let surplus = surplus(level, output, near, matches);
-    let removed = remove(level, output, near, (pulls, &surplus));
-    let before = output.places.len();
+    let goes = remove(level, output, near, (pulls, &surplus));
     budget.spend(near.pairs.total() as u64 * 20)?;
-    let gone = removed.iter().filter(|r| **r).count();
-    if gone > 0 {
-        *output = output.filtered(level.pattern, |i| !removed[i]);
+    let removed: Vec<_> = output.places.iter().zip(&goes).filter(|(_, goes)| **goes).map(|(p, _)| *p).collect();
+    if !removed.is_empty() {
+        *output = output.filtered(level.pattern, |i| !goes[i]);
     }
-    let added = add(level, output, matches, budget)?;
-    debug_assert!(output.places.len() + gone >= before);
-    Ok((added, gone))
+    let before = output.places.len();
+    let covers: Vec<f64> = pulls.iter().zip(&goes).filter(|(_, goes)| !**goes).map(|(p, _)| p.cover).collect();
+    add(level, output, &covers, matches, budget)?;
+    Ok(Changed { added: output.places[before..].to_vec(), removed })
 }
 
 /// By how many points windows have more than something, for each point in the mean over those it is in.
@@ -64,9 +72,9 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
         let site = &level.sites[q];
         let u = site.seen(level.domain.offset(site.place, output.places[i]));
         let known = level.tables.known.at(&std::array::from_fn(|k| (matches.places[q][k] + u[k]) as f32));
-        (level.tables.kernel.weights(&u).0, f64::from(known))
+        (level.tables.kernel.weight(&u), f64::from(known))
     };
-    let of_sites: Vec<(f64, f64)> = (0..level.sites.len())
+    let of_sites: Vec<(f64, f64)> = (0..level.open)
         .into_par_iter()
         .with_min_len(16)
         .map(|q| {
@@ -80,7 +88,8 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
         .with_min_len(64)
         .map(|i| {
             let (mut matched, mut usual, mut weight) = (0.0, 0.0, 1e-12);
-            for &q in near.windows.of(i) {
+            // What the windows of the other sites hold is not all here.
+            for &q in near.windows.of(i).iter().filter(|q| (**q as usize) < level.open) {
                 let (w, _) = seen(q as usize, i);
                 matched += w * of_sites[q as usize].0;
                 usual += w * of_sites[q as usize].1;
@@ -117,10 +126,7 @@ fn remove<const D: usize>(
             2.0 * pulls[i].wanted - 2.0 * near.pairs.of(i).iter().map(|&j| pair(i, j as usize)).sum::<f64>() - own
         })
         .collect();
-    let members = |i: usize| match output.bodies.get(output.body_of[i] as usize) {
-        Some(b) => b.first..b.first + b.count,
-        None => i..i + 1,
-    };
+    let members = |i: usize| output.members(i);
     let worth = |change: &[f64], i: usize| {
         let all = members(i);
         let mut sum: f64 = all.clone().map(|k| change[k]).sum();
@@ -145,8 +151,15 @@ fn remove<const D: usize>(
     let mut gone = vec![0.0; n];
     for (_, i) in order {
         // Fewer points in the windows of this one by those that went.
-        let enough = surplus.usual[i] - gone[i] / level.usual > EMPTIEST;
-        let least = if enough && surplus.matched[i] - gone[i] > 0.5 { -WORTH } else { -STRAY };
+        let rigid = output.body_of[i] != LOOSE;
+        let least = if rigid { FULLEST } else { EMPTIEST };
+        let enough = surplus.usual[i] - gone[i] / level.usual > least;
+        let least = match (enough, surplus.matched[i] - gone[i] > 0.5) {
+            (true, true) => -WORTH,
+            // There is a place for a whole element, if not this one.
+            (false, _) if rigid => continue,
+            _ => -STRAY,
+        };
         if worth(&change, i) >= least {
             continue;
         }
@@ -172,21 +185,21 @@ struct Offer<const D: usize> {
     worth: f64,
 }
 
-/// Adds what is missing, the most wanted first, each with the ones before it there. Returns how many points.
+/// Adds what is missing, the most wanted first, each with the ones before it there.
 fn add<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
+    covers: &[f64],
     matches: &Matches<D>,
     budget: &Budget,
-) -> Result<usize> {
-    let before = output.places.len();
+) -> Result<()> {
     let radius = level.tables.kernel.pairs() * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
     let index = GridIndex::new(&output.places, radius, level.domain);
-    let offers: Result<Vec<Vec<Offer<D>>>> = (0..level.sites.len())
+    let offers: Result<Vec<Vec<Offer<D>>>> = (0..level.open)
         .into_par_iter()
         .with_min_len(8)
         .map(|q| {
-            let offers = offers(level, output, matches, &index, q);
+            let offers = offers(level, (output, covers), matches, &index, q);
             budget.spend(500)?;
             Ok(offers)
         })
@@ -237,7 +250,7 @@ fn add<const D: usize>(
             None => output.add(offer.place, offer.weights),
         }
     }
-    Ok(output.places.len() - before)
+    Ok(())
 }
 
 /// The points that an offer consists of.
@@ -258,7 +271,7 @@ fn members<const D: usize>(level: &Level<'_, D>, offer: &Offer<D>) -> Vec<(Vecto
 /// What site `q` would add near itself: points of the exemplar under its match that the output does not make up for.
 fn offers<const D: usize>(
     level: &Level<'_, D>,
-    output: &Output<D>,
+    (output, covers): (&Output<D>, &[f64]),
     matches: &Matches<D>,
     index: &GridIndex<D>,
     q: usize,
@@ -303,7 +316,7 @@ fn offers<const D: usize>(
             let (field, cover) = level.wanted(*place, &windows, matches);
             let mut rest = f64::from(inner(weights, &field));
             index.within(*place, level.tables.kernel.pairs() * site.scale, |i, r| {
-                let h = level.pair(r.norm2(), site.scale, site.scale) * cover;
+                let h = level.pair(r.norm2(), site.scale, site.scale) * 0.5 * (cover + covers[i]);
                 rest -= h * f64::from(inner(weights, &output.weights[i]));
             });
             // Pairs within an element.

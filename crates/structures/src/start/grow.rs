@@ -23,10 +23,18 @@ const TRIES: Stage = Stage::new(42);
 const RANDOM: usize = 28;
 /// What it costs to go on elsewhere in the exemplar, as a share of all that a window holds.
 const JUMP: f64 = 0.1;
+/// Points that matches are compared by.
+const FEW: usize = 150;
+/// Matches that are looked at more closely.
+const BEST: usize = 4;
 /// How far a site looks at what is there, in units of the window; less where there is much to look at.
 const LOOK: [f64; 4] = [1.8, 1.8, 1.8, 1.3];
 /// Cells of the map of what is there, in one step of the sites.
 const CELLS: [f64; 4] = [2.5, 2.5, 2.5, 1.7];
+/// Jumps cost more where the exemplar ends soon after them, as the next one comes sooner; down to this share of its length.
+const SHORTEST: f64 = 0.2;
+/// Share of what is there already of which the exemplar must show the counterpart around a match.
+const SHOWN: f64 = 0.75;
 /// A new point is no nearer to one like it than this, in spacings.
 const APART: f64 = 0.5;
 
@@ -44,62 +52,64 @@ struct Growth<'a, 'b, const D: usize> {
     step: f64,
 }
 
-/// Grows an output from the `kept` points; and the match of each site.
+/// Grows on from an output, and from the matches of the sites that show it already. Gives the output and the match of each site.
 pub(crate) fn grow<const D: usize>(
     level: &Level<'_, D>,
-    kept: Output<D>,
+    (begun, done): (Output<D>, &[Option<Vector<D>>]),
     around: &Lists,
     step: f64,
     seed: u64,
     budget: &Budget,
 ) -> Result<(Output<D>, Vec<Vector<D>>)> {
     let radius = level.tables.kernel.pairs();
+    let at = |q: usize| done.get(q).copied().flatten();
     let mut growth = Growth {
         level,
-        output: Output::default(),
+        output: begun,
         cells: Cells::new(radius, level.domain),
         own: Vec::new(),
         own_exemplar: own_exemplar(level),
-        done: vec![false; level.sites.len()],
-        matches: vec![Vector::ZERO; level.sites.len()],
+        done: (0..level.sites.len()).map(|q| at(q).is_some()).collect(),
+        matches: (0..level.sites.len()).map(|q| at(q).unwrap_or(Vector::ZERO)).collect(),
         step,
     };
-    for (place, weights) in kept.places.iter().zip(&kept.weights) {
-        growth.add(*place, *weights);
-    }
-    growth.output.kept = kept.kept;
+    growth.enter_from(0);
     let room = room(level);
-    for q in order(level, around, seed) {
+    let order = order(level, around, &growth.done, seed);
+    for q in order {
         growth.site(q, around.of(q), &room, seed, budget)?;
     }
     Ok((growth.output, growth.matches))
 }
 
-/// The sites from one in the middle outwards.
-fn order<const D: usize>(level: &Level<'_, D>, around: &Lists, seed: u64) -> Vec<usize> {
+/// The sites from those that are done outwards, or from any one.
+fn order<const D: usize>(level: &Level<'_, D>, around: &Lists, done: &[bool], seed: u64) -> Vec<usize> {
     let n = level.sites.len();
     let first = Stream::new(seed, TRIES, u64::MAX).below(n);
-    let mut seen = vec![false; n];
+    let mut seen = done.to_vec();
     let mut order = Vec::with_capacity(n);
-    for start in (first..n).chain(0..first) {
-        if seen[start] {
-            continue;
-        }
-        seen[start] = true;
-        let mut queue = VecDeque::from([start]);
+    let mut outwards = |mut queue: VecDeque<usize>, seen: &mut Vec<bool>| {
         while let Some(q) = queue.pop_front() {
-            order.push(q);
+            if !done[q] {
+                order.push(q);
+            }
             for &next in around.of(q) {
                 if !std::mem::replace(&mut seen[next as usize], true) {
                     queue.push_back(next as usize);
                 }
             }
         }
+    };
+    outwards((0..n).filter(|&q| done[q]).collect(), &mut seen);
+    for start in (first..n).chain(0..first) {
+        if !std::mem::replace(&mut seen[start], true) {
+            outwards(VecDeque::from([start]), &mut seen);
+        }
     }
     order
 }
 
-/// For each point of the exemplar the sum over its pairs.
+/// For each point of the exemplar the sum over its pairs, as far as that is known.
 fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
     let pattern = level.pattern;
     (0..pattern.points.len())
@@ -109,7 +119,7 @@ fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
             pattern.index.within(pattern.points.positions[i], level.tables.kernel.pairs(), |j, r| {
                 sum += level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(&pattern.weights[i], &pattern.weights[j]));
             });
-            sum
+            sum * f64::from(level.tables.known.at(&pattern.points.positions[i].0.map(|x| x as f32)))
         })
         .collect()
 }
@@ -118,8 +128,9 @@ fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
 struct There<const D: usize> {
     u: [f64; D],
     weights: Weights,
+    weight: f32,
+    /// The sum over its pairs.
     own: f32,
-    outer: f32,
 }
 
 /// Which cells around a site belong to sites that are done.
@@ -169,17 +180,23 @@ impl<const D: usize> Growth<'_, '_, D> {
         self.output.add(place, weights);
     }
 
+    /// Takes note of all points of the output from this one on, one by one, so that they know of each other.
+    fn enter_from(&mut self, first: usize) {
+        for n in first..self.output.places.len() {
+            let weights = self.output.weights[n];
+            self.enter(self.output.places[n], &weights);
+        }
+    }
+
     /// Takes note of a point that comes next in the output.
     fn enter(&mut self, place: Vector<D>, weights: &Weights) {
         let level = self.level;
         let mut own = f64::from(inner(weights, weights));
         let (output, others) = (&self.output, &mut self.own);
         self.cells.within(level.domain, place, level.tables.kernel.pairs(), |i, r| {
-            if i < output.weights.len() {
-                let h = level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(weights, &output.weights[i]));
-                own += h;
-                others[i] += h;
-            }
+            let h = level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(weights, &output.weights[i]));
+            own += h;
+            others[i] += h;
         });
         self.own.push(own);
         self.cells.add(place);
@@ -217,40 +234,64 @@ impl<const D: usize> Growth<'_, '_, D> {
         let look = LOOK[level.pattern.repeats()] * level.tables.kernel.delta;
         let across = 1.3 * level.pattern.thickness + level.pattern.spacing;
         let radius = (look * look * level.pattern.repeats() as f64 + across * across).sqrt() * site.scale;
-        let back = site.rotation.transpose();
         let mut there = Vec::new();
         self.cells.within(level.domain, site.place, radius, |i, offset| {
             let u = site.seen(offset);
             let near = (0..D).all(|k| u[k].abs() <= if level.pattern.base[k] { look } else { across });
-            let (pair, outer) = level.tables.kernel.weights(&u);
-            if near && pair > 0.0 && map.at(&u) {
-                let weights = level.pattern.channels.turned(&self.output.weights[i], &back);
-                there.push(There { u, weights, own: (pair * self.own[i]) as f32, outer: outer as f32 });
+            let weight = level.tables.kernel.weight(&u);
+            if near && weight > 0.0 && map.at(&u) {
+                let weights = level.pattern.channels.turned_back(&self.output.weights[i], &site.rotation);
+                there.push(There { u, weights, weight: weight as f32, own: self.own[i] as f32 });
             }
         });
         there
     }
 
-    /// How badly a match goes with what is there.
-    fn error(&self, there: &[There<D>], map: &Map<D>, m: &Vector<D>) -> f64 {
+    /// How badly a match goes with what is there; `roughly` where that is to tell good ones from bad ones alone.
+    fn error(&self, there: &[There<D>], map: &Map<D>, m: &Vector<D>, roughly: bool) -> f64 {
+        let stride = if roughly { (there.len() / FEW).max(1) } else { 1 };
         let (tables, pattern) = (self.level.tables, self.level.pattern);
-        let mut sum = 0.0_f64;
-        for p in there {
-            let known = tables.known.at(&std::array::from_fn(|k| (m[k] + p.u[k]) as f32));
+        let (mut sum, mut shown, mut all) = (0.0_f64, 0.0_f64, 1e-12_f64);
+        for p in there.iter().step_by(stride) {
+            let y = std::array::from_fn(|k| (m[k] + p.u[k]) as f32);
+            let known = tables.known.at(&y);
+            shown += f64::from(known * p.weight);
+            all += f64::from(p.weight);
             if known > 0.0 {
-                let y = std::array::from_fn(|k| (m[k] + tables.kernel.inward[k] * p.u[k]) as f32);
-                sum += f64::from(known * (p.own - 2.0 * p.outer * tables.field.project(&y, &p.weights)));
+                let wanted =
+                    if roughly { tables.field.glimpse(&y, &p.weights) } else { tables.field.project(&y, &p.weights) };
+                sum += f64::from(known * p.weight * (p.own - 2.0 * wanted));
             }
         }
         let look = LOOK[pattern.repeats()] * tables.kernel.delta;
         let radius = (look * look * pattern.repeats() as f64 + pattern.thickness * pattern.thickness * 1.1).sqrt();
         pattern.index.within(*m, radius, |j, v| {
-            if map.at(&v.0) {
-                let known = tables.known.at(&pattern.points.positions[j].0.map(|x| x as f32));
-                sum += f64::from(known) * tables.kernel.weights(&v.0).0 * self.own_exemplar[j];
+            if j % stride == 0 && map.at(&v.0) {
+                sum += tables.kernel.weight(&v.0) * self.own_exemplar[j];
             }
         });
-        sum / tables.known.share(&m.0).max(0.05)
+        // A match next to the border of the exemplar, beyond which nothing is known, would go with anything.
+        let shown = shown / all;
+        let blind = (SHOWN - shown).max(0.0) * tables.back.at(&pattern.bounds.centre().0).0;
+        sum * stride as f64 / shown.max(0.1) + blind
+    }
+
+    /// How far growth can go on from `m` until the exemplar ends, as a share of all of it: from the sites around `q` that are done, past it.
+    fn run(&self, q: usize, around: &[u32], room: &Bounds<D>) -> impl Fn(&Vector<D>) -> f64 + use<D> {
+        let level = self.level;
+        let from = around.iter().filter(|o| self.done[**o as usize]);
+        let outwards = from.fold(Vector::ZERO, |sum, &o| {
+            sum + level.domain.offset(level.sites[o as usize].place, level.sites[q].place)
+        });
+        let along = Vector(level.sites[q].seen(outwards));
+        let (along, room, base) = (along.unit_or_zero(), *room, level.pattern.base);
+        move |m| {
+            let share = |k: usize| {
+                let left = if along[k] > 0.0 { room.max[k] - m[k] } else { m[k] - room.min[k] };
+                left / (room.max[k] - room.min[k]).max(1e-12) / along[k].abs()
+            };
+            (0..D).filter(|&k| base[k] && along[k].abs() > 0.1).map(share).fold(1.0, f64::min)
+        }
     }
 
     fn site(&mut self, q: usize, around: &[u32], room: &Bounds<D>, seed: u64, budget: &Budget) -> Result<()> {
@@ -277,14 +318,23 @@ impl<const D: usize> Growth<'_, '_, D> {
                 }
             }
             budget.spend(((RANDOM + 20) * (there.len() * 30 + 1000)) as u64)?;
-            let rate = |m: &Vector<D>| self.error(&there, &map, m);
+            let rate = |m: &Vector<D>| self.error(&there, &map, m, false);
+            let rough = |m: &Vector<D>| self.error(&there, &map, m, true);
             let jump = JUMP * level.tables.back.at(&level.pattern.bounds.centre().0).0;
-            let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rate(m), *m)).collect();
+            let carried: Vec<(f64, Vector<D>)> = carried.into_iter().map(|m| (rate(&m), m)).collect();
+            if carried.iter().any(|c| c.0 < jump) {
+                // No other match can make up for the jump.
+                random.clear();
+            }
+            let run = self.run(q, around, room);
+            let mut rated: Vec<(f64, Vector<D>)> =
+                random.par_iter().map(|m| (rough(m) / run(m).max(SHORTEST), *m)).collect();
             rated.sort_by(|a, b| a.0.total_cmp(&b.0));
-            rated.truncate(8);
-            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate)).map(|(e, m)| (e + jump, m));
-            let carried = carried.into_iter().map(|m| (rate(&m), m));
-            let first = carried.chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
+            rated.truncate(BEST);
+            rated.iter_mut().for_each(|r| r.0 = rate(&r.1));
+            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate));
+            let refined = refined.map(|(e, m)| ((e + jump) / run(&m).max(SHORTEST), m));
+            let first = carried.into_iter().chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
             best = first.map_or(best, |b| b.1);
         }
         self.matches[q] = best;
@@ -374,14 +424,7 @@ impl<const D: usize> Growth<'_, '_, D> {
         if !blocked {
             let first = self.output.places.len();
             self.output.add_body(pattern, source, pose);
-            // Points are entered one by one, so that they know of each other.
-            let all = std::mem::take(&mut self.output.weights);
-            self.output.weights = all[..first].to_vec();
-            for (n, weights) in all.iter().enumerate().skip(first) {
-                let place = self.output.places[n];
-                self.enter(place, weights);
-                self.output.weights.push(*weights);
-            }
+            self.enter_from(first);
         }
     }
 }

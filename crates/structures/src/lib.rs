@@ -62,6 +62,7 @@ mod solve;
 mod start;
 mod territory;
 
+pub use exemplar::spacing::mean_spacing as spacing;
 pub use params::{Start, StructureParams, Window};
 pub use prepared::Prepared;
 pub use request::{PlacedElement, StructureOutcome, StructureRequest};

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
+use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Vector, Warning, Watch};
 
 use crate::{
     energy::{
@@ -233,7 +233,21 @@ impl<'a, const D: usize> Stage<'a, D> {
         let plan = self.layout.plan;
         let inside = |p| self.request.territory.contains(self.layout.domain.wrap(p), &plan);
         let mut finished = finish(&self.prepared.pattern, output, sources, groups, inside);
-        finished.points.positions.iter_mut().for_each(|p| *p = self.layout.domain.wrap(*p));
+        let exemplar = &self.prepared.pattern.points.positions;
+        let mut loose = vec![true; finished.points.len()];
+        for element in &mut finished.elements {
+            // An element is moved as a whole, by its middle.
+            let own = &mut finished.points.positions[element.points.clone()];
+            let middle = own.iter().fold(Vector::ZERO, |s, &p| s + p) * (1.0 / own.len().max(1) as f64);
+            element.pose.translation += self.layout.domain.wrap(middle) - middle;
+            for (place, source) in own.iter_mut().zip(&finished.sources[element.points.clone()]) {
+                *place = source.map_or(*place, |j| element.pose.apply(exemplar[j]));
+            }
+            loose[element.points.clone()].fill(false);
+        }
+        for (place, _) in finished.points.positions.iter_mut().zip(&loose).filter(|(_, loose)| **loose) {
+            *place = self.layout.domain.wrap(*place);
+        }
         finished
     }
 

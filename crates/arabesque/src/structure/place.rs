@@ -2,18 +2,20 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{
-    Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, ScalarField, Vector,
-};
+use arabesque_core::{Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, Vector};
 use arabesque_io::{file, geometry::Cloud, mesh::obj, svg};
 use arabesque_structures::{Along, Flat, Shell, Solid, Territory, Thread, Tube};
 use arabesque_surface::{Bend, DirectionField, Directions, MeshReport};
 
 use crate::{
     method::RunContext,
-    plane::{constant_factor, options},
-    recipe::{Direction, FieldSource, Format, Input, Size, Structures},
-    solid::read::{cloud, indexed_mesh},
+    plane::options,
+    recipe::{Direction, Format, Input, Size, Structures},
+    solid::read::indexed_mesh,
+    structure::{
+        fields::{self, degrees, factor},
+        shapes::exemplar,
+    },
 };
 
 /// How far a line may lie from its curve, as a share of its extent.
@@ -28,12 +30,7 @@ enum Curves {
 /// The place in the plane that `job` asks for, whose files are embedded.
 pub(super) fn in_plane(job: &mut Structures, context: &mut RunContext<'_>) -> Result<Arc<dyn Territory<2>>> {
     let place = job.place()?;
-    let turned = degrees(job)?;
-    let fields = Fields {
-        orientation: (turned != 0.0).then(|| OrientationField::Constant(Matrix::rotation(turned.to_radians()))),
-        scale: factor(job)?,
-        ..Fields::default()
-    };
+    suits(job, place, 2)?;
     let sized = |size: &Size| sides(size).map(|[w, h]| Bounds::new(Vector::ZERO, Vector::xy(w, h)));
     let domain = match (place, &mut *job) {
         ("size", Structures { size: Some(size), .. }) => Domain::Box(sized(size)?),
@@ -48,12 +45,14 @@ pub(super) fn in_plane(job: &mut Structures, context: &mut RunContext<'_>) -> Re
             let Curves::Plane(paths) = curves(input, context)? else {
                 return Err(elsewhere("along", "curves in space", "points in the plane", "give an SVG file"));
             };
-            let threads = threads(&paths, job, turned)?;
+            let threads = threads(&paths, job, 0.0)?;
             return Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or_default())?));
         }
         (other, _) => return Err(elsewhere(other, "in space", "points in the plane", "give points with a z")),
     };
-    Ok(Arc::new(Flat::new(domain, fields)))
+    let bounds = domain.bounds();
+    let fields = fields::over(&bounds, job, context)?;
+    fields::without_avoided(Arc::new(Flat::new(domain, fields)), &bounds, &mut job.avoid, context)
 }
 
 /// The place in space that `job` asks for, whose files are embedded.
@@ -63,36 +62,35 @@ pub(super) fn in_space(
     context: &mut RunContext<'_>,
 ) -> Result<Arc<dyn Territory<3>>> {
     let place = job.place()?;
-    let turned = degrees(job)?;
-    let (sin, cos) = turned.to_radians().sin_cos();
-    let about_z = Matrix([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]);
-    let fields = Fields {
-        orientation: (turned != 0.0).then_some(OrientationField::Constant(about_z)),
-        scale: factor(job)?,
-        ..Fields::default()
-    };
+    suits(job, place, 3)?;
     let height = exemplar.bounds();
     let sheet = |size: &Size| {
         let [w, h] = sides(size)?;
         Ok::<_, Error>(Bounds::new(Vector([0.0, 0.0, height.min[2]]), Vector([w, h, height.max[2]])))
     };
-    let domain = match (place, &mut *job) {
-        ("size", Structures { size: Some(size), .. }) => Domain::Box(sheet(size)?),
+    match (place, &mut *job) {
+        ("size", Structures { size: Some(size), .. }) => {
+            let bounds = sheet(size)?;
+            on_sheet(Domain::Box(bounds), job, context)
+        }
         ("tile", Structures { tile: Some(size), .. }) => {
             // A sheet closes up sideways alone: across itself the next one is far away.
             let mut around = sheet(size)?;
             around.max[2] += around.size().norm();
-            Domain::Torus(around)
+            on_sheet(Domain::Torus(around), job, context)
         }
-        ("box", Structures { cuboid: Some(cuboid), .. }) => Domain::Box(cuboid.bounds()),
+        ("box", Structures { cuboid: Some(cuboid), .. }) => {
+            let domain = Domain::Box(cuboid.bounds());
+            Ok(Arc::new(Flat::new(domain, even(job, place)?)))
+        }
         ("along", Structures { along: Some(input), .. }) => {
             let paths = match curves(input, context)? {
                 Curves::Space(paths) => paths,
                 Curves::Plane(paths) => paths.iter().map(stood_up).collect(),
             };
-            let threads = threads(&paths, job, turned)?;
+            let threads = threads(&paths, job, degrees(job, place)?)?;
             let across = height.size().0.into_iter().fold(f64::INFINITY, f64::min);
-            return Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?));
+            Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?))
         }
         ("on", Structures { on: Some(input), direction, .. }) => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
@@ -101,25 +99,59 @@ pub(super) fn in_space(
             context.warnings.extend(report.surface_of(input.name())?);
             let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
             context.warnings.extend(field.warnings().iter().cloned());
-            return Ok(Arc::new(Shell::new(Arc::new(index), Arc::new(field), fields.scale)));
+            let shell = Shell::new(Arc::new(index), Arc::new(field), factor(job, place)?);
+            Ok(Arc::new(shell.turned(degrees(job, place)?.to_radians())))
         }
         ("inside", Structures { inside: Some(input), .. }) => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
             context.warnings.extend(warnings);
             let report = MeshReport::new(&index, context.budget())?;
             context.warnings.extend(report.volume_of(input.name())?);
-            return Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), fields)));
+            Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), even(job, place)?)))
         }
         (other, _) => {
-            return Err(elsewhere(
-                other,
-                "in the plane",
-                "points in space",
-                "give size, tile, box, along, on or inside",
-            ));
+            Err(elsewhere(other, "in the plane", "points in space", "give size, tile, box, along, on or inside"))
         }
-    };
-    Ok(Arc::new(Flat::new(domain, fields)))
+    }
+}
+
+/// A sheet in space: fields and what is avoided lie over it.
+fn on_sheet(domain: Domain<3>, job: &mut Structures, context: &RunContext<'_>) -> Result<Arc<dyn Territory<3>>> {
+    let around = domain.bounds();
+    let flat = |v: Vector<3>| Vector::xy(v[0], v[1]);
+    let bounds = Bounds::new(flat(around.min), flat(around.max));
+    let fields = fields::raised(fields::over(&bounds, job, context)?);
+    fields::without_avoided(Arc::new(Flat::new(domain, fields)), &bounds, &mut job.avoid, context)
+}
+
+/// Fields that are the same everywhere; the turn is about z.
+fn even(job: &Structures, place: &str) -> Result<Fields<3>> {
+    let turned = degrees(job, place)?;
+    let (sin, cos) = turned.to_radians().sin_cos();
+    let about_z = Matrix([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]);
+    let orientation = (turned != 0.0).then_some(OrientationField::Constant(about_z));
+    Ok(Fields { orientation, scale: factor(job, place)?, ..Fields::default() })
+}
+
+/// Refuses what is given and has no meaning for `place`.
+fn suits(job: &Structures, place: &str, dimension: usize) -> Result<()> {
+    let is_flat = matches!(place, "size" | "tile" | "domain");
+    let along = place == "along";
+    let given = [
+        ("direction", job.direction.is_some() && place != "on", "a place other than a mesh (--on)"),
+        ("taper", job.taper.is_some() && !along, "a place other than curves (--along)"),
+        ("twist", job.twist.is_some() && !along, "a place other than curves (--along)"),
+        ("tube", job.radius.is_some() && !along, "a place other than curves (--along)"),
+        ("twist", job.twist.is_some() && dimension == 2, "curves in the plane, about which nothing turns"),
+        ("orient", job.orient.is_some() && along && dimension == 2, "curves in the plane, about which nothing turns"),
+        ("avoid", !job.avoid.is_empty() && !is_flat, "a place that is not flat (--size, --tile, --domain)"),
+    ];
+    match given.into_iter().find(|(_, is_given, _)| *is_given) {
+        None => Ok(()),
+        Some((name, _, with)) => {
+            Err(Error::Unsupported { what: format!("{name} for {with}"), advice: "leave it out".into() })
+        }
+    }
 }
 
 fn elsewhere(what: &str, place: &str, points: &str, advice: &str) -> Error {
@@ -132,22 +164,6 @@ fn sides(size: &Size) -> Result<[f64; 2]> {
         None => Ok(size.sides),
         Some(_) => Err(Error::parameter("size", size, "plain numbers, because points have no unit of length")),
     }
-}
-
-fn degrees(job: &Structures) -> Result<f64> {
-    match &job.orient {
-        None => Ok(0.0),
-        Some(FieldSource::Constant(v)) if v.is_finite() => Ok(*v),
-        Some(FieldSource::Constant(v)) => Err(Error::parameter("orient", v, "degrees")),
-        Some(FieldSource::File(_)) => {
-            let what = "orient from a file, for a structure".into();
-            Err(Error::Unsupported { what, advice: "give degrees".into() })
-        }
-    }
-}
-
-fn factor<const D: usize>(job: &Structures) -> Result<ScalarField<D>> {
-    constant_factor("scale", job.scale.as_ref())
 }
 
 /// Where the pattern runs on a mesh; strokes are embedded.
@@ -190,15 +206,7 @@ fn stood_up(path: &Path<2>) -> Path<3> {
 
 /// The curves as lines with sizes and turns along them.
 fn threads<const D: usize>(paths: &[Path<D>], job: &Structures, turned: f64) -> Result<Vec<Thread<D>>> {
-    let Some(scale) = job.scale.as_ref().map_or(Some(1.0), |s| match s {
-        FieldSource::Constant(v) => Some(*v),
-        FieldSource::File(_) => None,
-    }) else {
-        return Err(Error::Unsupported {
-            what: "scale from a file, along curves".into(),
-            advice: "give a number".into(),
-        });
-    };
+    let scale = factor::<D>(job, "along")?.range().0;
     let taper = match &job.taper {
         None => vec![(0.0, 1.0)],
         Some(text) => profile("taper", text)?,
@@ -241,7 +249,11 @@ pub(super) fn kept<const D: usize>(
     of_dimension: impl Fn(Cloud) -> Option<PointSet<D>>,
 ) -> Result<PointSet<D>> {
     let bytes = context.files.embed(input)?;
-    let (points, warnings) = cloud(input.name(), &bytes, context.files)?;
+    let (points, shapes, warnings) = exemplar(input.name(), &bytes, context.files)?;
+    if !shapes.is_empty() {
+        let what = format!("{}: meshes among the points to keep", input.name());
+        return Err(Error::Unsupported { what, advice: "give points alone".into() });
+    }
     context.warnings.extend(warnings);
     of_dimension(points).ok_or_else(|| {
         let problem = format!("points of another dimension than those of the exemplar, which have {D} coordinates");

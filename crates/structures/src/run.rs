@@ -18,10 +18,9 @@ use crate::{
     prepared::Prepared,
     request::{StructureOutcome, StructureRequest},
     solve::{
-        attributes::attributes,
         matching::{Round, anywhere, matching, room},
-        merging::merge,
-        sampling::control,
+        part::Part,
+        round::{SETTLED, round},
     },
     start::{grow::grow, noise::noise, patches::patches, shake::shake},
 };
@@ -30,8 +29,8 @@ use crate::{
 const SMALLEST: f64 = 0.5;
 /// How far points are shaken, in units of how much their distances vary.
 const SHAKE: f64 = 2.7;
-/// Points that move less than this in the mean, in spacings, have settled.
-const SETTLED: f64 = 1e-3;
+/// When more than this share of the sites is in motion, the rest is not left out.
+const WHOLE: f64 = 0.6;
 /// Rounds for the first matches, where the start brings none along.
 const FIRST: u64 = 4;
 
@@ -54,7 +53,9 @@ struct Stage<'a, const D: usize> {
 /// How far a run is.
 struct State<const D: usize> {
     output: Output<D>,
-    matches: Vec<arabesque_core::Vector<D>>,
+    matches: Vec<Vector<D>>,
+    /// Sites that may change; `None` for all.
+    within: Option<Vec<bool>>,
     energy: Vec<EnergyPoint>,
     stopped: StopReason,
 }
@@ -71,7 +72,13 @@ impl<const D: usize> Prepared<D> {
     ) -> Result<StructureOutcome<D>> {
         let stage = Stage::new(self, request)?;
         let start = kept(&self.pattern, &request.kept)?;
-        let mut state = State { output: start, matches: Vec::new(), energy: Vec::new(), stopped: StopReason::Finished };
+        let mut state = State {
+            output: start,
+            matches: Vec::new(),
+            within: None,
+            energy: Vec::new(),
+            stopped: StopReason::Finished,
+        };
         for n in 0..stage.scales.len() {
             match stage.level(n, &mut state, watch) {
                 Ok(ControlFlow::Continue(())) => {}
@@ -126,6 +133,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             pattern,
             tables,
             sites: &self.layout.sites,
+            open: self.layout.sites.len(),
             index: &self.layout.index,
             domain: &self.layout.domain,
             shifts: &self.prepared.repetition.shifts,
@@ -144,31 +152,15 @@ impl<'a, const D: usize> Stage<'a, D> {
             self.start(&level, state)?;
         }
         let room = room(&level);
-        let mut matches = Matches::new(&level, state.matches.iter().map(|&m| room.clamp(m)).collect());
+        state.matches.iter_mut().for_each(|m| *m = room.clamp(*m));
+        let sites = self.layout.sites.len();
+        let mut open = state.within.clone().unwrap_or_else(|| vec![true; sites]);
+        let mut energy = None;
         for round in 0..params.rounds {
-            let number = (n * 1000 + round) as u64 + 10;
-            let near = level.near(&state.output, &self.budget)?;
-            let draw = Round { seed: self.request.seed, number, tries: params.tries };
-            let matched = matching(&level, &state.output, &near, &matches, &self.layout.around, (draw, &self.budget))?;
-            debug_assert!(matched.energy.1 <= matched.energy.0 + 1e-9 * matched.energy.0.abs());
-            matches = matched.matches;
-            let mut pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
-            let mut settled = 0.0;
-            let mut energy = 0.0;
-            for _ in 0..params.steps {
-                let moved = merge(&level, &mut state.output, &near, &matches, &mut pulls, &self.budget)?;
-                (settled, energy) = (moved.distance, moved.energy);
-                if moved.distance < SETTLED * pattern.spacing {
-                    break;
-                }
-            }
-            attributes(&level, &mut state.output, &near, &matches, &mut pulls);
-            let near = level.near(&state.output, &self.budget)?;
-            let pulls = level.pulls(&state.output, &near, &matches, &self.budget)?;
-            let changed = control(&level, &mut state.output, &near, &matches, &pulls, &self.budget)?;
-            state.matches.clone_from(&matches.places);
+            let draw = Round { seed: self.request.seed, number: (n * 1000 + round) as u64 + 10, tries: params.tries };
+            let settled = self.advance(&level, state, &mut open, draw, &mut energy)?;
             let elements = state.output.places.len();
-            let energy = energy / self.layout.sites.len() as f64;
+            let energy = energy.unwrap_or(0.0) / sites as f64;
             state.energy.push(EnergyPoint { level: n, iteration: round, energy, elements });
             let done = n * params.rounds + round + 1;
             let total = self.scales.len() * params.rounds;
@@ -184,11 +176,54 @@ impl<'a, const D: usize> Stage<'a, D> {
             if watch.step(&progress, &|| self.preview(output)).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
-            if settled < SETTLED * pattern.spacing && changed == (0, 0) {
+            if settled {
                 break;
             }
         }
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// One round over what is in motion, the sites for which `open` says so; these are other ones afterwards. Returns whether all has settled.
+    fn advance(
+        &self,
+        level: &Level<'_, D>,
+        state: &mut State<D>,
+        open: &mut Vec<bool>,
+        draw: Round,
+        energy: &mut Option<f64>,
+    ) -> Result<bool> {
+        let steps = self.prepared.params.steps;
+        let count = open.iter().filter(|o| **o).count();
+        let whole = state.within.is_none() && count as f64 > WHOLE * open.len() as f64;
+        let around = &self.layout.around;
+        let mut moving = vec![false; open.len()];
+        let turn = if whole {
+            let mut matches = Matches::new(level, std::mem::take(&mut state.matches));
+            let turn = round(level, around, (&mut state.output, &mut matches), (draw, steps), &self.budget);
+            state.matches = matches.places;
+            let turn = turn?;
+            turn.rematched.iter().for_each(|&q| moving[q] = true);
+            *energy = Some(turn.energy.1);
+            turn
+        } else {
+            let step = self.layout.plan.step;
+            let part = Part::new(level, (around, step), &state.output, &state.matches, open, &self.budget)?;
+            let inner = part.level(level);
+            let (mut output, mut matches) = (part.output.clone(), Matches::new(&inner, part.places.clone()));
+            let turn = round(&inner, &part.around, (&mut output, &mut matches), (draw, steps), &self.budget)?;
+            part.back(level, (&output, &matches), (&mut state.output, &mut state.matches));
+            turn.rematched.iter().for_each(|&q| moving[part.numbers[q]] = true);
+            *energy = Some(energy.unwrap_or(turn.energy.0) + turn.energy.1 - turn.energy.0);
+            turn
+        };
+        for &p in &turn.stirred {
+            level.index.windows(level.sites, p, &level.tables.reach, |q, _| moving[q] = true);
+        }
+        if let Some(within) = &state.within {
+            moving.iter_mut().zip(within).for_each(|(m, w)| *m &= *w);
+        }
+        *open = moving;
+        Ok(open.iter().all(|o| !o) || turn.distance < SETTLED * level.pattern.spacing && !turn.changed)
     }
 
     /// Lays out the first points and matches.
@@ -198,7 +233,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let kept = std::mem::take(&mut state.output);
         let spacing = self.prepared.pattern.spacing;
         let (mut output, matches) = match params.start {
-            Start::Grow => grow(level, kept, &self.layout.around, step, seed, &self.budget)?,
+            Start::Grow => grow(level, (kept, &[]), &self.layout.around, step, seed, &self.budget)?,
             Start::Patches => patches(level, kept, (step, params.patch * spacing), seed),
             Start::Noise => {
                 let output = noise(level, kept, step, seed);

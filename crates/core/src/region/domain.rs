@@ -76,6 +76,7 @@ impl<const D: usize> Domain<D> {
     }
 
     /// The period of each coordinate on a torus.
+    #[inline]
     pub fn period(&self) -> Option<Vector<D>> {
         match self {
             Self::Torus(b) => Some(b.size()),
@@ -84,6 +85,7 @@ impl<const D: usize> Domain<D> {
     }
 
     /// `to - from` by the shortest way, around the back on a torus.
+    #[inline]
     pub fn offset(&self, from: Vector<D>, to: Vector<D>) -> Vector<D> {
         periodic::offset(from, to, self.period())
     }
@@ -104,6 +106,7 @@ impl<const D: usize> Domain<D> {
     }
 
     /// The representative of `p` inside the box of a torus; `p` itself elsewhere.
+    #[inline]
     pub fn wrap(&self, p: Vector<D>) -> Vector<D> {
         match self {
             Self::Torus(b) => {

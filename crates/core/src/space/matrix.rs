@@ -8,31 +8,37 @@ pub struct Matrix<const D: usize>(pub [[f64; D]; D]);
 
 impl<const D: usize> Matrix<D> {
     /// The identity.
+    #[inline]
     pub fn identity() -> Self {
         Self(std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c)))))
     }
 
     /// All zero.
+    #[inline]
     pub const fn zero() -> Self {
         Self([[0.0; D]; D])
     }
 
     /// The transposed matrix: the inverse of a rotation.
+    #[inline]
     pub fn transpose(&self) -> Self {
         Self(std::array::from_fn(|r| std::array::from_fn(|c| self.0[c][r])))
     }
 
     /// Matrix times column vector.
+    #[inline]
     pub fn apply(&self, v: Vector<D>) -> Vector<D> {
         Vector(std::array::from_fn(|r| (0..D).map(|c| self.0[r][c] * v.0[c]).sum()))
     }
 
     /// Matrix product `self * other`.
+    #[inline]
     pub fn compose(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|r| std::array::from_fn(|c| (0..D).map(|k| self.0[r][k] * other.0[k][c]).sum())))
     }
 
     /// The rotation nearest to this matrix in the Frobenius norm; the identity for a zero matrix. By singular values in any dimension.
+    #[inline]
     pub fn nearest_rotation(&self) -> Self {
         let m = nalgebra::DMatrix::from_fn(D, D, |r, c| self.0[r][c]);
         if m.norm() <= f64::MIN_POSITIVE || m.iter().any(|v| !v.is_finite()) {
@@ -68,12 +74,14 @@ impl<const D: usize> Matrix<D> {
 
 impl Matrix<2> {
     /// Rotation that turns the x axis towards the y axis by `radians`.
+    #[inline]
     pub fn rotation(radians: f64) -> Self {
         let (s, c) = radians.sin_cos();
         Self([[c, -s], [s, c]])
     }
 
     /// Angle of a rotation in radians, in (-pi, pi].
+    #[inline]
     pub fn angle(&self) -> f64 {
         self.0[1][0].atan2(self.0[0][0])
     }
@@ -85,6 +93,7 @@ mod tests {
     use crate::random::{Stage, Stream};
 
     #[test]
+    #[inline]
     fn the_fast_way_to_the_nearest_rotation_leads_to_the_same_one() {
         let mut stream = Stream::new(8, Stage::TEST, 0);
         for _ in 0..200 {
@@ -98,6 +107,7 @@ mod tests {
     }
 
     #[test]
+    #[inline]
     fn nearest_rotation_of_a_scaled_rotation_is_that_rotation() {
         let r = Matrix::<2>::rotation(0.7);
         let scaled = Matrix(r.0.map(|row| row.map(|v| v * 3.0)));
@@ -105,6 +115,7 @@ mod tests {
     }
 
     #[test]
+    #[inline]
     fn nearest_rotation_never_mirrors() {
         let mirror = Matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -0.1]]);
         let q = mirror.nearest_rotation();

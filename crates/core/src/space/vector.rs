@@ -11,57 +11,68 @@ impl<const D: usize> Vector<D> {
     pub const ZERO: Self = Self([0.0; D]);
 
     /// The same value in every coordinate.
+    #[inline]
     pub const fn splat(value: f64) -> Self {
         Self([value; D])
     }
 
     /// Inner product.
+    #[inline]
     pub fn dot(self, other: Self) -> f64 {
         (0..D).map(|k| self.0[k] * other.0[k]).sum()
     }
 
     /// Squared length.
+    #[inline]
     pub fn norm2(self) -> f64 {
         self.dot(self)
     }
 
     /// Length.
+    #[inline]
     pub fn norm(self) -> f64 {
         self.norm2().sqrt()
     }
 
     /// The vector at length 1. A vector without a length has no direction: its coordinates are NaN then.
+    #[inline]
     pub fn unit(self) -> Self {
         self * (1.0 / self.norm())
     }
 
     /// The vector at length 1; zero stays zero.
+    #[inline]
     pub fn unit_or_zero(self) -> Self {
         self * (1.0 / self.norm().max(f64::MIN_POSITIVE))
     }
 
     /// The vector at length 1, or `None` when it is no longer than `least`.
+    #[inline]
     pub fn unit_if_longer(self, least: f64) -> Option<Self> {
         let length = self.norm();
         (length > least).then(|| self * (1.0 / length))
     }
 
     /// Cosine of the angle between two vectors, in [-1, 1]; 0 when either is zero.
+    #[inline]
     pub fn cosine(self, other: Self) -> f64 {
         (self.dot(other) / (self.norm() * other.norm()).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
     }
 
     /// Applies `f` to each coordinate.
+    #[inline]
     pub fn map(self, f: impl FnMut(f64) -> f64) -> Self {
         Self(self.0.map(f))
     }
 
     /// Combines two vectors coordinate by coordinate.
+    #[inline]
     pub fn zip(self, other: Self, mut f: impl FnMut(f64, f64) -> f64) -> Self {
         Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
     }
 
     /// Whether every coordinate is a finite number.
+    #[inline]
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|c| c.is_finite())
     }
@@ -69,16 +80,19 @@ impl<const D: usize> Vector<D> {
 
 impl Vector<2> {
     /// The vector with coordinates `x` and `y`.
+    #[inline]
     pub const fn xy(x: f64, y: f64) -> Self {
         Self([x, y])
     }
 
     /// z coordinate of the cross product: positive when `other` lies counter-clockwise of `self` in a y-up frame.
+    #[inline]
     pub fn cross(self, other: Self) -> f64 {
         self.0[0] * other.0[1] - self.0[1] * other.0[0]
     }
 
     /// Angle from this vector to `other` in radians, in [-pi, pi]: positive when it turns from x towards y.
+    #[inline]
     pub fn angle_to(self, other: Self) -> f64 {
         self.cross(other).atan2(self.dot(other))
     }
@@ -86,6 +100,7 @@ impl Vector<2> {
 
 impl Vector<3> {
     /// Cross product: perpendicular to both, as long as the area between them.
+    #[inline]
     pub fn cross(self, other: Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([b * z - c * y, c * x - a * z, a * y - b * x])
@@ -93,6 +108,7 @@ impl Vector<3> {
 }
 
 impl<const D: usize> Default for Vector<D> {
+    #[inline]
     fn default() -> Self {
         Self::ZERO
     }
@@ -100,12 +116,14 @@ impl<const D: usize> Default for Vector<D> {
 
 impl<const D: usize> Index<usize> for Vector<D> {
     type Output = f64;
+    #[inline]
     fn index(&self, k: usize) -> &f64 {
         &self.0[k]
     }
 }
 
 impl<const D: usize> IndexMut<usize> for Vector<D> {
+    #[inline]
     fn index_mut(&mut self, k: usize) -> &mut f64 {
         &mut self.0[k]
     }
@@ -113,6 +131,7 @@ impl<const D: usize> IndexMut<usize> for Vector<D> {
 
 impl<const D: usize> Add for Vector<D> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         self.zip(other, |a, b| a + b)
     }
@@ -120,6 +139,7 @@ impl<const D: usize> Add for Vector<D> {
 
 impl<const D: usize> Sub for Vector<D> {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self.zip(other, |a, b| a - b)
     }
@@ -127,6 +147,7 @@ impl<const D: usize> Sub for Vector<D> {
 
 impl<const D: usize> Mul<f64> for Vector<D> {
     type Output = Self;
+    #[inline]
     fn mul(self, factor: f64) -> Self {
         self.map(|a| a * factor)
     }
@@ -134,18 +155,21 @@ impl<const D: usize> Mul<f64> for Vector<D> {
 
 impl<const D: usize> Neg for Vector<D> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         self.map(|a| -a)
     }
 }
 
 impl<const D: usize> AddAssign for Vector<D> {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<const D: usize> SubAssign for Vector<D> {
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
@@ -177,6 +201,7 @@ mod tests {
     }
 
     #[test]
+    #[inline]
     fn a_vector_without_length_has_no_direction() {
         let zero = Vector::<3>::ZERO;
         assert_eq!((zero.unit_or_zero(), zero.unit_if_longer(0.0)), (zero, None));

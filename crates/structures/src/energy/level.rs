@@ -54,6 +54,8 @@ pub(crate) struct Level<'a, const D: usize> {
     pub(crate) pattern: &'a Pattern<D>,
     pub(crate) tables: &'a Tables<D>,
     pub(crate) sites: &'a [Site<D>],
+    /// How many of the first sites may get another match.
+    pub(crate) open: usize,
     pub(crate) index: &'a SiteIndex<D>,
     pub(crate) domain: &'a Domain<D>,
     /// Shifts that lay the exemplar well upon itself.

@@ -77,7 +77,7 @@ impl<const D: usize> SiteIndex<D> {
         reach: &Reach<D>,
         mut visit: impl FnMut(usize, [f64; D]),
     ) -> u64 {
-        let radius = (reach.along * reach.along + reach.across * reach.across).sqrt() * self.largest;
+        let radius = reach.radius() * self.largest;
         self.index.within(p, radius, |q, offset| {
             let u = sites[q].seen(-offset);
             if reach.holds(&u) {
@@ -107,7 +107,13 @@ impl<const D: usize> Reach<D> {
         Self { along: kernel.reach(), across, base }
     }
 
-    fn holds(&self, u: &[f64; D]) -> bool {
+    /// Radius of a ball around all of it.
+    pub(crate) fn radius(&self) -> f64 {
+        (self.along * self.along + self.across * self.across).sqrt()
+    }
+
+    /// Whether it holds what is at `u` from its middle.
+    pub(crate) fn holds(&self, u: &[f64; D]) -> bool {
         let (mut along, mut across) = (0.0, 0.0);
         for k in 0..D {
             *(if self.base[k] { &mut along } else { &mut across }) += u[k] * u[k];

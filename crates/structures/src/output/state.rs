@@ -67,25 +67,42 @@ impl<const D: usize> Output<D> {
         i < self.kept
     }
 
+    /// Adds point `i` of another output, or the whole element that begins with it, as it is there. Returns how many points that is.
+    pub(crate) fn take(&mut self, pattern: &Pattern<D>, from: &Self, i: usize) -> usize {
+        match from.bodies.get(from.body_of[i] as usize) {
+            Some(b) => {
+                self.add_body(pattern, b.source, b.pose);
+                b.count
+            }
+            None => {
+                self.add(from.places[i], from.weights[i]);
+                1
+            }
+        }
+    }
+
+    /// The first points of all loose points and elements.
+    pub(crate) fn heads(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.places.len()).filter(|&i| self.bodies.get(self.body_of[i] as usize).is_none_or(|b| b.first == i))
+    }
+
+    /// The points that go with point `i`: those of its element, or itself.
+    pub(crate) fn members(&self, i: usize) -> std::ops::Range<usize> {
+        match self.bodies.get(self.body_of[i] as usize) {
+            Some(b) => b.first..b.first + b.count,
+            None => i..i + 1,
+        }
+    }
+
     /// The output without the points and elements for which `keep` says no; an element goes as its first point does.
     pub(crate) fn filtered(&self, pattern: &Pattern<D>, keep: impl Fn(usize) -> bool) -> Self {
-        let mut output = Self { kept: 0, ..Self::default() };
-        let mut kept = 0;
-        let mut i = 0;
-        while i < self.places.len() {
-            let stays = self.is_kept(i) || keep(i);
-            let body = self.body_of[i];
-            let count = self.bodies.get(body as usize).map_or(1, |b| b.count);
-            if stays {
-                match self.bodies.get(body as usize) {
-                    Some(b) => output.add_body(pattern, b.source, b.pose),
-                    None => output.add(self.places[i], self.weights[i]),
-                }
-                kept += if self.is_kept(i) { count } else { 0 };
+        let mut output = Self::default();
+        for i in self.heads() {
+            if self.is_kept(i) || keep(i) {
+                let count = output.take(pattern, self, i);
+                output.kept += if self.is_kept(i) { count } else { 0 };
             }
-            i += count;
         }
-        output.kept = kept;
         output
     }
 }

@@ -195,7 +195,7 @@ pub(crate) fn matching<const D: usize>(
     let own = own(level, output, near);
     let points = near.windows.turned_round(level.sites.len());
     let room = room(level);
-    let found: Result<Vec<(f64, Match<D>)>> = (0..level.sites.len())
+    let found: Result<Vec<(f64, Match<D>)>> = (0..level.open)
         .into_par_iter()
         .with_min_len(4)
         .map(|q| {
@@ -246,7 +246,9 @@ pub(crate) fn matching<const D: usize>(
         found.iter().zip(level.sites).map(|(f, s)| s.weight * error(f)).sum()
     };
     let energy = (total(&|f| f.0), total(&|f| f.1.error));
-    Ok(Matched { matches: Matches::new(level, found.into_iter().map(|f| f.1.m).collect()), energy })
+    let mut places = before.places.clone();
+    places.iter_mut().zip(found).for_each(|(place, f)| *place = f.1.m);
+    Ok(Matched { matches: Matches::new(level, places), energy })
 }
 
 /// For each point the sum over its pairs, itself among them.

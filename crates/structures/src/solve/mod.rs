@@ -4,6 +4,8 @@ pub(crate) mod attributes;
 pub(crate) mod matching;
 pub(crate) mod merging;
 pub(crate) mod newton;
+pub(crate) mod part;
+pub(crate) mod round;
 pub(crate) mod sampling;
 #[cfg(test)]
 mod tests;

@@ -28,7 +28,13 @@ const EMPTIEST: f64 = -0.04;
 /// What is added is no nearer to a point like it than this, in units of the spacing.
 const APART: f64 = 0.45;
 
-/// Adds and removes; how many of each.
+/// Places at which points were added, and at which some were removed.
+pub(crate) struct Changed<const D: usize> {
+    pub(crate) added: Vec<Vector<D>>,
+    pub(crate) removed: Vec<Vector<D>>,
+}
+
+/// Adds and removes points.
 pub(crate) fn control<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
@@ -36,18 +42,17 @@ pub(crate) fn control<const D: usize>(
     matches: &Matches<D>,
     pulls: &[Pull<D>],
     budget: &Budget,
-) -> Result<(usize, usize)> {
+) -> Result<Changed<D>> {
     let surplus = surplus(level, output, near, matches);
-    let removed = remove(level, output, near, (pulls, &surplus));
-    let before = output.places.len();
+    let goes = remove(level, output, near, (pulls, &surplus));
     budget.spend(near.pairs.total() as u64 * 20)?;
-    let gone = removed.iter().filter(|r| **r).count();
-    if gone > 0 {
-        *output = output.filtered(level.pattern, |i| !removed[i]);
+    let removed: Vec<_> = output.places.iter().zip(&goes).filter(|(_, goes)| **goes).map(|(p, _)| *p).collect();
+    if !removed.is_empty() {
+        *output = output.filtered(level.pattern, |i| !goes[i]);
     }
-    let added = add(level, output, matches, budget)?;
-    debug_assert!(output.places.len() + gone >= before);
-    Ok((added, gone))
+    let before = output.places.len();
+    add(level, output, matches, budget)?;
+    Ok(Changed { added: output.places[before..].to_vec(), removed })
 }
 
 /// By how many points windows have more than something, for each point in the mean over those it is in.
@@ -66,7 +71,7 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
         let known = level.tables.known.at(&std::array::from_fn(|k| (matches.places[q][k] + u[k]) as f32));
         (level.tables.kernel.weights(&u).0, f64::from(known))
     };
-    let of_sites: Vec<(f64, f64)> = (0..level.sites.len())
+    let of_sites: Vec<(f64, f64)> = (0..level.open)
         .into_par_iter()
         .with_min_len(16)
         .map(|q| {
@@ -80,7 +85,8 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
         .with_min_len(64)
         .map(|i| {
             let (mut matched, mut usual, mut weight) = (0.0, 0.0, 1e-12);
-            for &q in near.windows.of(i) {
+            // What the windows of the other sites hold is not all here.
+            for &q in near.windows.of(i).iter().filter(|q| (**q as usize) < level.open) {
                 let (w, _) = seen(q as usize, i);
                 matched += w * of_sites[q as usize].0;
                 usual += w * of_sites[q as usize].1;
@@ -117,10 +123,7 @@ fn remove<const D: usize>(
             2.0 * pulls[i].wanted - 2.0 * near.pairs.of(i).iter().map(|&j| pair(i, j as usize)).sum::<f64>() - own
         })
         .collect();
-    let members = |i: usize| match output.bodies.get(output.body_of[i] as usize) {
-        Some(b) => b.first..b.first + b.count,
-        None => i..i + 1,
-    };
+    let members = |i: usize| output.members(i);
     let worth = |change: &[f64], i: usize| {
         let all = members(i);
         let mut sum: f64 = all.clone().map(|k| change[k]).sum();
@@ -172,17 +175,16 @@ struct Offer<const D: usize> {
     worth: f64,
 }
 
-/// Adds what is missing, the most wanted first, each with the ones before it there. Returns how many points.
+/// Adds what is missing, the most wanted first, each with the ones before it there.
 fn add<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
     matches: &Matches<D>,
     budget: &Budget,
-) -> Result<usize> {
-    let before = output.places.len();
+) -> Result<()> {
     let radius = level.tables.kernel.pairs() * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
     let index = GridIndex::new(&output.places, radius, level.domain);
-    let offers: Result<Vec<Vec<Offer<D>>>> = (0..level.sites.len())
+    let offers: Result<Vec<Vec<Offer<D>>>> = (0..level.open)
         .into_par_iter()
         .with_min_len(8)
         .map(|q| {
@@ -237,7 +239,7 @@ fn add<const D: usize>(
             None => output.add(offer.place, offer.weights),
         }
     }
-    Ok(output.places.len() - before)
+    Ok(())
 }
 
 /// The points that an offer consists of.

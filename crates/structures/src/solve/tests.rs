@@ -9,6 +9,8 @@ use super::{
     matching::{Round, anywhere, matching, room},
     merging::merge,
     newton::slopes,
+    part::Part,
+    round::round,
     sampling::control,
 };
 use crate::{
@@ -46,6 +48,7 @@ fn noisy(check: impl FnOnce(&Level<'_, 2>, &Layout<2>, Output<2>, Matches<2>)) {
         pattern,
         tables: &tables,
         sites: &layout.sites,
+        open: layout.sites.len(),
         index: &layout.index,
         domain: &layout.domain,
         shifts: &[],
@@ -91,6 +94,31 @@ fn no_step_raises_the_error() {
             let near = level.near(&output, &budget).unwrap();
             let controlled = energy(level, &output, &near, &matches);
             assert!(controlled <= before + 1e-3 * before.abs(), "{controlled} {before}");
+        }
+    });
+}
+
+#[test]
+fn what_is_out_of_reach_of_open_sites_stays_to_the_last_bit() {
+    noisy(|level, layout, output, matches| {
+        let budget = Budget::default();
+        let open: Vec<bool> = level.sites.iter().map(|s| s.place[0] < 0.2).collect();
+        let around = (&layout.around, layout.plan.step);
+        let part = Part::new(level, around, &output, &matches.places, &open, &budget).unwrap();
+        assert!(part.open < part.numbers.len() && part.numbers.len() < level.sites.len());
+        let inner = part.level(level);
+        let (mut own, mut found) = (part.output.clone(), Matches::new(&inner, part.places.clone()));
+        let draw = Round { seed: 1, number: 0, tries: 3 };
+        let turn = round(&inner, &part.around, (&mut own, &mut found), (draw, 3), &budget).unwrap();
+        assert!(turn.energy.1 < turn.energy.0 && !turn.rematched.is_empty() && !turn.stirred.is_empty());
+        let (mut whole, mut places) = (output.clone(), matches.places.clone());
+        part.back(level, (&own, &found), (&mut whole, &mut places));
+        let reach = 0.2 + level.tables.reach.radius();
+        let far = |o: &Output<2>| -> Vec<_> { o.places.iter().copied().filter(|p| p[0] > reach).collect() };
+        assert_eq!(far(&output), far(&whole));
+        assert!(far(&output).len() > 50 && whole.places != output.places);
+        for (q, open) in open.iter().enumerate().filter(|(_, open)| !**open) {
+            assert!(!open && places[q] == matches.places[q]);
         }
     });
 }

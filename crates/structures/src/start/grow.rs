@@ -44,56 +44,58 @@ struct Growth<'a, 'b, const D: usize> {
     step: f64,
 }
 
-/// Grows an output from the `kept` points; and the match of each site.
+/// Grows on from an output, and from the matches of the sites that show it already. Gives the output and the match of each site.
 pub(crate) fn grow<const D: usize>(
     level: &Level<'_, D>,
-    kept: Output<D>,
+    (begun, done): (Output<D>, &[Option<Vector<D>>]),
     around: &Lists,
     step: f64,
     seed: u64,
     budget: &Budget,
 ) -> Result<(Output<D>, Vec<Vector<D>>)> {
     let radius = level.tables.kernel.pairs();
+    let at = |q: usize| done.get(q).copied().flatten();
     let mut growth = Growth {
         level,
-        output: Output::default(),
+        output: begun,
         cells: Cells::new(radius, level.domain),
         own: Vec::new(),
         own_exemplar: own_exemplar(level),
-        done: vec![false; level.sites.len()],
-        matches: vec![Vector::ZERO; level.sites.len()],
+        done: (0..level.sites.len()).map(|q| at(q).is_some()).collect(),
+        matches: (0..level.sites.len()).map(|q| at(q).unwrap_or(Vector::ZERO)).collect(),
         step,
     };
-    for (place, weights) in kept.places.iter().zip(&kept.weights) {
-        growth.add(*place, *weights);
-    }
-    growth.output.kept = kept.kept;
+    growth.enter_from(0);
     let room = room(level);
-    for q in order(level, around, seed) {
+    let order = order(level, around, &growth.done, seed);
+    for q in order {
         growth.site(q, around.of(q), &room, seed, budget)?;
     }
     Ok((growth.output, growth.matches))
 }
 
-/// The sites from one in the middle outwards.
-fn order<const D: usize>(level: &Level<'_, D>, around: &Lists, seed: u64) -> Vec<usize> {
+/// The sites from those that are done outwards, or from any one.
+fn order<const D: usize>(level: &Level<'_, D>, around: &Lists, done: &[bool], seed: u64) -> Vec<usize> {
     let n = level.sites.len();
     let first = Stream::new(seed, TRIES, u64::MAX).below(n);
-    let mut seen = vec![false; n];
+    let mut seen = done.to_vec();
     let mut order = Vec::with_capacity(n);
-    for start in (first..n).chain(0..first) {
-        if seen[start] {
-            continue;
-        }
-        seen[start] = true;
-        let mut queue = VecDeque::from([start]);
+    let mut outwards = |mut queue: VecDeque<usize>, seen: &mut Vec<bool>| {
         while let Some(q) = queue.pop_front() {
-            order.push(q);
+            if !done[q] {
+                order.push(q);
+            }
             for &next in around.of(q) {
                 if !std::mem::replace(&mut seen[next as usize], true) {
                     queue.push_back(next as usize);
                 }
             }
+        }
+    };
+    outwards((0..n).filter(|&q| done[q]).collect(), &mut seen);
+    for start in (first..n).chain(0..first) {
+        if !std::mem::replace(&mut seen[start], true) {
+            outwards(VecDeque::from([start]), &mut seen);
         }
     }
     order
@@ -169,17 +171,23 @@ impl<const D: usize> Growth<'_, '_, D> {
         self.output.add(place, weights);
     }
 
+    /// Takes note of all points of the output from this one on, one by one, so that they know of each other.
+    fn enter_from(&mut self, first: usize) {
+        for n in first..self.output.places.len() {
+            let weights = self.output.weights[n];
+            self.enter(self.output.places[n], &weights);
+        }
+    }
+
     /// Takes note of a point that comes next in the output.
     fn enter(&mut self, place: Vector<D>, weights: &Weights) {
         let level = self.level;
         let mut own = f64::from(inner(weights, weights));
         let (output, others) = (&self.output, &mut self.own);
         self.cells.within(level.domain, place, level.tables.kernel.pairs(), |i, r| {
-            if i < output.weights.len() {
-                let h = level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(weights, &output.weights[i]));
-                own += h;
-                others[i] += h;
-            }
+            let h = level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(weights, &output.weights[i]));
+            own += h;
+            others[i] += h;
         });
         self.own.push(own);
         self.cells.add(place);
@@ -374,14 +382,7 @@ impl<const D: usize> Growth<'_, '_, D> {
         if !blocked {
             let first = self.output.places.len();
             self.output.add_body(pattern, source, pose);
-            // Points are entered one by one, so that they know of each other.
-            let all = std::mem::take(&mut self.output.weights);
-            self.output.weights = all[..first].to_vec();
-            for (n, weights) in all.iter().enumerate().skip(first) {
-                let place = self.output.places[n];
-                self.enter(place, weights);
-                self.output.weights.push(*weights);
-            }
+            self.enter_from(first);
         }
     }
 }

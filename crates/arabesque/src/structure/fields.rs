@@ -193,3 +193,150 @@ impl<const D: usize> Territory<D> for Masked<D> {
         self.place.bounds()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Image, PointSet, Unobserved};
+    use arabesque_io::raster::png::write_image;
+
+    use super::*;
+    use crate::{Artwork, Geometry, Input, Recipe, Resources};
+
+    /// A picture of a few pixels in one row.
+    fn picture(pixels: &[[u8; 3]]) -> Input {
+        let pixels: Vec<[u8; 4]> = pixels.iter().map(|[r, g, b]| [*r, *g, *b, 255]).collect();
+        let image = Image { width: pixels.len(), height: 1, pixels };
+        Input::file("field.png").embedding(&write_image(&image, 1000.0, None, &Budget::default()).unwrap())
+    }
+
+    fn field(pixels: &[[u8; 3]]) -> Option<FieldSource> {
+        let mut source = FieldSource::parse("field.png").unwrap();
+        if let FieldSource::File(field) = &mut source {
+            (field.file, field.range) = (picture(pixels), Some([0.5, 1.0]));
+        }
+        Some(source)
+    }
+
+    /// A square lattice, 0.1 apart; in space with a wave of small height.
+    fn lattice(is_sheet: bool) -> String {
+        let at = |k: u32| (0.05 + 0.1 * f64::from(k % 10), 0.05 + 0.1 * f64::from(k / 10));
+        let row = |k| match (at(k), is_sheet) {
+            ((x, y), false) => format!("{x},{y}\n"),
+            ((x, y), true) => format!("{x},{y},{}\n", 0.01 * (x * 31.4).sin()),
+        };
+        format!("{}\n{}", if is_sheet { "x,y,z" } else { "x,y" }, (0..100).map(row).collect::<String>())
+    }
+
+    fn run(exemplar: &str, job: Structures) -> Result<Artwork> {
+        let prepared =
+            Recipe::new(Input::file("grid.csv").embedding(exemplar.as_bytes()), job).prepare(&Resources::default())?;
+        prepared.run(&prepared.request(), &mut Unobserved)
+    }
+
+    fn points(exemplar: &str, job: Structures) -> Vec<[f64; 2]> {
+        match run(exemplar, job).unwrap().geometry() {
+            Geometry::PlanePoints(PointSet { positions, .. }) => positions.iter().map(|p| [p[0], p[1]]).collect(),
+            Geometry::SpacePoints(PointSet { positions, .. }) => positions.iter().map(|p| [p[0], p[1]]).collect(),
+            _ => panic!("points"),
+        }
+    }
+
+    fn page() -> Structures {
+        Structures { size: Some("2x1".parse().unwrap()), ..Structures::default() }
+    }
+
+    #[test]
+    fn a_picture_scales_the_pattern_by_the_place() {
+        for is_sheet in [false, true] {
+            let job = Structures { scale: field(&[[0; 3], [0; 3], [0; 3], [255; 3], [255; 3], [255; 3]]), ..page() };
+            let found = points(&lattice(is_sheet), job);
+            // Half of the size is four times as many, away from the passage between them.
+            let small = found.iter().filter(|p| p[0] < 0.8).count() as f64 / 0.8;
+            let large = found.iter().filter(|p| p[0] > 1.2).count() as f64 / 0.8;
+            assert!(
+                (small / 400.0 - 1.0).abs() < 0.15 && (large / 100.0 - 1.0).abs() < 0.2,
+                "{is_sheet}: {small} {large}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_hue_of_a_picture_turns_the_pattern() {
+        // Yellow is 60 degrees; on a square lattice 60 is as good as -30.
+        for is_sheet in [false, true] {
+            let found = points(&lattice(is_sheet), Structures { orient: field(&[[255, 255, 0]; 2]), ..page() });
+            let mut angles = Vec::new();
+            for (i, p) in found.iter().enumerate() {
+                for q in &found[..i] {
+                    let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
+                    if (dx.hypot(dy) - 0.1).abs() < 0.02 {
+                        angles.push(dy.atan2(dx).to_degrees().rem_euclid(90.0));
+                    }
+                }
+            }
+            let near = angles.iter().filter(|a| (**a - 60.0).abs() < 8.0).count();
+            assert!(angles.len() > 200 && near * 10 > angles.len() * 9, "{is_sheet}: {near} of {}", angles.len());
+        }
+    }
+
+    #[test]
+    fn what_is_dark_in_a_picture_stays_free() {
+        for is_sheet in [false, true] {
+            let avoid = vec![picture(&[[255; 3], [255; 3], [0; 3], [255; 3]])];
+            let found = points(&lattice(is_sheet), Structures { avoid, ..page() });
+            assert!(found.iter().all(|p| p[0] <= 1.0 || p[0] >= 1.5), "{is_sheet}");
+            assert!((125..=175).contains(&found.len()), "{is_sheet}: {}", found.len());
+        }
+        let shape = Input::file("hole.svg")
+            .embedding(br#"<svg xmlns="http://www.w3.org/2000/svg"><rect width="1" height="1"/></svg>"#);
+        let found = points(&lattice(false), Structures { avoid: vec![shape], ..page() });
+        assert!(found.iter().all(|p| p[0] > 0.99) && found.len() > 80, "{}", found.len());
+    }
+
+    #[test]
+    fn what_does_not_suit_the_place_is_refused() {
+        let told = |exemplar: &str, job| run(exemplar, job).unwrap_err().to_string();
+        let cube: String = (0..216).map(|k| format!("{},{},{}\n", k % 6, k / 6 % 6, k / 36)).collect();
+        let cube = format!("x,y,z\n{cube}");
+        let boxed = Structures::boxed("8x8x8".parse().unwrap());
+        let dark = || vec![picture(&[[0; 3]])];
+        let curve =
+            Input::file("c.svg").embedding(br#"<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0 L9 0"/></svg>"#);
+        for (exemplar, job, expected) in [
+            (
+                &cube,
+                Structures { scale: field(&[[0; 3], [255; 3]]), ..boxed.clone() },
+                "scale from a file, together with box",
+            ),
+            (
+                &cube,
+                Structures { orient: field(&[[0; 3], [255; 3]]), ..boxed.clone() },
+                "orient from a file, together with box",
+            ),
+            (&cube, Structures { avoid: dark(), ..boxed.clone() }, "avoid for a place that is not flat"),
+            (&cube, Structures { twist: Some(9.0), ..boxed.clone() }, "twist for a place other than curves"),
+            (&cube, Structures { taper: Some("1..2".into()), ..boxed.clone() }, "taper for a place other than curves"),
+            (&cube, Structures { radius: Some(1.0), ..boxed.clone() }, "tube for a place other than curves"),
+            (
+                &cube,
+                Structures { direction: Some(crate::Direction::Towards([1.0; 3])), ..boxed },
+                "direction for a place other than a mesh",
+            ),
+            (
+                &lattice(false),
+                Structures { twist: Some(9.0), ..Structures::along(curve.clone()) },
+                "about which nothing turns",
+            ),
+            (
+                &lattice(false),
+                Structures { orient: Some(FieldSource::Constant(9.0)), ..Structures::along(curve) },
+                "about which nothing turns",
+            ),
+            (&lattice(false), Structures { avoid: dark(), ..page() }, "covers the whole domain"),
+            (&lattice(false), Structures { orient: field(&[[90; 3]; 2]), ..page() }, "one gray value all over"),
+        ] {
+            let message = told(exemplar, job);
+            assert!(message.contains(expected), "{message} for {expected}");
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! The sites of a run, and the window that its frames allow.
 
-use arabesque_core::{Budget, Domain, Error, Result};
+use arabesque_core::{Budget, Domain, Error, Result, Vector};
 
 use crate::{
     energy::links::{Lists, SiteIndex, neighbours},
@@ -43,7 +43,15 @@ impl<const D: usize> Layout<D> {
     }
 
     fn with(prepared: &Prepared<D>, territory: &dyn Territory<D>, window: f64, budget: &Budget) -> Result<Self> {
-        let plan = prepared.plan_for(window);
+        Self::of(prepared.plan_for(window), territory, window, budget)
+    }
+
+    /// The same room with sites this far apart, for windows of that size.
+    pub(crate) fn spaced(&self, step: f64, territory: &dyn Territory<D>, budget: &Budget) -> Result<Self> {
+        Self::of(SitePlan { step, ..self.plan }, territory, self.window, budget)
+    }
+
+    fn of(plan: SitePlan<D>, territory: &dyn Territory<D>, window: f64, budget: &Budget) -> Result<Self> {
         let sites = territory.sites(&plan, budget)?;
         if sites.is_empty() {
             return Err(Error::no_result(
@@ -57,6 +65,21 @@ impl<const D: usize> Layout<D> {
         let largest = sites.iter().map(|s| s.scale).fold(0.0, f64::max);
         let around = neighbours(&places, AROUND * plan.step * largest, &domain, budget)?;
         Ok(Self { plan, window, sites, index, around, domain })
+    }
+
+    /// Matches for the sites here that go on from those of another layout; the pattern repeats along `base`.
+    pub(crate) fn carried(&self, from: &Self, matches: &[Vector<D>], base: [bool; D]) -> Vec<Vector<D>> {
+        let largest = from.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
+        let reach = 2.0 * (self.plan.step + from.plan.step) * largest;
+        self.sites
+            .iter()
+            .map(|site| {
+                let nearest = from.index.nearest(site.place, reach).unwrap_or(0);
+                let step = from.sites[nearest].seen(self.domain.offset(from.sites[nearest].place, site.place));
+                let m = matches[nearest];
+                Vector(std::array::from_fn(|k| m[k] + if base[k] { step[k] } else { 0.0 }))
+            })
+            .collect()
     }
 
     /// How fast frames turn from site to site, in radians for each unit of the exemplar: more than that only around a few.

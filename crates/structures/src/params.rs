@@ -44,7 +44,7 @@ params! {
         /// How far points are shaken after they were laid out from pieces of the exemplar, so that they are not its very points.
         shake "shake": Option<f64> = None, in 0.0..=2.0, auto "as unevenly as the points of the exemplar lie", unit "spacings";
         /// Factor from one size of the window to the next.
-        shrink "shrink": f64 = 0.8, in 0.3..=0.99;
+        shrink "shrink": f64 = 0.7, in 0.3..=0.99;
         /// Rounds of matching, moving, adding and removing for each size of the window.
         rounds "rounds": usize = 4, in 1..=1000;
         /// Steps of moving in each round.

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use arabesque_core::{Budget, Error, PointSet, Result, Warning};
 
 use crate::{
-    energy::kernel::Kernel,
+    energy::{kernel::Kernel, level::Fields},
     exemplar::{
-        field::Field,
         pattern::Pattern,
         repetition::{Repetition, repetition},
     },
@@ -34,6 +33,9 @@ const MOST: f64 = 0.5;
 /// Windows at most from one site to the next, when they are smallest.
 const STEP: f64 = 1.0;
 
+/// Windows that sites lie beyond the border.
+const MARGIN: f64 = 0.6;
+
 /// Width of the Gaussians, in spacings, for points whose distances vary by this share of themselves. Gaussians as wide as the spacing do not
 /// tell where each point of a lattice is.
 fn width(variation: f64) -> f64 {
@@ -51,6 +53,7 @@ pub struct Prepared<const D: usize> {
     /// Width of the Gaussians at first, in the units of the exemplar.
     pub(crate) sigma: f64,
     pub(crate) repetition: Repetition<D>,
+    pub(crate) fields: Arc<Fields<D>>,
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -67,8 +70,8 @@ impl<const D: usize> Prepared<D> {
         let sigma = params.sigma.unwrap_or_else(|| width(pattern.variation)) * pattern.spacing;
         let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
         let kernel = Kernel::new(sigma, 1e3 * shortest.max(sigma), pattern.base, params.shape);
-        let places = &pattern.points.positions;
-        let field = Field::new(places, &pattern.weights, pattern.channels.blocks(), &kernel, &budget)?;
+        let fields = Arc::new(Fields::default());
+        let field = fields.of(&pattern, &kernel, &budget)?;
         let step = if pattern.repeats() > 2 { sigma } else { 0.6 * sigma };
         let repetition = repetition(&pattern, &field, step.max(shortest / 150.0), &budget)?;
         // What hardly repeats has neighbours alone to go by.
@@ -89,7 +92,7 @@ impl<const D: usize> Prepared<D> {
                 ),
             ));
         }
-        Ok(Self { pattern: Arc::new(pattern), params: params.clone(), window, sigma, repetition, warnings })
+        Ok(Self { pattern: Arc::new(pattern), params: params.clone(), window, sigma, repetition, fields, warnings })
     }
 
     /// Mean distance of a point of the exemplar from the nearest.
@@ -121,7 +124,7 @@ impl<const D: usize> Prepared<D> {
     pub(crate) fn plan_for(&self, window: f64) -> SitePlan<D> {
         SitePlan {
             step: STEP * 0.5 * window,
-            margin: window,
+            margin: MARGIN * window,
             base: self.pattern.base,
             axis: self.pattern.axis,
             thickness: self.pattern.thickness,

@@ -20,7 +20,7 @@ use crate::{
     solve::{
         matching::{Round, anywhere, matching, room},
         part::Part,
-        round::{SETTLED, round},
+        round::round,
     },
     start::{grow::grow, noise::noise, patches::patches, shake::shake},
 };
@@ -39,6 +39,8 @@ const FIRST: u64 = 4;
 struct Scale {
     delta: f64,
     sigma: f64,
+    /// Its layout.
+    layout: usize,
 }
 
 /// What all levels share.
@@ -46,7 +48,8 @@ struct Stage<'a, const D: usize> {
     prepared: &'a Prepared<D>,
     request: &'a StructureRequest<D>,
     budget: Budget,
-    layout: Layout<D>,
+    /// The sites of the last levels, then those of wider windows, which are farther apart.
+    layouts: Vec<Layout<D>>,
     scales: Vec<Scale>,
 }
 
@@ -54,6 +57,8 @@ struct Stage<'a, const D: usize> {
 struct State<const D: usize> {
     output: Output<D>,
     matches: Vec<Vector<D>>,
+    /// The layout of which these are the matches.
+    layout: usize,
     /// Sites that may change; `None` for all.
     within: Option<Vec<bool>>,
     energy: Vec<EnergyPoint>,
@@ -75,6 +80,7 @@ impl<const D: usize> Prepared<D> {
         let mut state = State {
             output: start,
             matches: Vec::new(),
+            layout: 0,
             within: None,
             energy: Vec::new(),
             stopped: StopReason::Finished,
@@ -110,32 +116,37 @@ impl<'a, const D: usize> Stage<'a, D> {
         let limits = budget.limits();
         budget.within("points of the result", expected as usize, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected);
-        let mut scales = Vec::new();
+        let (mut scales, mut layouts) = (Vec::new(), vec![layout]);
+        let layout = &layouts[0];
         let spacing = prepared.pattern.spacing;
         let (mut delta, sigma) = (layout.window, prepared.sigma);
         let least = SMALLEST * layout.window;
+        let mut wider = Vec::new();
         while delta > 1.1 * least {
-            scales.push(Scale { delta, sigma });
+            wider.push(layout.spaced(delta, &*request.territory, &budget)?);
+            scales.push(Scale { delta, sigma, layout: wider.len() });
             delta *= prepared.params.shrink;
         }
-        scales.push(Scale { delta: least, sigma });
+        scales.push(Scale { delta: least, sigma, layout: 0 });
         let fine = prepared.params.fine * spacing;
         if fine < sigma {
-            scales.push(Scale { delta: least, sigma: fine });
+            scales.push(Scale { delta: least, sigma: fine, layout: 0 });
         }
-        Ok(Self { prepared, request, budget, layout, scales })
+        layouts.extend(wider);
+        Ok(Self { prepared, request, budget, layouts, scales })
     }
 
     /// The layout and the pattern as `tables` see them.
-    fn seen_by<'t>(&'t self, tables: &'t Tables<D>) -> Level<'t, D> {
+    fn seen_by<'t>(&'t self, layout: usize, tables: &'t Tables<D>) -> Level<'t, D> {
+        let layout = &self.layouts[layout];
         let pattern = &*self.prepared.pattern;
         Level {
             pattern,
             tables,
-            sites: &self.layout.sites,
-            open: self.layout.sites.len(),
-            index: &self.layout.index,
-            domain: &self.layout.domain,
+            sites: &layout.sites,
+            open: layout.sites.len(),
+            index: &layout.index,
+            domain: &layout.domain,
             shifts: &self.prepared.repetition.shifts,
             usual: pattern.points.len() as f64 / pattern.measure() * tables.kernel.volume(pattern.repeats()),
         }
@@ -146,14 +157,19 @@ impl<'a, const D: usize> Stage<'a, D> {
         let pattern = &*self.prepared.pattern;
         let params = &self.prepared.params;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
-        let tables = Tables::new(pattern, kernel, &self.budget)?;
-        let level = self.seen_by(&tables);
+        let tables = Tables::new(pattern, kernel, &self.prepared.fields, &self.budget)?;
+        let level = self.seen_by(scale.layout, &tables);
         if n == 0 {
-            self.start(&level, state)?;
+            self.start(&self.seen_by(0, &tables), state)?;
+        }
+        let (layout, from) = (&self.layouts[scale.layout], &self.layouts[state.layout]);
+        if scale.layout != state.layout {
+            state.matches = layout.carried(from, &state.matches, pattern.base);
+            state.layout = scale.layout;
         }
         let room = room(&level);
         state.matches.iter_mut().for_each(|m| *m = room.clamp(*m));
-        let sites = self.layout.sites.len();
+        let sites = layout.sites.len();
         let mut open = state.within.clone().unwrap_or_else(|| vec![true; sites]);
         let mut energy = None;
         for round in 0..params.rounds {
@@ -195,7 +211,8 @@ impl<'a, const D: usize> Stage<'a, D> {
         let steps = self.prepared.params.steps;
         let count = open.iter().filter(|o| **o).count();
         let whole = state.within.is_none() && count as f64 > WHOLE * open.len() as f64;
-        let around = &self.layout.around;
+        let layout = &self.layouts[state.layout];
+        let around = &layout.around;
         let mut moving = vec![false; open.len()];
         let turn = if whole {
             let mut matches = Matches::new(level, std::mem::take(&mut state.matches));
@@ -206,7 +223,7 @@ impl<'a, const D: usize> Stage<'a, D> {
             *energy = Some(turn.energy.1);
             turn
         } else {
-            let step = self.layout.plan.step;
+            let step = layout.plan.step;
             let part = Part::new(level, (around, step), &state.output, &state.matches, open, &self.budget)?;
             let inner = part.level(level);
             let (mut output, mut matches) = (part.output.clone(), Matches::new(&inner, part.places.clone()));
@@ -223,17 +240,18 @@ impl<'a, const D: usize> Stage<'a, D> {
             moving.iter_mut().zip(within).for_each(|(m, w)| *m &= *w);
         }
         *open = moving;
-        Ok(open.iter().all(|o| !o) || turn.distance < SETTLED * level.pattern.spacing && !turn.changed)
+        Ok(turn.settled || open.iter().all(|o| !o))
     }
 
     /// Lays out the first points and matches.
     fn start(&self, level: &Level<'_, D>, state: &mut State<D>) -> Result<()> {
         let (params, seed) = (&self.prepared.params, self.request.seed);
-        let step = self.layout.plan.step;
+        let layout = &self.layouts[0];
+        let step = layout.plan.step;
         let kept = std::mem::take(&mut state.output);
         let spacing = self.prepared.pattern.spacing;
         let (mut output, matches) = match params.start {
-            Start::Grow => grow(level, (kept, &[]), &self.layout.around, step, seed, &self.budget)?,
+            Start::Grow => grow(level, (kept, &[]), &layout.around, step, seed, &self.budget)?,
             Start::Patches => patches(level, kept, (step, params.patch * spacing), seed),
             Start::Noise => {
                 let output = noise(level, kept, step, seed);
@@ -241,12 +259,11 @@ impl<'a, const D: usize> Stage<'a, D> {
                 let first = |q| {
                     anywhere(&room, &mut arabesque_core::Stream::new(seed, arabesque_core::Stage::new(46), q as u64))
                 };
-                let mut matches = Matches::new(level, (0..self.layout.sites.len()).map(first).collect());
+                let mut matches = Matches::new(level, (0..layout.sites.len()).map(first).collect());
                 let near = level.near(&output, &self.budget)?;
                 for number in 0..FIRST {
                     let draw = Round { seed, number, tries: 8 };
-                    matches =
-                        matching(level, &output, &near, &matches, &self.layout.around, (draw, &self.budget))?.matches;
+                    matches = matching(level, &output, &near, &matches, &layout.around, (draw, &self.budget))?.matches;
                 }
                 (output, matches.places)
             }
@@ -265,8 +282,8 @@ impl<'a, const D: usize> Stage<'a, D> {
     }
 
     fn cut(&self, output: &Output<D>, sources: &[usize], groups: Option<&[i32]>) -> Finished<D> {
-        let plan = self.layout.plan;
-        let inside = |p| self.request.territory.contains(self.layout.domain.wrap(p), &plan);
+        let (plan, domain) = (self.layouts[0].plan, &self.layouts[0].domain);
+        let inside = |p| self.request.territory.contains(domain.wrap(p), &plan);
         let mut finished = finish(&self.prepared.pattern, output, sources, groups, inside);
         let exemplar = &self.prepared.pattern.points.positions;
         let mut loose = vec![true; finished.points.len()];
@@ -274,14 +291,14 @@ impl<'a, const D: usize> Stage<'a, D> {
             // An element is moved as a whole, by its middle.
             let own = &mut finished.points.positions[element.points.clone()];
             let middle = own.iter().fold(Vector::ZERO, |s, &p| s + p) * (1.0 / own.len().max(1) as f64);
-            element.pose.translation += self.layout.domain.wrap(middle) - middle;
+            element.pose.translation += domain.wrap(middle) - middle;
             for (place, source) in own.iter_mut().zip(&finished.sources[element.points.clone()]) {
                 *place = source.map_or(*place, |j| element.pose.apply(exemplar[j]));
             }
             loose[element.points.clone()].fill(false);
         }
         for (place, _) in finished.points.positions.iter_mut().zip(&loose).filter(|(_, loose)| **loose) {
-            *place = self.layout.domain.wrap(*place);
+            *place = domain.wrap(*place);
         }
         finished
     }
@@ -289,11 +306,12 @@ impl<'a, const D: usize> Stage<'a, D> {
     fn outcome(&self, state: State<D>) -> Result<StructureOutcome<D>> {
         // What is still to be done with the best so far has an account of its own.
         let budget = self.budget.fresh();
-        let Some(&scale) = self.scales.last() else { return Err(Error::no_result("no level", "allow a window")) };
+        let last = self.scales.iter().rev().find(|s| s.layout == state.layout);
+        let Some(&scale) = last else { return Err(Error::no_result("no level", "allow a window")) };
         let pattern = &*self.prepared.pattern;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);
-        let tables = Tables::new(pattern, kernel, &budget)?;
-        let level = self.seen_by(&tables);
+        let tables = Tables::new(pattern, kernel, &self.prepared.fields, &budget)?;
+        let level = self.seen_by(state.layout, &tables);
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;
         let sources = sources(&level, &state.output, &near, &matches);

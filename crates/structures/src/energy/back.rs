@@ -2,7 +2,7 @@
 
 use arabesque_core::{Bounds, Budget, Lattice, Result, Vector};
 
-use super::kernel::Kernel;
+use super::{exp::exp, kernel::Kernel};
 use crate::exemplar::{channels::inner, known::Known, pattern::Pattern};
 
 /// Cells of the table in one width of the window.
@@ -33,21 +33,19 @@ impl<const D: usize> Back<D> {
         let lattice = Lattice::new(bounds, counts, false);
         let mut values = vec![0.0; lattice.count()];
         let mut masses = values.clone();
-        let pair = 0.5 / (kernel.sigma * kernel.sigma);
-        // Every pair goes to the cell of its middle, shared among the cells around it.
+        let pair = kernel.sharpness();
+        // Every pair goes to the cells around its points.
         let mut meter = budget.meter();
         for (i, &p) in pattern.points.positions.iter().enumerate() {
             let seen = f64::from(known.at(&p.0.map(|x| x as f32)));
             share(&lattice, &counts, base, step, p, |cell, w| masses[cell] += w * seen);
-            let mut cost = 0;
+            let (mut cost, mut sum) = (0, 0.0);
             pattern.index.within(p, kernel.pairs(), |j, offset| {
                 cost += 20;
-                let middle = p + offset * 0.5;
-                let seen = f64::from(known.at(&middle.0.map(|x| x as f32)));
-                let value =
-                    seen * f64::from(inner(&pattern.weights[i], &pattern.weights[j])) * (-pair * offset.norm2()).exp();
-                share(&lattice, &counts, base, step, middle, |cell, w| values[cell] += w * value);
+                let value = inner(&pattern.weights[i], &pattern.weights[j]) * exp((-pair * offset.norm2()) as f32);
+                sum += f64::from(value);
             });
+            share(&lattice, &counts, base, step, p, |cell, w| values[cell] += w * seen * sum);
             meter.spend(cost)?;
         }
         blur(&mut values, &counts, base, kernel, step);
@@ -148,7 +146,7 @@ fn blur<const D: usize>(values: &mut [f64], counts: &[usize; D], base: [bool; D]
                 .map(|t| {
                     let mut u = [0.0; D];
                     u[k] = t as f64 * step;
-                    kernel.weights(&u).0
+                    kernel.weight(&u)
                 })
                 .collect();
             for start in 0..values.len() {

@@ -1,13 +1,11 @@
 //! The Gaussians and the window of one level, in the form in which they are computed.
 //!
-//! With a window `exp(-|x|^2 / delta^2)` along the directions in which the exemplar repeats, a pair of points at `u` and `v` from the
-//! middle of the window contributes, up to a constant,
-//!
-//! `exp(-|u - v|^2 / (2 sigma^2)) exp(-|c|^2 / R^2)`, with `c = (u + v) / 2` and `R^2 = delta^2 + sigma^2 / 2`.
-//!
-//! Completing the square once more, the sum over all points `v` of the exemplar is one value of a field that knows nothing of `u` and of
-//! the window: `exp(-l |u|^2) E(m + (1 - k) u)`, where `E` is a sum of Gaussians of width `g` with `1 / g^2 = 1 / (2 sigma^2) + 1 / (4 R^2)`,
-//! `k = g^2 / (2 R^2)` and `l = 1 / R^2 - g^2 / (4 R^4)`. So a match costs one look-up for each point in the window.
+//! With a window `w(x) = exp(-|x|^2 / R^2)` along the directions in which the exemplar repeats, a pair of points at `u` and `v` from the middle
+//! of the window contributes, up to a constant, `w(c) exp(-|u - v|^2 / (2 sigma^2))` with `c = (u + v) / 2` and `R^2 = delta^2 + sigma^2 / 2`.
+//! Here pairs count as far as their points lie in the window: `w(u)` stands for `w(c)`. For a pair within the output or within the exemplar, which
+//! is there both ways around, that is the mean over its two points, and an output that is the exemplar has no error still. The sum over all
+//! points `v` of the exemplar is then one value of a field that knows nothing of the window, `w(u) E(m + u)`, where `E` is a sum of Gaussians
+//! `exp(-|x|^2 / (2 sigma^2))`: a match costs one look-up for each point in the window, and levels share the field.
 
 use super::exp::exp;
 use crate::params::Window;
@@ -26,12 +24,6 @@ pub(crate) struct Kernel<const D: usize> {
     pub(crate) delta: f64,
     /// `1 / R^2` for each coordinate, 0 across.
     pub(crate) window: [f64; D],
-    /// `l` for each coordinate.
-    pub(crate) outer: [f64; D],
-    /// `1 - k` for each coordinate.
-    pub(crate) inward: [f64; D],
-    /// `1 / g^2` for each coordinate.
-    pub(crate) field: [f64; D],
     shape: Window,
 }
 
@@ -39,18 +31,7 @@ impl<const D: usize> Kernel<D> {
     /// The kernel for a window of size `delta` along the coordinates of `base`.
     pub(crate) fn new(sigma: f64, delta: f64, base: [bool; D], shape: Window) -> Self {
         let r2 = delta * delta + 0.5 * sigma * sigma;
-        let along = |k: usize| base[k] && shape == Window::Gaussian;
-        let pair = 0.5 / (sigma * sigma);
-        let g2 = |k: usize| if along(k) { 1.0 / (pair + 0.25 / r2) } else { 1.0 / pair };
-        Self {
-            sigma,
-            delta,
-            window: std::array::from_fn(|k| if base[k] { 1.0 / r2 } else { 0.0 }),
-            outer: std::array::from_fn(|k| if along(k) { 1.0 / r2 - g2(k) / (4.0 * r2 * r2) } else { 0.0 }),
-            inward: std::array::from_fn(|k| if along(k) { 1.0 - g2(k) / (2.0 * r2) } else { 1.0 }),
-            field: std::array::from_fn(|k| 1.0 / g2(k)),
-            shape,
-        }
+        Self { sigma, delta, window: std::array::from_fn(|k| if base[k] { 1.0 / r2 } else { 0.0 }), shape }
     }
 
     /// How far from its middle a window reaches along the directions in which the exemplar repeats.
@@ -80,25 +61,32 @@ impl<const D: usize> Kernel<D> {
         PAIRS * self.sigma
     }
 
-    /// Weight of the pairs of a point at `u`, and of its look-up in the field; zero beyond the window.
-    pub(crate) fn weights(&self, u: &[f64; D]) -> (f64, f64) {
+    /// What the Gaussians of the field have in the exponent, times the squared distance.
+    pub(crate) fn sharpness(&self) -> f64 {
+        0.5 / (self.sigma * self.sigma)
+    }
+
+    /// `w(u)`; zero beyond the window.
+    #[inline]
+    pub(crate) fn weight(&self, u: &[f64; D]) -> f64 {
         match self.shape {
             Window::Gaussian => {
-                let (mut pair, mut outer) = (0.0, 0.0);
-                for k in 0..D {
-                    pair += self.window[k] * u[k] * u[k];
-                    outer += self.outer[k] * u[k] * u[k];
-                }
-                if pair > REACH * REACH {
-                    (0.0, 0.0)
-                } else {
-                    (f64::from(exp(-pair as f32)), f64::from(exp(-outer as f32)))
-                }
+                let far: f64 = (0..D).map(|k| self.window[k] * u[k] * u[k]).sum();
+                if far > REACH * REACH { 0.0 } else { f64::from(exp(-far as f32)) }
             }
             Window::Box => {
                 let inside = (0..D).all(|k| self.window[k] == 0.0 || u[k].abs() <= self.delta);
-                if inside { (1.0, 1.0) } else { (0.0, 0.0) }
+                if inside { 1.0 } else { 0.0 }
             }
+        }
+    }
+
+    /// The slope of [`Kernel::weight`] at `u`, over its value.
+    #[inline]
+    pub(crate) fn fall(&self, u: &[f64; D]) -> [f64; D] {
+        match self.shape {
+            Window::Gaussian => std::array::from_fn(|k| -2.0 * self.window[k] * u[k]),
+            Window::Box => [0.0; D],
         }
     }
 }

@@ -6,6 +6,8 @@
 //! the exemplar with itself. It is the sum over all sites of the error of [Roveri 2015 eq. 6], each divided by the known share of its
 //! window, but for one thing: a pair counts as far as its points lie in the windows, and not its middle.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use arabesque_core::{Budget, Domain, Result, Vector};
 use rayon::prelude::*;
 
@@ -30,21 +32,38 @@ use crate::{
 #[derive(Debug)]
 pub(crate) struct Tables<const D: usize> {
     pub(crate) kernel: Kernel<D>,
-    pub(crate) field: Field<D>,
+    pub(crate) field: Arc<Field<D>>,
     pub(crate) known: Known<D>,
     pub(crate) back: Back<D>,
     pub(crate) reach: Reach<D>,
 }
 
 impl<const D: usize> Tables<D> {
-    /// The tables for `kernel`.
-    pub(crate) fn new(pattern: &Pattern<D>, kernel: Kernel<D>, budget: &Budget) -> Result<Self> {
-        let places = &pattern.points.positions;
-        let field = Field::new(places, &pattern.weights, pattern.channels.blocks(), &kernel, budget)?;
+    /// The tables for `kernel`, with the field of those that have the same width.
+    pub(crate) fn new(pattern: &Pattern<D>, kernel: Kernel<D>, fields: &Fields<D>, budget: &Budget) -> Result<Self> {
+        let field = fields.of(pattern, &kernel, budget)?;
         let known = Known::new(&pattern.bounds, pattern.base, &kernel);
         let back = Back::new(pattern, &kernel, &known, budget)?;
         let reach = Reach::new(&kernel, pattern.base, pattern.thickness);
         Ok(Self { kernel, field, known, back, reach })
+    }
+}
+
+/// Fields of an exemplar by the width of their Gaussians, made when they are first asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Fields<const D: usize>(Mutex<Vec<(f64, Arc<Field<D>>)>>);
+
+impl<const D: usize> Fields<D> {
+    /// The field for `kernel`.
+    pub(crate) fn of(&self, pattern: &Pattern<D>, kernel: &Kernel<D>, budget: &Budget) -> Result<Arc<Field<D>>> {
+        let mut made = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, field)) = made.iter().find(|f| f.0 == kernel.sigma) {
+            return Ok(Arc::clone(field));
+        }
+        let places = &pattern.points.positions;
+        let field = Arc::new(Field::new(places, &pattern.weights, pattern.channels.blocks(), kernel, budget)?);
+        made.push((kernel.sigma, Arc::clone(&field)));
+        Ok(field)
     }
 }
 
@@ -79,6 +98,19 @@ pub(crate) struct Near {
     pub(crate) windows: Lists,
     /// For each point the other points that make a pair with it.
     pub(crate) pairs: Lists,
+    /// `a_i.a_j` of all pairs in their order; nothing where there are rigid elements, whose directions turn with them.
+    alike: Vec<f32>,
+}
+
+impl Near {
+    /// `a_i.a_j` for pair `k` of all, which is one of point `i`.
+    #[inline]
+    pub(crate) fn alike<const D: usize>(&self, output: &Output<D>, i: usize, k: usize) -> f64 {
+        match self.alike.get(k) {
+            Some(alike) => f64::from(*alike),
+            None => f64::from(inner(&output.weights[i], &output.weights[self.pairs.items()[k] as usize])),
+        }
+    }
 }
 
 /// What acts on one point.
@@ -100,7 +132,16 @@ impl<const D: usize> Level<'_, D> {
         let scale = self.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
         let pairs = neighbours(&output.places, self.tables.kernel.pairs() * scale, self.domain, budget)?;
         let windows = windows(&output.places, self.sites, self.index, &self.tables.reach, budget)?;
-        Ok(Near { windows, pairs })
+        let alike = |i: usize| {
+            let own = &output.weights[i];
+            pairs.of(i).iter().map(|&j| inner(own, &output.weights[j as usize])).collect::<Vec<f32>>()
+        };
+        let alike = if output.bodies.is_empty() {
+            (0..output.places.len()).into_par_iter().with_min_len(256).flat_map_iter(alike).collect()
+        } else {
+            Vec::new()
+        };
+        Ok(Near { windows, pairs, alike })
     }
 
     /// Weight of site `q` with its match: its share of the base over the known share of its window.
@@ -123,18 +164,15 @@ impl<const D: usize> Level<'_, D> {
             if known <= 0.0 {
                 continue;
             }
-            let (pair, outer) = kernel.weights(&u);
-            let factor = matches.factors[q] * known;
-            let y: [f32; D] = std::array::from_fn(|k| (m[k] + kernel.inward[k] * u[k]) as f32);
-            let turned = self.pattern.channels.turned(weights, &site.rotation.transpose());
-            let (value, slope) = self.tables.field.project_slope(&y, &turned);
-            let (value, per) = (f64::from(value), 1.0 / site.scale);
-            pull.cover += factor * pair;
-            pull.scale += factor * pair * site.scale;
-            pull.wanted += factor * outer * value;
-            let along = |k: usize| kernel.inward[k] * f64::from(slope[k]) - 2.0 * kernel.outer[k] * u[k] * value;
-            let wanted = Vector(std::array::from_fn(|k| factor * outer * per * along(k)));
-            let cover = Vector(std::array::from_fn(|k| -2.0 * factor * pair * per * kernel.window[k] * u[k]));
+            let weight = matches.factors[q] * known * kernel.weight(&u);
+            let turned = self.pattern.channels.turned_back(weights, &site.rotation);
+            let (value, slope) = self.tables.field.project_slope(&seen, &turned);
+            let (value, per, fall) = (f64::from(value), 1.0 / site.scale, kernel.fall(&u));
+            pull.cover += weight;
+            pull.scale += weight * site.scale;
+            pull.wanted += weight * value;
+            let wanted = Vector(std::array::from_fn(|k| weight * per * (f64::from(slope[k]) + fall[k] * value)));
+            let cover = Vector(std::array::from_fn(|k| weight * per * fall[k]));
             pull.wanted_slope += site.rotation.apply(wanted);
             pull.cover_slope += site.rotation.apply(cover);
         }
@@ -151,17 +189,16 @@ impl<const D: usize> Level<'_, D> {
             let (q, site) = (q as usize, &self.sites[q as usize]);
             let u = site.seen(self.domain.offset(site.place, x));
             let m = matches.places[q];
-            let known = f64::from(self.tables.known.at(&std::array::from_fn(|k| (m[k] + u[k]) as f32)));
+            let seen: [f32; D] = std::array::from_fn(|k| (m[k] + u[k]) as f32);
+            let known = f64::from(self.tables.known.at(&seen));
             if known <= 0.0 {
                 continue;
             }
-            let (pair, outer) = kernel.weights(&u);
-            let factor = matches.factors[q] * known;
-            cover += factor * pair;
-            let y: [f32; D] = std::array::from_fn(|k| (m[k] + kernel.inward[k] * u[k]) as f32);
-            let value = self.pattern.channels.turned(&self.tables.field.value(&y), &site.rotation);
+            let weight = matches.factors[q] * known * kernel.weight(&u);
+            cover += weight;
+            let value = self.pattern.channels.turned(&self.tables.field.value(&seen), &site.rotation);
             for (s, v) in sum.iter_mut().zip(value) {
-                *s += (factor * outer) as f32 * v;
+                *s += weight as f32 * v;
             }
         }
         (sum, cover)
@@ -183,15 +220,17 @@ impl<const D: usize> Level<'_, D> {
             .collect())
     }
 
-    /// `sum_j a_i.a_j h(x_i - x_j) (P_i + P_j) / 2` over all points `j`, `i` among them.
-    pub(crate) fn crowd(&self, output: &Output<D>, near: &Near, pulls: &[Pull<D>], i: usize) -> f64 {
+    /// `sum_j a_i.a_j h(x_i - x_j) (P_i + P_j)` over all points `j` with higher numbers, and half of that for `i` itself.
+    fn crowd(&self, output: &Output<D>, near: &Near, pulls: &[Pull<D>], i: usize) -> f64 {
         let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
         let mut sum = f64::from(inner(a, a)) * here.cover;
-        for &j in near.pairs.of(i) {
-            let j = j as usize;
-            let r2 = self.domain.offset(x, output.places[j]).norm2();
-            let h = self.pair(r2, here.scale, pulls[j].scale);
-            sum += f64::from(inner(a, &output.weights[j])) * h * 0.5 * (here.cover + pulls[j].cover);
+        for k in near.pairs.span(i) {
+            let j = near.pairs.items()[k] as usize;
+            if j > i {
+                let r2 = self.domain.offset(x, output.places[j]).norm2();
+                let h = self.pair(r2, here.scale, pulls[j].scale);
+                sum += near.alike(output, i, k) * h * (here.cover + pulls[j].cover);
+            }
         }
         sum
     }

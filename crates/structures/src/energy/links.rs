@@ -32,6 +32,18 @@ impl Lists {
         &self.items[self.starts[n] as usize..self.starts[n + 1] as usize]
     }
 
+    /// Where list `n` is among the items of all lists.
+    #[inline]
+    pub(crate) fn span(&self, n: usize) -> std::ops::Range<usize> {
+        self.starts[n] as usize..self.starts[n + 1] as usize
+    }
+
+    /// Items of all lists.
+    #[inline]
+    pub(crate) fn items(&self) -> &[u32] {
+        &self.items
+    }
+
     /// Number of items in all lists.
     pub(crate) fn total(&self) -> usize {
         self.items.len()

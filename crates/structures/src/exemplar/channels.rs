@@ -78,11 +78,24 @@ impl Channels {
     }
 
     /// The weights with their direction turned.
+    #[inline]
     pub(crate) fn turned<const D: usize>(&self, weights: &Weights, by: &Matrix<D>) -> Weights {
         let mut turned = *weights;
         if let Some((at, _)) = self.normal {
             for r in 0..D {
                 turned[at + r] = (0..D).map(|c| by.0[r][c] as f32 * weights[at + c]).sum();
+            }
+        }
+        turned
+    }
+
+    /// The weights with their direction turned by the inverse of a rotation.
+    #[inline]
+    pub(crate) fn turned_back<const D: usize>(&self, weights: &Weights, by: &Matrix<D>) -> Weights {
+        let mut turned = *weights;
+        if let Some((at, _)) = self.normal {
+            for r in 0..D {
+                turned[at + r] = (0..D).map(|c| by.0[c][r] as f32 * weights[at + c]).sum();
             }
         }
         turned
@@ -126,6 +139,7 @@ impl Channels {
 }
 
 /// Inner product of the weights of two Gaussians.
+#[inline]
 pub(crate) fn inner(a: &Weights, b: &Weights) -> f32 {
     let mut lanes = [0.0_f32; BLOCK];
     for (a, b) in a.chunks_exact(BLOCK).zip(b.chunks_exact(BLOCK)) {

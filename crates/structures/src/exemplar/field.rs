@@ -4,7 +4,7 @@ use arabesque_core::{Bounds, Budget, Error, Result, Vector};
 use rayon::prelude::*;
 
 use super::channels::{BLOCK, LANES, Weights};
-use crate::energy::kernel::Kernel;
+use crate::energy::{exp::exp, kernel::Kernel};
 
 /// Nodes of the grid in one width of a Gaussian that stands for a point.
 const FINENESS: f64 = 2.5;
@@ -38,7 +38,7 @@ impl<const D: usize> Field<D> {
         kernel: &Kernel<D>,
         budget: &Budget,
     ) -> Result<Self> {
-        let end: [f64; D] = std::array::from_fn(|k| END / kernel.field[k].sqrt());
+        let end = [END / kernel.sharpness().sqrt(); D];
         let bounds = Bounds::around(places.iter().copied());
         let size = bounds.size();
         let node_bytes = (4 * (1 + D) * blocks * BLOCK) as f64;
@@ -76,7 +76,7 @@ impl<const D: usize> Field<D> {
 
     /// Adds the Gaussians, slab by slab along the last coordinate, each slab by one thread.
     fn fill(&mut self, places: &[Vector<D>], weights: &[Weights], kernel: &Kernel<D>, end: &[f64; D]) {
-        let last = D - 1;
+        let (last, sharp) = (D - 1, kernel.sharpness());
         let record = (1 + D) * self.blocks * BLOCK;
         let slab = self.strides[last] * record;
         let (origin, step, counts, strides) = (self.origin, self.step, self.counts, self.strides);
@@ -93,15 +93,15 @@ impl<const D: usize> Field<D> {
             for &i in order[from..].iter().take_while(|&&i| places[i][last] <= height + end[last]) {
                 let p = &places[i];
                 let high = height - p[last];
-                let tall = (-high * high * kernel.field[last]).exp();
+                let tall = (-high * high * sharp).exp();
                 let spans: [(usize, usize); D] = std::array::from_fn(|k| if k == last { (0, 0) } else { span(p, k) });
                 let rows = if D == 3 { spans[1].0..=spans[1].1 } else { 0..=0 };
                 for y in rows {
                     let wide = f64::from(origin[1]) + y as f64 * f64::from(step) - p[1];
-                    let side = if D == 3 { (-wide * wide * kernel.field[1]).exp() } else { 1.0 };
+                    let side = if D == 3 { (-wide * wide * sharp).exp() } else { 1.0 };
                     for x in spans[0].0..=spans[0].1 {
                         let along = f64::from(origin[0]) + x as f64 * f64::from(step) - p[0];
-                        let gauss = tall * side * (-along * along * kernel.field[0]).exp();
+                        let gauss = tall * side * f64::from(exp((-along * along * sharp) as f32));
                         let offset: [f64; D] = std::array::from_fn(|k| {
                             if k == last {
                                 high
@@ -113,8 +113,7 @@ impl<const D: usize> Field<D> {
                         });
                         let node = x + if D == 3 { y * strides[1] } else { 0 };
                         let record = &mut nodes[node * record..(node + 1) * record];
-                        let slopes: [f32; D] =
-                            std::array::from_fn(|k| (-2.0 * offset[k] * kernel.field[k] * gauss) as f32);
+                        let slopes: [f32; D] = std::array::from_fn(|k| (-2.0 * offset[k] * sharp * gauss) as f32);
                         for (part, w) in record.chunks_exact_mut((1 + D) * BLOCK).zip(weights[i].chunks_exact(BLOCK)) {
                             for (n, part) in part.chunks_exact_mut(BLOCK).enumerate() {
                                 let factor = if n == 0 { gauss as f32 } else { slopes[n - 1] };
@@ -178,6 +177,30 @@ impl<const D: usize> Field<D> {
                 (0..BLOCK).for_each(|l| sums[l] += share * v[l] * w[l]);
             }
         });
+        sums[0] + sums[1] + (sums[2] + sums[3])
+    }
+
+    /// As [`Field::project`], but from the nearest node alone, with an error of the second order: enough to tell good matches from bad ones.
+    #[inline]
+    pub(crate) fn glimpse(&self, y: &[f32; D], weights: &Weights) -> f32 {
+        let Some((mut node, into)) = self.cell(y) else { return 0.0 };
+        let mut off = [0.0_f32; D];
+        for k in 0..D {
+            let far = usize::from(into[k] > 0.5);
+            node += far * self.strides[k];
+            off[k] = self.step * (into[k] - far as f32);
+        }
+        let record = (1 + D) * self.blocks * BLOCK;
+        let mut sums = [0.0_f32; BLOCK];
+        let record = &self.nodes[node * record..(node + 1) * record];
+        for (part, w) in record.chunks_exact((1 + D) * BLOCK).zip(weights.chunks_exact(BLOCK)) {
+            let mut v = lanes(part, 0);
+            for k in 0..D {
+                let slope = lanes(part, 1 + k);
+                (0..BLOCK).for_each(|l| v[l] += off[k] * slope[l]);
+            }
+            (0..BLOCK).for_each(|l| sums[l] += v[l] * w[l]);
+        }
         sums[0] + sums[1] + (sums[2] + sums[3])
     }
 

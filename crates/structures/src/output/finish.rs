@@ -50,7 +50,7 @@ fn seen<const D: usize>(
         let site = &level.sites[q as usize];
         let u = site.seen(level.domain.offset(site.place, output.places[i]));
         let y = Vector(std::array::from_fn(|k| matches.places[q as usize][k] + u[k]));
-        let weight = level.tables.kernel.weights(&u).0;
+        let weight = level.tables.kernel.weight(&u);
         let back = site.rotation.transpose();
         let own = level.pattern.channels.turned(&output.weights[i], &back);
         let mut best: Option<(f64, usize)> = None;

@@ -40,27 +40,25 @@ pub(crate) struct View<const D: usize> {
 struct Seen<const D: usize> {
     u: [f64; D],
     weights: Weights,
-    pair: f32,
-    /// What its pairs weigh.
+    /// How far it is in the window.
+    weight: f32,
+    /// The sum over its pairs.
     own: f32,
-    outer: f32,
 }
 
 impl<const D: usize> View<D> {
     /// What site `q` sees of the points, of which `own` are the sums over their pairs.
     pub(crate) fn new(level: &Level<'_, D>, q: usize, output: &Output<D>, own: &[f64], points: &[u32]) -> Self {
         let site = &level.sites[q];
-        let back = site.rotation.transpose();
         let seen = points.iter().filter_map(|&i| {
             let i = i as usize;
             let u = site.seen(level.domain.offset(site.place, output.places[i]));
-            let (pair, outer) = level.tables.kernel.weights(&u);
-            (pair > 0.0).then(|| Seen {
+            let weight = level.tables.kernel.weight(&u);
+            (weight > 0.0).then(|| Seen {
                 u,
-                weights: level.pattern.channels.turned(&output.weights[i], &back),
-                pair: pair as f32,
-                own: (pair * own[i]) as f32,
-                outer: outer as f32,
+                weights: level.pattern.channels.turned_back(&output.weights[i], &site.rotation),
+                weight: weight as f32,
+                own: own[i] as f32,
             })
         });
         Self { points: seen.collect() }
@@ -68,7 +66,7 @@ impl<const D: usize> View<D> {
 
     /// How many points there are in the window, each as far as it is in it.
     fn mass(&self) -> f64 {
-        self.points.iter().map(|p| f64::from(p.pair)).sum()
+        self.points.iter().map(|p| f64::from(p.weight)).sum()
     }
 
     /// Number of points in the window.
@@ -78,18 +76,29 @@ impl<const D: usize> View<D> {
 
     /// The error density for a match, divided by the known share.
     pub(crate) fn error(&self, level: &Level<'_, D>, m: &Vector<D>) -> f64 {
-        self.rough(level, m, 1)
+        self.sum(level, m, 1, |y, weights| level.tables.field.project(y, weights))
     }
 
-    /// The error density from one in `stride` of the points.
+    /// About the same, from one in `stride` of the points.
     fn rough(&self, level: &Level<'_, D>, m: &Vector<D>, stride: usize) -> f64 {
+        self.sum(level, m, stride, |y, weights| level.tables.field.glimpse(y, weights))
+    }
+
+    #[inline]
+    fn sum(
+        &self,
+        level: &Level<'_, D>,
+        m: &Vector<D>,
+        stride: usize,
+        field: impl Fn(&[f32; D], &Weights) -> f32,
+    ) -> f64 {
         let tables = level.tables;
         let mut sum = 0.0_f32;
         for p in self.points.iter().step_by(stride) {
-            let known = tables.known.at(&std::array::from_fn(|k| (m[k] + p.u[k]) as f32));
+            let y = std::array::from_fn(|k| (m[k] + p.u[k]) as f32);
+            let known = tables.known.at(&y);
             if known > 0.0 {
-                let y = std::array::from_fn(|k| (m[k] + tables.kernel.inward[k] * p.u[k]) as f32);
-                sum += known * (p.own - 2.0 * p.outer * tables.field.project(&y, &p.weights));
+                sum += known * p.weight * (p.own - 2.0 * field(&y, &p.weights));
             }
         }
         (f64::from(sum) * stride as f64 + tables.back.at(&m.0).0) / tables.known.share(&m.0).max(0.05)
@@ -105,12 +114,12 @@ impl<const D: usize> View<D> {
             let (back, back_slope) = tables.back.at(&m.0);
             let mut slope = back_slope;
             for p in &self.points {
-                let known = tables.known.at(&std::array::from_fn(|k| (m[k] + p.u[k]) as f32));
+                let y = std::array::from_fn(|k| (m[k] + p.u[k]) as f32);
+                let known = tables.known.at(&y);
                 if known > 0.0 {
-                    let y = std::array::from_fn(|k| (m[k] + tables.kernel.inward[k] * p.u[k]) as f32);
                     let (_, along) = tables.field.project_slope(&y, &p.weights);
                     for k in 0..D {
-                        slope[k] -= f64::from(2.0 * known * p.outer * along[k]);
+                        slope[k] -= f64::from(2.0 * known * p.weight * along[k]);
                     }
                 }
             }
@@ -233,7 +242,7 @@ pub(crate) fn matching<const D: usize>(
             budget.spend(((candidates.len() + 3 * STEPS * BEST) * view.len()) as u64 * 30 + 200)?;
             candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
             candidates.truncate(BEST);
-            let exact = |c: Match<D>| Match { error: if stride > 1 { view.error(level, &c.m) } else { c.error }, ..c };
+            let exact = |c: Match<D>| Match { error: view.error(level, &c.m), ..c };
             let start =
                 candidates.into_iter().map(exact).fold(now.clone(), |a, b| if b.error < a.error { b } else { a });
             let best = view.refined(level, &room, start);
@@ -261,10 +270,9 @@ pub(crate) fn own<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near
                 / near.windows.of(i).len().max(1) as f64;
             let (x, a) = (output.places[i], &output.weights[i]);
             let mut sum = f64::from(crate::exemplar::channels::inner(a, a));
-            for &j in near.pairs.of(i) {
-                let j = j as usize;
-                let h = level.pair(level.domain.offset(x, output.places[j]).norm2(), scale, scale);
-                sum += h * f64::from(crate::exemplar::channels::inner(a, &output.weights[j]));
+            for k in near.pairs.span(i) {
+                let r2 = level.domain.offset(x, output.places[near.pairs.items()[k] as usize]).norm2();
+                sum += level.pair(r2, scale, scale) * near.alike(output, i, k);
             }
             sum
         })

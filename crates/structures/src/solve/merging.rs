@@ -4,7 +4,7 @@
 
 use arabesque_core::{Budget, Result, Similarity, Vector};
 
-use super::newton::{direction, slopes, spin};
+use super::newton::{System, direction, spin};
 use crate::{
     energy::level::{Level, Matches, Near, Pull},
     exemplar::pattern::Pattern,
@@ -24,19 +24,17 @@ pub(crate) struct Moved {
     pub(crate) distance: f64,
 }
 
-/// Moves the points once. `pulls` are those on the points as they are, before and after.
+/// Moves the points once. `pulls` are those on the points as they are, before and after; `T` is `before`.
 pub(crate) fn merge<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
     near: &Near,
     matches: &Matches<D>,
-    pulls: &mut Vec<Pull<D>>,
+    (pulls, before): (&mut Vec<Pull<D>>, f64),
     budget: &Budget,
 ) -> Result<Moved> {
-    let before = level.energy(output, near, pulls, matches);
     budget.spend(near.pairs.total() as u64 * 100)?;
-    let slopes = slopes(level, output, near, pulls);
-    let mut moves = direction(level, output, near, pulls, &slopes);
+    let mut moves = direction(output, near, &System::new(level, output, near, pulls));
     for (i, v) in moves.iter_mut().enumerate() {
         let most = FARTHEST * level.tables.kernel.sigma * pulls[i].scale;
         let length = v.norm();

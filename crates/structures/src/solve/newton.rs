@@ -16,86 +16,79 @@ use crate::{
 };
 
 /// Steps of conjugate gradients.
-const STEPS: usize = 12;
+const STEPS: usize = 8;
+/// Rows that one task makes.
+const BLOCK: usize = 256;
 /// Share of its diagonal that is added to the matrix: the energy hardly tells how points lie along a line or a surface.
 const DAMPING: f64 = 0.02;
 
-/// Slopes of `T` by the places of the points; zero for those that stay.
-pub(crate) fn slopes<const D: usize>(
-    level: &Level<'_, D>,
-    output: &Output<D>,
-    near: &Near,
-    pulls: &[Pull<D>],
-) -> Vec<Vector<D>> {
-    let sigma = level.tables.kernel.sigma;
-    (0..output.places.len())
-        .into_par_iter()
-        .with_min_len(128)
-        .map(|i| {
-            if output.is_kept(i) {
-                return Vector::ZERO;
-            }
-            let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
-            let mut own = f64::from(inner(a, a));
-            let mut slope = Vector::ZERO;
-            for &j in near.pairs.of(i) {
-                let j = j as usize;
-                let r = level.domain.offset(output.places[j], x);
-                let width = sigma * 0.5 * (here.scale + pulls[j].scale);
-                let h = f64::from(exp((-0.5 * r.norm2() / (width * width)) as f32))
-                    * f64::from(inner(a, &output.weights[j]));
-                own += h;
-                slope += r * (-h / (width * width) * (here.cover + pulls[j].cover));
-            }
-            slope + here.cover_slope * own - here.wanted_slope * 2.0
-        })
-        .collect()
-}
-
-/// Rows of the matrix: for each point its neighbours in the order of the lists.
-struct System<const D: usize> {
+/// The equations, and their right-hand side.
+pub(crate) struct System<const D: usize> {
+    /// Slopes of `T` by the places of the points; zero for those that stay.
+    pub(crate) slopes: Vec<Vector<D>>,
     diagonal: Vec<f64>,
-    rows: Vec<Vec<(u32, f32, [f32; D])>>,
+    /// For each pair in the order of the lists the weight, and the offset in widths of the Gaussian.
+    entries: Vec<(f32, [f32; D])>,
 }
 
 impl<const D: usize> System<D> {
-    fn new(level: &Level<'_, D>, output: &Output<D>, near: &Near, pulls: &[Pull<D>]) -> Self {
+    /// For the points as they are.
+    pub(crate) fn new(level: &Level<'_, D>, output: &Output<D>, near: &Near, pulls: &[Pull<D>]) -> Self {
         let sigma = level.tables.kernel.sigma;
+        let row = |i: usize| {
+            let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
+            let mut own = f64::from(inner(a, a));
+            let mut slope = Vector::ZERO;
+            let mut entries = Vec::with_capacity(near.pairs.span(i).len());
+            for k in near.pairs.span(i) {
+                let j = near.pairs.items()[k] as usize;
+                let r = level.domain.offset(output.places[j], x);
+                let per = 2.0 / (sigma * (here.scale + pulls[j].scale));
+                let h = f64::from(exp((-0.5 * r.norm2() * per * per) as f32)) * near.alike(output, i, k);
+                own += h;
+                slope += r * (-h * per * per * (here.cover + pulls[j].cover));
+                let cover = (here.cover * pulls[j].cover).max(0.0).sqrt();
+                entries.push(((2.0 * cover * h * per * per) as f32, r.0.map(|c| (c * per) as f32)));
+            }
+            let slope = slope + here.cover_slope * own - here.wanted_slope * 2.0;
+            (if output.is_kept(i) { Vector::ZERO } else { slope }, entries)
+        };
+        let blocks: Vec<(Vec<Vector<D>>, Vec<(f32, [f32; D])>)> = (0..output.places.len().div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|block| {
+                let (mut slopes, mut entries) = (Vec::with_capacity(BLOCK), Vec::new());
+                for i in block * BLOCK..(block * BLOCK + BLOCK).min(output.places.len()) {
+                    let (slope, own) = row(i);
+                    slopes.push(slope);
+                    entries.extend(own);
+                }
+                (slopes, entries)
+            })
+            .collect();
+        let (mut slopes, mut entries) =
+            (Vec::with_capacity(output.places.len()), Vec::with_capacity(near.pairs.total()));
+        for (more, rows) in blocks {
+            slopes.extend(more);
+            entries.extend(rows);
+        }
         let diagonal = (0..output.places.len())
             .map(|i| {
                 let width = sigma * pulls[i].scale;
                 2.0 * f64::from(inner(&output.weights[i], &output.weights[i])) * pulls[i].cover / (width * width)
             })
             .collect();
-        let rows = (0..output.places.len())
-            .into_par_iter()
-            .with_min_len(128)
-            .map(|i| {
-                let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
-                let entry = |&j: &u32| {
-                    let n = j as usize;
-                    let r = level.domain.offset(output.places[n], x);
-                    let width = sigma * 0.5 * (here.scale + pulls[n].scale);
-                    let h = f64::from(exp((-0.5 * r.norm2() / (width * width)) as f32))
-                        * f64::from(inner(a, &output.weights[n]));
-                    let cover = (here.cover * pulls[n].cover).max(0.0).sqrt();
-                    let weight = 2.0 * cover * h / (width * width);
-                    (j, weight as f32, r.0.map(|c| (c / width) as f32))
-                };
-                near.pairs.of(i).iter().map(entry).collect()
-            })
-            .collect();
-        Self { diagonal, rows }
+        Self { slopes, diagonal, entries }
     }
 
-    fn product(&self, x: &[Vector<D>]) -> Vec<Vector<D>> {
+    fn product(&self, near: &Near, x: &[Vector<D>]) -> Vec<Vector<D>> {
         (0..x.len())
             .into_par_iter()
             .with_min_len(256)
             .map(|i| {
                 let mut sum = x[i] * (self.diagonal[i] * (1.0 + DAMPING));
-                for (j, weight, r) in &self.rows[i] {
-                    let other = x[*j as usize];
+                let span = near.pairs.span(i);
+                for ((weight, r), &j) in self.entries[span.clone()].iter().zip(&near.pairs.items()[span]) {
+                    let other = x[j as usize];
                     let along: f64 = (0..D).map(|k| f64::from(r[k]) * other[k]).sum();
                     let w = f64::from(*weight);
                     for k in 0..D {
@@ -108,15 +101,9 @@ impl<const D: usize> System<D> {
     }
 }
 
-/// The direction for these slopes: `T` falls along it at first.
-pub(crate) fn direction<const D: usize>(
-    level: &Level<'_, D>,
-    output: &Output<D>,
-    near: &Near,
-    pulls: &[Pull<D>],
-    slopes: &[Vector<D>],
-) -> Vec<Vector<D>> {
-    let system = System::new(level, output, near, pulls);
+/// The direction for the slopes of `system`: `T` falls along it at first.
+pub(crate) fn direction<const D: usize>(output: &Output<D>, near: &Near, system: &System<D>) -> Vec<Vector<D>> {
+    let slopes = &system.slopes;
     let precondition = |r: &[Vector<D>]| -> Vec<Vector<D>> {
         let mut z: Vec<_> = r.iter().zip(&system.diagonal).map(|(r, d)| *r * (1.0 / d.max(1e-30))).collect();
         admissible(output, &mut z);
@@ -128,12 +115,12 @@ pub(crate) fn direction<const D: usize>(
     let mut z = precondition(&r);
     let mut p = z.clone();
     let mut rz = dot(&r, &z);
-    let stop = 1e-4 * rz;
+    let stop = 1e-3 * rz;
     for _ in 0..STEPS {
         if rz <= stop || rz <= 0.0 {
             break;
         }
-        let mut product = system.product(&p);
+        let mut product = system.product(near, &p);
         admissible(output, &mut product);
         let curve = dot(&p, &product);
         if curve <= 0.0 {

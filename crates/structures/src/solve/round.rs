@@ -17,20 +17,22 @@ use crate::{
 };
 
 /// Points that move less than this in the mean, in spacings, have settled.
-pub(crate) const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 1e-3;
 /// A point that moved farther than this in a round, in spacings, stirs the sites around it.
 const STIRS: f64 = 0.02;
+
+/// A round that lowers `T` by less than this share of what the exemplar weighs with itself, and changes the number of points by less than this
+/// share of them, is the last one.
+const GAIN: f64 = 2e-3;
 
 /// What a round came to.
 pub(crate) struct Turn<const D: usize> {
     /// `T` before, and after the points have moved.
     pub(crate) energy: (f64, f64),
-    /// Mean movement of a point in the last step.
-    pub(crate) distance: f64,
     /// Where points have come, gone or moved noticeably.
     pub(crate) stirred: Vec<Vector<D>>,
-    /// Whether points were added or removed.
-    pub(crate) changed: bool,
+    /// Whether another one would change little.
+    pub(crate) settled: bool,
     /// Sites whose matches changed noticeably.
     pub(crate) rematched: Vec<usize>,
 }
@@ -53,10 +55,10 @@ pub(crate) fn round<const D: usize>(
     let mut pulls = level.pulls(output, &near, matches, budget)?;
     let before = level.energy(output, &near, &pulls, matches);
     let start = output.places.clone();
-    let (mut distance, mut energy) = (0.0, before);
+    let mut energy = before;
     for _ in 0..steps {
-        let moved = merge(level, output, &near, matches, &mut pulls, budget)?;
-        (distance, energy) = (moved.distance, moved.energy);
+        let moved = merge(level, output, &near, matches, (&mut pulls, energy), budget)?;
+        energy = moved.energy;
         if moved.distance < SETTLED * level.pattern.spacing {
             break;
         }
@@ -67,9 +69,10 @@ pub(crate) fn round<const D: usize>(
     let near = level.near(output, budget)?;
     let pulls = level.pulls(output, &near, matches, budget)?;
     let changed = control(level, output, &near, matches, &pulls, budget)?;
-    let altered = !changed.added.is_empty() || !changed.removed.is_empty();
+    let altered = (changed.added.len() + changed.removed.len()) as f64 > GAIN * output.places.len() as f64;
     stirred.extend(changed.added);
     stirred.extend(changed.removed);
     let energy = (before + matched.energy.0 - matched.energy.1, energy);
-    Ok(Turn { energy, distance, stirred, changed: altered, rematched })
+    let settled = energy.0 - energy.1 < GAIN * matches.back && !altered;
+    Ok(Turn { energy, stirred, settled, rematched })
 }

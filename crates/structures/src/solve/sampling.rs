@@ -69,7 +69,7 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
         let site = &level.sites[q];
         let u = site.seen(level.domain.offset(site.place, output.places[i]));
         let known = level.tables.known.at(&std::array::from_fn(|k| (matches.places[q][k] + u[k]) as f32));
-        (level.tables.kernel.weights(&u).0, f64::from(known))
+        (level.tables.kernel.weight(&u), f64::from(known))
     };
     let of_sites: Vec<(f64, f64)> = (0..level.open)
         .into_par_iter()

@@ -8,7 +8,7 @@ use super::{
     attributes::attributes,
     matching::{Round, anywhere, matching, room},
     merging::merge,
-    newton::slopes,
+    newton::System,
     part::Part,
     round::round,
     sampling::control,
@@ -43,7 +43,7 @@ fn noisy(check: impl FnOnce(&Level<'_, 2>, &Layout<2>, Output<2>, Matches<2>)) {
     let layout = Layout::new(&prepared, &Flat::new(domain, Fields::default()), &budget).unwrap();
     let pattern = &*prepared.pattern;
     let kernel = Kernel::new(prepared.sigma, prepared.window, pattern.base, Window::Gaussian);
-    let tables = Tables::new(pattern, kernel, &budget).unwrap();
+    let tables = Tables::new(pattern, kernel, &prepared.fields, &budget).unwrap();
     let level = Level {
         pattern,
         tables: &tables,
@@ -82,7 +82,7 @@ fn no_step_raises_the_error() {
             let close = |a: f64, b: f64| (a - b).abs() < 1e-3 * (1.0 + a.abs());
             assert!(after <= before && close(before, matched.energy.0), "{before} {after} {:?}", matched.energy);
             let mut pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
-            let moved = merge(level, &mut output, &near, &matches, &mut pulls, &budget).unwrap();
+            let moved = merge(level, &mut output, &near, &matches, (&mut pulls, after), &budget).unwrap();
             assert!(moved.energy <= after && close(moved.energy, energy(level, &output, &near, &matches)));
             attributes(level, &mut output, &near, &matches, &mut pulls);
             let directed = energy(level, &output, &near, &matches);
@@ -129,7 +129,7 @@ fn slopes_are_those_of_finite_differences() {
         let budget = Budget::default();
         let near = level.near(&output, &budget).unwrap();
         let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
-        let slopes = slopes(level, &output, &near, &pulls);
+        let slopes = System::new(level, &output, &near, &pulls).slopes;
         let size = slopes.iter().map(|s| s.norm()).fold(0.0, f64::max);
         let h = 0.02 * level.pattern.spacing;
         let (mut off, mut count) = (0.0, 0.0);
@@ -169,7 +169,7 @@ fn a_look_up_is_the_sum_over_all_pairs() {
     };
     scene.b = pattern.weights.iter().map(|w| w.iter().map(|&v| f64::from(v)).collect()).collect();
     let kernel = Kernel::new(scene.sigma, scene.delta, [true, true], Window::Gaussian);
-    let tables = Tables::new(pattern, kernel, &budget).unwrap();
+    let tables = Tables::new(pattern, kernel, &prepared.fields, &budget).unwrap();
     let constant = scene.w(Vector::ZERO, Vector::ZERO);
     for u in [Vector::xy(0.0, 0.0), Vector::xy(0.03, 0.05), Vector::xy(-0.11, 0.02), Vector::xy(0.14, -0.04)] {
         let weights = pattern.weights[3];
@@ -177,11 +177,13 @@ fn a_look_up_is_the_sum_over_all_pairs() {
         let exact: f64 = (0..scene.e.len())
             .map(|j| {
                 let v = scene.e[j] - scene.m;
-                own.iter().zip(&scene.b[j]).map(|(a, b)| a * b).sum::<f64>() * scene.w(u, v) / constant
+                let alike = own.iter().zip(&scene.b[j]).map(|(a, b)| a * b).sum::<f64>();
+                // The window at the point of the output instead of at the middle of the pair.
+                alike * scene.w(u, v) / scene.w((u + v) * 0.5, (u + v) * 0.5) * scene.w(u, u) / constant
             })
             .sum();
-        let y = std::array::from_fn(|k| (scene.m[k] + tables.kernel.inward[k] * u[k]) as f32);
-        let found = tables.kernel.weights(&u.0).1 * f64::from(tables.field.project(&y, &weights));
+        let y = std::array::from_fn(|k| (scene.m[k] + u[k]) as f32);
+        let found = tables.kernel.weight(&u.0) * f64::from(tables.field.project(&y, &weights));
         assert!((found - exact).abs() < 0.02, "{found} for {exact} at {u:?}");
     }
 }

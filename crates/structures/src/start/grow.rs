@@ -23,6 +23,10 @@ const TRIES: Stage = Stage::new(42);
 const RANDOM: usize = 28;
 /// What it costs to go on elsewhere in the exemplar, as a share of all that a window holds.
 const JUMP: f64 = 0.1;
+/// Points that matches are compared by.
+const FEW: usize = 150;
+/// Matches that are looked at more closely.
+const BEST: usize = 4;
 /// How far a site looks at what is there, in units of the window; less where there is much to look at.
 const LOOK: [f64; 4] = [1.8, 1.8, 1.8, 1.3];
 /// Cells of the map of what is there, in one step of the sites.
@@ -101,7 +105,7 @@ fn order<const D: usize>(level: &Level<'_, D>, around: &Lists, done: &[bool], se
     order
 }
 
-/// For each point of the exemplar the sum over its pairs.
+/// For each point of the exemplar the sum over its pairs, as far as that is known.
 fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
     let pattern = level.pattern;
     (0..pattern.points.len())
@@ -111,7 +115,7 @@ fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
             pattern.index.within(pattern.points.positions[i], level.tables.kernel.pairs(), |j, r| {
                 sum += level.pair(r.norm2(), 1.0, 1.0) * f64::from(inner(&pattern.weights[i], &pattern.weights[j]));
             });
-            sum
+            sum * f64::from(level.tables.known.at(&pattern.points.positions[i].0.map(|x| x as f32)))
         })
         .collect()
 }
@@ -120,8 +124,9 @@ fn own_exemplar<const D: usize>(level: &Level<'_, D>) -> Vec<f64> {
 struct There<const D: usize> {
     u: [f64; D],
     weights: Weights,
+    weight: f32,
+    /// The sum over its pairs.
     own: f32,
-    outer: f32,
 }
 
 /// Which cells around a site belong to sites that are done.
@@ -225,15 +230,14 @@ impl<const D: usize> Growth<'_, '_, D> {
         let look = LOOK[level.pattern.repeats()] * level.tables.kernel.delta;
         let across = 1.3 * level.pattern.thickness + level.pattern.spacing;
         let radius = (look * look * level.pattern.repeats() as f64 + across * across).sqrt() * site.scale;
-        let back = site.rotation.transpose();
         let mut there = Vec::new();
         self.cells.within(level.domain, site.place, radius, |i, offset| {
             let u = site.seen(offset);
             let near = (0..D).all(|k| u[k].abs() <= if level.pattern.base[k] { look } else { across });
-            let (pair, outer) = level.tables.kernel.weights(&u);
-            if near && pair > 0.0 && map.at(&u) {
-                let weights = level.pattern.channels.turned(&self.output.weights[i], &back);
-                there.push(There { u, weights, own: (pair * self.own[i]) as f32, outer: outer as f32 });
+            let weight = level.tables.kernel.weight(&u);
+            if near && weight > 0.0 && map.at(&u) {
+                let weights = level.pattern.channels.turned_back(&self.output.weights[i], &site.rotation);
+                there.push(There { u, weights, weight: weight as f32, own: self.own[i] as f32 });
             }
         });
         there
@@ -241,24 +245,24 @@ impl<const D: usize> Growth<'_, '_, D> {
 
     /// How badly a match goes with what is there.
     fn error(&self, there: &[There<D>], map: &Map<D>, m: &Vector<D>) -> f64 {
+        let stride = (there.len() / FEW).max(1);
         let (tables, pattern) = (self.level.tables, self.level.pattern);
         let mut sum = 0.0_f64;
-        for p in there {
-            let known = tables.known.at(&std::array::from_fn(|k| (m[k] + p.u[k]) as f32));
+        for p in there.iter().step_by(stride) {
+            let y = std::array::from_fn(|k| (m[k] + p.u[k]) as f32);
+            let known = tables.known.at(&y);
             if known > 0.0 {
-                let y = std::array::from_fn(|k| (m[k] + tables.kernel.inward[k] * p.u[k]) as f32);
-                sum += f64::from(known * (p.own - 2.0 * p.outer * tables.field.project(&y, &p.weights)));
+                sum += f64::from(known * p.weight * (p.own - 2.0 * tables.field.glimpse(&y, &p.weights)));
             }
         }
         let look = LOOK[pattern.repeats()] * tables.kernel.delta;
         let radius = (look * look * pattern.repeats() as f64 + pattern.thickness * pattern.thickness * 1.1).sqrt();
         pattern.index.within(*m, radius, |j, v| {
-            if map.at(&v.0) {
-                let known = tables.known.at(&pattern.points.positions[j].0.map(|x| x as f32));
-                sum += f64::from(known) * tables.kernel.weights(&v.0).0 * self.own_exemplar[j];
+            if j % stride == 0 && map.at(&v.0) {
+                sum += tables.kernel.weight(&v.0) * self.own_exemplar[j];
             }
         });
-        sum / tables.known.share(&m.0).max(0.05)
+        sum * stride as f64 / tables.known.share(&m.0).max(0.05)
     }
 
     fn site(&mut self, q: usize, around: &[u32], room: &Bounds<D>, seed: u64, budget: &Budget) -> Result<()> {
@@ -287,12 +291,16 @@ impl<const D: usize> Growth<'_, '_, D> {
             budget.spend(((RANDOM + 20) * (there.len() * 30 + 1000)) as u64)?;
             let rate = |m: &Vector<D>| self.error(&there, &map, m);
             let jump = JUMP * level.tables.back.at(&level.pattern.bounds.centre().0).0;
+            let carried: Vec<(f64, Vector<D>)> = carried.into_iter().map(|m| (rate(&m), m)).collect();
+            if carried.iter().any(|c| c.0 < jump) {
+                // No other match can make up for the jump.
+                random.clear();
+            }
             let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rate(m), *m)).collect();
             rated.sort_by(|a, b| a.0.total_cmp(&b.0));
-            rated.truncate(8);
+            rated.truncate(BEST);
             let refined = rated.into_iter().map(|start| self.refined(start, room, &rate)).map(|(e, m)| (e + jump, m));
-            let carried = carried.into_iter().map(|m| (rate(&m), m));
-            let first = carried.chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
+            let first = carried.into_iter().chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
             best = first.map_or(best, |b| b.1);
         }
         self.matches[q] = best;

@@ -46,7 +46,7 @@ params! {
         /// Factor from one size of the window to the next.
         shrink "shrink": f64 = 0.7, in 0.3..=0.99;
         /// Rounds of matching, moving, adding and removing for each size of the window.
-        rounds "rounds": usize = 4, in 1..=1000;
+        rounds "rounds": usize = 3, in 1..=1000;
         /// Steps of moving in each round.
         steps "steps": usize = 3, in 1..=1000;
         /// Matches that are tried at random for each place in each round, beside those of its neighbours.

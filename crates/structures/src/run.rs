@@ -22,7 +22,7 @@ use crate::{
         part::Part,
         round::round,
     },
-    start::{grow::grow, noise::noise, patches::patches, shake::shake},
+    start::{gaps::fill, grow::grow, noise::noise, patches::patches, shake::shake},
 };
 
 /// The smallest window, in units of the first one.
@@ -352,6 +352,9 @@ impl<'a, const D: usize> Stage<'a, D> {
             shake(&mut output, length * spacing, seed);
         }
         output.kept = stay;
+        if self.done.is_empty() {
+            fill(level, &mut output, step, seed, &self.budget)?;
+        }
         (state.output, state.matches) = (output, matches);
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Budget, Domain, Error, GridIndex, PointSet, Result, Vector, Warning};
 
 use super::{
-    bodies::{Body, bodies},
+    bodies::{Body, LOOSE, bodies},
     channels::{Channels, LANES, Weights},
     spacing::{base, spacing},
 };
@@ -13,6 +13,8 @@ use crate::params::StructureParams;
 
 /// Fewest points that show anything that repeats.
 const FEWEST: usize = 10;
+/// Distances from point to point that vary by this share of themselves are those of points at random.
+const RANDOM: f64 = 0.2;
 /// Extents below this share of the largest one count as flat.
 const FLAT: f64 = 1e-6;
 
@@ -117,7 +119,11 @@ impl<const D: usize> Pattern<D> {
 
     /// Length, area or volume of what repeats.
     pub(crate) fn measure(&self) -> f64 {
-        self.sides().map(|s| s + self.spacing).product()
+        // The outermost points of a lattice are half a spacing from its border; those at random are next to it.
+        let even = (1.0 - self.variation / RANDOM).max(0.0);
+        let n = self.bodies.len() as f64;
+        let rigid = self.body_of.iter().all(|b| *b != LOOSE) && n > 1.0;
+        self.sides().map(|s| if rigid { s * n / (n - 1.0) } else { s + even * self.spacing }).product()
     }
 }
 

@@ -33,7 +33,10 @@ pub(crate) fn attributes<const D: usize>(
     let wanted: Vec<Weights> = (0..output.places.len())
         .into_par_iter()
         .with_min_len(128)
-        .map(|i| level.wanted(output.places[i], near.windows.of(i), matches).0)
+        .map(|i| {
+            let stays = output.is_kept(i) || output.body_of[i] != LOOSE;
+            if stays { [0.0; LANES] } else { level.wanted(output.places[i], near.windows.of(i), matches).0 }
+        })
         .collect();
     for i in output.kept..output.places.len() {
         if output.body_of[i] != LOOSE {

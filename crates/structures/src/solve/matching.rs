@@ -32,6 +32,10 @@ const BETTER: f64 = 1e-9;
 /// fit nothing best.
 const FULL: f64 = 0.08;
 
+/// Share of the points of a match that another one has at least, or of those that windows of the exemplar have in the mean: otherwise matches
+/// and output become emptier by turns.
+const EMPTIER: f64 = 0.98;
+
 /// A window of the output as its site sees it.
 pub(crate) struct View<const D: usize> {
     points: Vec<Seen<D>>,
@@ -213,11 +217,12 @@ pub(crate) fn matching<const D: usize>(
             let stride = (view.len() / FEW).max(1);
             let mut candidates = Vec::new();
             let mass = view.mass();
-            let off =
-                |m: &Vector<D>| (level.tables.back.mass(&m.0) / level.tables.known.share(&m.0).max(0.05) - mass).abs();
+            let held = |m: &Vector<D>| level.tables.back.mass(&m.0) / level.tables.known.share(&m.0).max(0.05);
+            let off = |m: &Vector<D>| (held(m) - mass).abs();
             let least = off(&now.m).max(FULL * mass);
+            let emptiest = EMPTIER * held(&now.m).min(level.usual);
             let mut consider = |m: Vector<D>| {
-                if off(&m) <= least {
+                if off(&m) <= least && held(&m) >= emptiest {
                     candidates.push(Match { m, error: view.rough(level, &m, stride) })
                 }
             };

@@ -22,9 +22,11 @@ use crate::{
 /// A change must lower the energy by this share of what one point weighs.
 const WORTH: f64 = 0.04;
 /// A point goes, however many there are, when it makes up less of itself than this leaves over, halved.
-const STRAY: f64 = 0.7;
+const STRAY: f64 = 0.97;
 /// Nothing but strays is removed where there are fewer points than in the exemplar in the mean, by this share.
 const EMPTIEST: f64 = -0.04;
+/// The same for rigid elements, of which each is many points.
+const FULLEST: f64 = 0.04;
 /// What is added is no nearer to a point like it than this, in units of the spacing.
 const APART: f64 = 0.45;
 
@@ -148,8 +150,15 @@ fn remove<const D: usize>(
     let mut gone = vec![0.0; n];
     for (_, i) in order {
         // Fewer points in the windows of this one by those that went.
-        let enough = surplus.usual[i] - gone[i] / level.usual > EMPTIEST;
-        let least = if enough && surplus.matched[i] - gone[i] > 0.5 { -WORTH } else { -STRAY };
+        let rigid = output.body_of[i] != LOOSE;
+        let least = if rigid { FULLEST } else { EMPTIEST };
+        let enough = surplus.usual[i] - gone[i] / level.usual > least;
+        let least = match (enough, surplus.matched[i] - gone[i] > 0.5) {
+            (true, true) => -WORTH,
+            // There is a place for a whole element, if not this one.
+            (false, _) if rigid => continue,
+            _ => -STRAY,
+        };
         if worth(&change, i) >= least {
             continue;
         }

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, Vector};
+use arabesque_core::{
+    Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, Vector, Warning, arc_lengths,
+};
 use arabesque_io::{file, geometry::Cloud, mesh::obj, svg};
 use arabesque_structures::{Along, Flat, Shell, Solid, Territory, Thread, Tube};
 use arabesque_surface::{Bend, DirectionField, Directions, MeshReport};
@@ -20,6 +22,8 @@ use crate::{
 
 /// How far a line may lie from its curve, as a share of its extent.
 const CHORD: f64 = 1e-4;
+/// Cosine of the turn from which a structure folds.
+const FOLD: f64 = 0.54;
 
 /// Lines of a file.
 enum Curves {
@@ -90,6 +94,7 @@ pub(super) fn in_space(
             };
             let threads = threads(&paths, job, degrees(job, place)?)?;
             let across = height.size().0.into_iter().fold(f64::INFINITY, f64::min);
+            context.warnings.extend(folds(&threads, 0.5 * across));
             Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?))
         }
         ("on", Structures { on: Some(input), direction, .. }) => {
@@ -224,6 +229,32 @@ fn threads<const D: usize>(paths: &[Path<D>], job: &Structures, turned: f64) -> 
     Ok(paths.iter().map(thread).collect())
 }
 
+/// Tells where curves bend more sharply than a structure that reaches so far to their sides, times their scale, can follow.
+fn folds(threads: &[Thread<3>], reach: f64) -> Option<Warning> {
+    let mut places = threads.iter().flat_map(|thread| {
+        let lengths = arc_lengths(&thread.corners);
+        let length = lengths.last().copied().unwrap_or(0.0);
+        let sharp = move |k: &usize| {
+            let far = reach * thread.scale.at(lengths[*k] / length.max(f64::MIN_POSITIVE));
+            let at = |s: f64| {
+                let after = lengths.partition_point(|&l| l < s).clamp(1, lengths.len() - 1);
+                let share = (s - lengths[after - 1]) / (lengths[after] - lengths[after - 1]).max(f64::MIN_POSITIVE);
+                thread.corners[after - 1] + (thread.corners[after] - thread.corners[after - 1]) * share.clamp(0.0, 1.0)
+            };
+            let here = thread.corners[*k];
+            let (before, after) = (here - at(lengths[*k] - far), at(lengths[*k] + far) - here);
+            // A circle of that radius turns by one radian in that length.
+            before.dot(after) < before.norm() * after.norm() * FOLD
+        };
+        let inner = 1..thread.corners.len().saturating_sub(1);
+        inner.filter(sharp).map(|k| thread.corners[k]).collect::<Vec<_>>()
+    });
+    let first = places.next()?;
+    let [x, y, z] = first.0.map(|c| (c * 1e4).round() / 1e4);
+    let message = format!("the curve bends so sharply at ({x}, {y}, {z}) that the structure folds there");
+    Some(Warning::new(message, "round the curve, or make the structure smaller with --scale"))
+}
+
 /// Factors along a curve: `2`, `1..0.5` from start to end, or `0:1,0.5:2,1:1` at shares of the length.
 fn profile(name: &str, text: &str) -> Result<Vec<(f64, f64)>> {
     let fail = || Error::parameter(name, text, "factors above 0, such as 1..0.5 from start to end, or 0:1,0.5:2,1:1");
@@ -264,6 +295,18 @@ pub(super) fn kept<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_curve_that_bends_too_sharply_is_told() {
+        let bent = |corners: &[[f64; 3]]| vec![Thread::new(corners.iter().map(|c| Vector(*c)).collect())];
+        let corner = bent(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
+        let told = folds(&corner, 0.1).unwrap().message;
+        assert!(told.contains("at (1, 0, 0)"), "{told}");
+        let arc = |r: f64| -> Vec<[f64; 3]> {
+            (0..60).map(|k| 0.1 * f64::from(k)).map(|a| [r * a.cos(), r * a.sin(), 0.0]).collect()
+        };
+        assert!(folds(&bent(&arc(0.3)), 0.1).is_none() && folds(&bent(&arc(0.05)), 0.1).is_some());
+    }
 
     #[test]
     fn factors_along_a_curve_are_read() {

@@ -398,7 +398,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let matches = Matches::new(&level, state.matches);
         let near = level.near(&state.output, &budget)?;
         let sources = sources(&level, &state.output, &near, &matches);
-        let groups = groups(&level, &state.output, &near, &matches);
+        let groups = groups(&level, &state.output, &near, &matches, &budget)?;
         let finished = self.cut(&state.output, &sources, groups.as_deref());
         let mut warnings = self.prepared.warnings.clone();
         if finished.points.is_empty() {

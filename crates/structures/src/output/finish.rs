@@ -1,11 +1,14 @@
 //! From the optimised points to what is given back: cut at the border, with attributes, parts and elements numbered.
 
-use arabesque_core::{DisjointSets, Error, PointSet, Result, Vector};
+use arabesque_core::{Budget, DisjointSets, Error, PointSet, Result, Vector};
 use rayon::prelude::*;
 
 use super::state::Output;
 use crate::{
-    energy::level::{Level, Matches, Near},
+    energy::{
+        level::{Level, Matches, Near},
+        links::neighbours,
+    },
     exemplar::{bodies::LOOSE, pattern::Pattern},
     request::PlacedElement,
 };
@@ -87,19 +90,27 @@ pub(crate) fn groups<const D: usize>(
     output: &Output<D>,
     near: &Near,
     matches: &Matches<D>,
-) -> Option<Vec<i32>> {
+    budget: &Budget,
+) -> Result<Option<Vec<i32>>> {
     let pattern = level.pattern;
-    let parts = parts_of_exemplar(pattern, pattern.points.groups.as_ref()?);
+    let Some(own) = &pattern.points.groups else { return Ok(None) };
+    let parts = parts_of_exemplar(pattern, own);
     let n = output.places.len();
     let seen: Vec<Vec<(u32, f64, usize)>> =
         (0..n).into_par_iter().with_min_len(64).map(|i| seen(level, output, near, matches, i)).collect();
     let mut sets = DisjointSets::new(n);
+    let scale = |i: usize| {
+        let sites = near.windows.of(i);
+        sites.iter().map(|&q| level.sites[q as usize].scale).sum::<f64>() / sites.len().max(1) as f64
+    };
+    let scales: Vec<f64> = (0..n).map(scale).collect();
+    let largest = scales.iter().copied().fold(0.0, f64::max);
+    let around = neighbours(&output.places, PART * pattern.spacing * largest, level.domain, budget)?;
     for i in 0..n {
-        for &j in near.pairs.of(i) {
+        for &j in around.of(i) {
             let j = j as usize;
-            let scale = 1.0_f64;
             let far = level.domain.offset(output.places[i], output.places[j]).norm();
-            if j < i || far > PART * pattern.spacing * scale {
+            if j < i || far > PART * pattern.spacing * scales[i] {
                 continue;
             }
             let (mut votes, mut all, mut b) = (0.0, 0.0, seen[j].iter().peekable());
@@ -116,14 +127,11 @@ pub(crate) fn groups<const D: usize>(
         }
     }
     let mut number = std::collections::HashMap::new();
-    Some(
-        (0..n)
-            .map(|i| {
-                let next = number.len() as i32;
-                *number.entry(sets.of(i)).or_insert(next)
-            })
-            .collect(),
-    )
+    let mut numbered = |i: usize| {
+        let next = number.len() as i32;
+        *number.entry(sets.of(i)).or_insert(next)
+    };
+    Ok(Some((0..n).map(&mut numbered).collect()))
 }
 
 /// What is given back of an output: the points for which `inside` says yes, elements as their middle does.

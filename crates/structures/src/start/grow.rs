@@ -31,6 +31,8 @@ const BEST: usize = 4;
 const LOOK: [f64; 4] = [1.8, 1.8, 1.8, 1.3];
 /// Cells of the map of what is there, in one step of the sites.
 const CELLS: [f64; 4] = [2.5, 2.5, 2.5, 1.7];
+/// Share of what is there already of which the exemplar must show the counterpart around a match.
+const SHOWN: f64 = 0.75;
 /// A new point is no nearer to one like it than this, in spacings.
 const APART: f64 = 0.5;
 
@@ -243,16 +245,20 @@ impl<const D: usize> Growth<'_, '_, D> {
         there
     }
 
-    /// How badly a match goes with what is there.
-    fn error(&self, there: &[There<D>], map: &Map<D>, m: &Vector<D>) -> f64 {
-        let stride = (there.len() / FEW).max(1);
+    /// How badly a match goes with what is there; `roughly` where that is to tell good ones from bad ones alone.
+    fn error(&self, there: &[There<D>], map: &Map<D>, m: &Vector<D>, roughly: bool) -> f64 {
+        let stride = if roughly { (there.len() / FEW).max(1) } else { 1 };
         let (tables, pattern) = (self.level.tables, self.level.pattern);
-        let mut sum = 0.0_f64;
+        let (mut sum, mut shown, mut all) = (0.0_f64, 0.0_f64, 1e-12_f64);
         for p in there.iter().step_by(stride) {
             let y = std::array::from_fn(|k| (m[k] + p.u[k]) as f32);
             let known = tables.known.at(&y);
+            shown += f64::from(known * p.weight);
+            all += f64::from(p.weight);
             if known > 0.0 {
-                sum += f64::from(known * p.weight * (p.own - 2.0 * tables.field.glimpse(&y, &p.weights)));
+                let wanted =
+                    if roughly { tables.field.glimpse(&y, &p.weights) } else { tables.field.project(&y, &p.weights) };
+                sum += f64::from(known * p.weight * (p.own - 2.0 * wanted));
             }
         }
         let look = LOOK[pattern.repeats()] * tables.kernel.delta;
@@ -262,7 +268,10 @@ impl<const D: usize> Growth<'_, '_, D> {
                 sum += tables.kernel.weight(&v.0) * self.own_exemplar[j];
             }
         });
-        sum * stride as f64 / tables.known.share(&m.0).max(0.05)
+        // A match next to the border of the exemplar, beyond which nothing is known, would go with anything.
+        let shown = shown / all;
+        let blind = (SHOWN - shown).max(0.0) * tables.back.at(&pattern.bounds.centre().0).0;
+        sum * stride as f64 / shown.max(0.1) + blind
     }
 
     fn site(&mut self, q: usize, around: &[u32], room: &Bounds<D>, seed: u64, budget: &Budget) -> Result<()> {
@@ -289,16 +298,18 @@ impl<const D: usize> Growth<'_, '_, D> {
                 }
             }
             budget.spend(((RANDOM + 20) * (there.len() * 30 + 1000)) as u64)?;
-            let rate = |m: &Vector<D>| self.error(&there, &map, m);
+            let rate = |m: &Vector<D>| self.error(&there, &map, m, false);
+            let rough = |m: &Vector<D>| self.error(&there, &map, m, true);
             let jump = JUMP * level.tables.back.at(&level.pattern.bounds.centre().0).0;
             let carried: Vec<(f64, Vector<D>)> = carried.into_iter().map(|m| (rate(&m), m)).collect();
             if carried.iter().any(|c| c.0 < jump) {
                 // No other match can make up for the jump.
                 random.clear();
             }
-            let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rate(m), *m)).collect();
+            let mut rated: Vec<(f64, Vector<D>)> = random.par_iter().map(|m| (rough(m), *m)).collect();
             rated.sort_by(|a, b| a.0.total_cmp(&b.0));
             rated.truncate(BEST);
+            rated.iter_mut().for_each(|r| r.0 = rate(&r.1));
             let refined = rated.into_iter().map(|start| self.refined(start, room, &rate)).map(|(e, m)| (e + jump, m));
             let first = carried.into_iter().chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
             best = first.map_or(best, |b| b.1);

@@ -54,6 +54,10 @@ fn exemplars_that_are_none_are_refused() {
         assert!(message.contains(expected) && message.contains(name), "{name}: {message}");
         assert!(!folder.names().contains(&"out.ply".to_owned()), "{name}");
     }
+    let small: Vec<String> = (0..25).map(|k| format!("{} {} 0.{}", k % 5, k / 5, k % 3)).collect();
+    folder.write("small.ply", ply("x y z", &small));
+    let message = folder.fails(3, "fill small.ply --size 9x9 -o out.ply");
+    assert!(message.contains("spacings of its points long where it is shortest"), "{message}");
     folder.write("sheet.ply", good);
     let window = folder.fails(2, "fill sheet.ply --size 1x1 --set window=90 -o out.ply");
     assert!(window.contains("window = 90") && window.contains("half the length of the exemplar"), "{window}");
@@ -85,7 +89,7 @@ fn what_is_odd_about_exemplars_is_told() {
 fn meshes_and_curves_that_are_none_are_refused() {
     let folder = Folder::new();
     folder.write("sheet.ply", ply("x y z", &sheet(|_| String::new())));
-    let cube: Vec<String> = (0..216).map(|k| format!("{} {} {}", k % 6, k / 6 % 6, k / 36)).collect();
+    let cube: Vec<String> = (0..512).map(|k| format!("{} {} {}", k % 8, k / 8 % 8, k / 64)).collect();
     folder.write("cube.ply", ply("x y z", &cube));
     folder.write("empty.obj", cuboid(""));
     folder.write("open.obj", cuboid(FACES.rsplit_once("f 2").unwrap().0));
@@ -111,7 +115,7 @@ fn meshes_and_curves_that_are_none_are_refused() {
 #[test]
 fn what_is_odd_about_meshes_and_curves_is_told() {
     let folder = Folder::new();
-    let cube: Vec<String> = (0..216).map(|k| format!("{} {} {}", k % 6, k / 6 % 6, k / 36)).collect();
+    let cube: Vec<String> = (0..512).map(|k| format!("{} {} {}", k % 8, k / 8 % 8, k / 64)).collect();
     folder.write("cube.ply", ply("x y z", &cube));
     let turned: String = FACES
         .lines()
@@ -146,9 +150,9 @@ fn what_is_odd_about_meshes_and_curves_is_told() {
     folder.write("screw.ply", ply("x y z", &screw));
     folder.write("fold.obj", "v 0 0 0\nv 1 0 0\nv 0 0.01 0\nl 1 2 3\n");
     for (call, expected) in [
-        ("cube.ply --inside inverted.obj --scale 0.4 --set rounds=1", "its triangles face inwards"),
+        ("cube.ply --inside inverted.obj --scale 0.3 --set rounds=1", "its triangles face inwards"),
         (
-            "cube.ply --inside crossing.obj --scale 0.5 --set rounds=1",
+            "cube.ply --inside crossing.obj --scale 0.4 --set rounds=1",
             "triangles that pass through others: 12, the first at",
         ),
         ("screw.ply --along fold.obj", "bends so sharply at (1, 0, 0) that the structure folds there"),

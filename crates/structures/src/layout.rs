@@ -59,7 +59,17 @@ impl<const D: usize> Layout<D> {
                 "make the domain larger, or the scale smaller",
             ));
         }
-        let domain = territory.surroundings();
+        Self::over(plan, window, sites, territory.surroundings(), budget)
+    }
+
+    /// These sites, which are there.
+    pub(crate) fn over(
+        plan: SitePlan<D>,
+        window: f64,
+        sites: Vec<Site<D>>,
+        domain: Domain<D>,
+        budget: &Budget,
+    ) -> Result<Self> {
         let index = SiteIndex::new(&sites, plan.step, &domain);
         let places: Vec<_> = sites.iter().map(|s| s.place).collect();
         let largest = sites.iter().map(|s| s.scale).fold(0.0, f64::max);

@@ -17,6 +17,7 @@
 //! | sampling control | `solve::sampling` | [Roveri 2015 §5.1, eq. 7] |
 //! | the multi-scale loop | `run` | [Roveri 2015, algorithm 1] |
 //! | cut, number parts and elements | `output::finish` | |
+//! | stroke by stroke | `brush` | [Roveri 2015 §6.2] |
 //!
 //! | symbol | identifier |
 //! |---|---|
@@ -46,10 +47,11 @@
 //! - By default the output is grown from a seed and then shaken as unevenly as the points of the exemplar lie, so that it is not the
 //!   exemplar to the point. Whole repetitions fill a closed curve where the exemplar repeats regularly.
 //!
-//! Not handled: a σ for each point, a window for each kind of point, and brushes.
+//! Not handled: a σ for each point, and a window for each kind of point.
 
 #![allow(clippy::needless_range_loop, reason = "coordinates are numbered alike in many arrays at once")]
 
+mod brush;
 mod energy;
 mod exemplar;
 mod layout;
@@ -62,6 +64,11 @@ mod solve;
 mod start;
 mod territory;
 
+pub use brush::{
+    session::{Brush, StrokeOutcome},
+    stroke::Stroke,
+};
+pub use exemplar::spacing::mean_spacing as spacing;
 pub use params::{Start, StructureParams, Window};
 pub use prepared::Prepared;
 pub use request::{PlacedElement, StructureOutcome, StructureRequest};

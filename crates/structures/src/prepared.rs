@@ -82,6 +82,17 @@ impl<const D: usize> Prepared<D> {
             || found.min(LARGEST * shortest).max(SMALLEST * pattern.spacing),
             |window| window * pattern.spacing,
         );
+        if window > MOST * shortest && params.window.is_none() {
+            let long = shortest / pattern.spacing;
+            let least = SMALLEST / MOST;
+            return Err(Error::input(
+                "the exemplar",
+                format!(
+                    "it is {long:.1} spacings of its points long where it is shortest, and a structure shows from {least} on"
+                ),
+                format!("give more of the structure, or set a window of at most {:.1} spacings", MOST * long),
+            ));
+        }
         if window > MOST * shortest {
             let least = shortest * MOST / pattern.spacing;
             return Err(Error::parameter(

@@ -53,6 +53,8 @@ struct Stage<'a, const D: usize> {
     /// The sites of the last levels, then those of wider windows, which are farther apart.
     layouts: Vec<Layout<D>>,
     scales: Vec<Scale>,
+    /// Matches of the first sites, where these are done already.
+    done: Vec<Option<Vector<D>>>,
 }
 
 /// How far a run is.
@@ -79,34 +81,61 @@ impl<const D: usize> Prepared<D> {
     ) -> Result<StructureOutcome<D>> {
         let stage = Stage::new(self, request)?;
         let start = kept(&self.pattern, &request.kept)?;
-        let mut state = State {
-            output: start,
-            matches: Vec::new(),
-            layout: 0,
-            within: None,
-            energy: Vec::new(),
-            stopped: StopReason::Finished,
-        };
-        for n in 0..stage.scales.len() {
-            match stage.level(n, &mut state, watch) {
-                Ok(ControlFlow::Continue(())) => {}
-                Ok(ControlFlow::Break(())) => {
-                    state.stopped = StopReason::Stopped;
-                    break;
-                }
-                Err(error) if state.matches.is_empty() => return Err(error),
-                Err(Error::Limit { .. }) => {
-                    state.stopped = StopReason::Limit;
-                    break;
-                }
-                Err(Error::Stopped { .. }) => {
-                    state.stopped = StopReason::Stopped;
-                    break;
-                }
-                Err(error) => return Err(error),
-            }
-        }
+        let mut state = State::of(start, Vec::new());
+        stage.levels(&mut state, watch)?;
         stage.outcome(state)
+    }
+}
+
+/// What a stroke of a brush begins with.
+pub(crate) struct Begun<const D: usize> {
+    /// The sites that were there near it, then its own.
+    pub(crate) layout: Layout<D>,
+    /// The points that are there.
+    pub(crate) output: Output<D>,
+    /// The matches of the sites that were there.
+    pub(crate) matches: Vec<Vector<D>>,
+    /// For each site whether it may change.
+    pub(crate) within: Vec<bool>,
+}
+
+/// What came of a stroke.
+pub(crate) struct Ended<const D: usize> {
+    pub(crate) output: Output<D>,
+    pub(crate) matches: Vec<Vector<D>>,
+    pub(crate) energy: Vec<EnergyPoint>,
+    pub(crate) stopped: StopReason,
+}
+
+/// Goes on from what is there: new sites are grown, and those that may change are optimised.
+pub(crate) fn go_on<const D: usize>(
+    prepared: &Prepared<D>,
+    request: &StructureRequest<D>,
+    begun: Begun<D>,
+    watch: &mut dyn Watch<PointSet<D>>,
+) -> Result<Ended<D>> {
+    let Begun { layout, output, matches, within } = begun;
+    let done = matches.into_iter().map(Some).collect();
+    let stage = Stage::on(prepared, request, (layout, done));
+    let mut state = State { within: Some(within), ..State::of(output, Vec::new()) };
+    stage.levels(&mut state, watch)?;
+    let State { output, matches, energy, stopped, .. } = state;
+    Ok(Ended { output, matches, energy, stopped })
+}
+
+/// The outcome of points and matches as they are.
+pub(crate) fn finished<const D: usize>(
+    prepared: &Prepared<D>,
+    request: &StructureRequest<D>,
+    layout: Layout<D>,
+    (output, matches): (Output<D>, Vec<Vector<D>>),
+) -> Result<StructureOutcome<D>> {
+    Stage::on(prepared, request, (layout, Vec::new())).outcome(State::of(output, matches))
+}
+
+impl<const D: usize> State<D> {
+    fn of(output: Output<D>, matches: Vec<Vector<D>>) -> Self {
+        Self { output, matches, layout: 0, within: None, energy: Vec::new(), stopped: StopReason::Finished }
     }
 }
 
@@ -135,7 +164,53 @@ impl<'a, const D: usize> Stage<'a, D> {
             scales.push(Scale { delta: least, sigma: fine, layout: 0 });
         }
         layouts.extend(wider);
-        Ok(Self { prepared, request, budget, layouts, scales })
+        Ok(Self { prepared, request, budget, layouts, scales, done: Vec::new() })
+    }
+
+    /// All levels on one layout, of which some sites are `done`: for what is small.
+    fn on(
+        prepared: &'a Prepared<D>,
+        request: &'a StructureRequest<D>,
+        (layout, done): (Layout<D>, Vec<Option<Vector<D>>>),
+    ) -> Self {
+        let budget = request.budget.stage("making the structure");
+        budget.allow_elements(layout.expected(prepared));
+        let least = SMALLEST * layout.window;
+        let scale = |delta: f64, sigma: f64| Scale { delta, sigma, layout: 0 };
+        let mut scales = Vec::new();
+        let mut delta = layout.window;
+        while delta > 1.1 * least {
+            scales.push(scale(delta, prepared.sigma));
+            delta *= prepared.params.shrink;
+        }
+        scales.push(scale(least, prepared.sigma));
+        let fine = prepared.params.fine * prepared.pattern.spacing;
+        scales.extend((fine < prepared.sigma).then(|| scale(least, fine)));
+        Self { prepared, request, budget, layouts: vec![layout], scales, done }
+    }
+
+    /// Goes through the levels, until somebody asks to stop or the budget is used up.
+    fn levels(&self, state: &mut State<D>, watch: &mut dyn Watch<PointSet<D>>) -> Result<()> {
+        for n in 0..self.scales.len() {
+            match self.level(n, state, watch) {
+                Ok(ControlFlow::Continue(())) => {}
+                Ok(ControlFlow::Break(())) => {
+                    state.stopped = StopReason::Stopped;
+                    break;
+                }
+                Err(error) if state.matches.is_empty() => return Err(error),
+                Err(Error::Limit { .. }) => {
+                    state.stopped = StopReason::Limit;
+                    break;
+                }
+                Err(Error::Stopped { .. }) => {
+                    state.stopped = StopReason::Stopped;
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
     }
 
     /// The layout and the pattern as `tables` see them.
@@ -175,7 +250,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let mut open = state.within.clone().unwrap_or_else(|| vec![true; sites]);
         let mut energy = None;
         // What was not fitted to anything before needs more of them.
-        let more = if params.start != Start::Grow { UNFITTED } else { 1 };
+        let more = if params.start != Start::Grow && self.done.is_empty() { UNFITTED } else { 1 };
         let rounds = more * params.rounds;
         for round in 0..rounds {
             let draw =
@@ -253,10 +328,14 @@ impl<'a, const D: usize> Stage<'a, D> {
         let (params, seed) = (&self.prepared.params, self.request.seed);
         let layout = &self.layouts[0];
         let step = layout.plan.step;
-        let kept = std::mem::take(&mut state.output);
+        let mut kept = std::mem::take(&mut state.output);
+        let stay = kept.kept;
+        // What is there already is not shaken.
+        kept.kept = kept.places.len();
         let spacing = self.prepared.pattern.spacing;
-        let (mut output, matches) = match params.start {
-            Start::Grow => grow(level, (kept, &[]), &layout.around, step, seed, &self.budget)?,
+        let start = if self.done.is_empty() { params.start } else { Start::Grow };
+        let (mut output, matches) = match start {
+            Start::Grow => grow(level, (kept, &self.done), &layout.around, step, seed, &self.budget)?,
             Start::Patches => patches(level, kept, (step, params.patch * spacing), seed),
             Start::Noise => {
                 let output = noise(level, kept, step, seed);
@@ -273,11 +352,14 @@ impl<'a, const D: usize> Stage<'a, D> {
                 (output, matches.places)
             }
         };
-        if params.start != Start::Noise {
+        if start != Start::Noise {
             let length = params.shake.unwrap_or((SHAKE * self.prepared.pattern.variation).min(0.5));
             shake(&mut output, length * spacing, seed);
         }
-        fill(level, &mut output, step, seed, &self.budget)?;
+        output.kept = stay;
+        if self.done.is_empty() {
+            fill(level, &mut output, step, seed, &self.budget)?;
+        }
         (state.output, state.matches) = (output, matches);
         Ok(())
     }
@@ -291,7 +373,21 @@ impl<'a, const D: usize> Stage<'a, D> {
         let (plan, domain) = (self.layouts[0].plan, &self.layouts[0].domain);
         let inside = |p| self.request.territory.contains(domain.wrap(p), &plan);
         let mut finished = finish(&self.prepared.pattern, output, sources, groups, inside);
-        finished.points.positions.iter_mut().for_each(|p| *p = domain.wrap(*p));
+        let exemplar = &self.prepared.pattern.points.positions;
+        let mut loose = vec![true; finished.points.len()];
+        for element in &mut finished.elements {
+            // An element is moved as a whole, by its middle.
+            let own = &mut finished.points.positions[element.points.clone()];
+            let middle = own.iter().fold(Vector::ZERO, |s, &p| s + p) * (1.0 / own.len().max(1) as f64);
+            element.pose.translation += domain.wrap(middle) - middle;
+            for (place, source) in own.iter_mut().zip(&finished.sources[element.points.clone()]) {
+                *place = source.map_or(*place, |j| element.pose.apply(exemplar[j]));
+            }
+            loose[element.points.clone()].fill(false);
+        }
+        for (place, _) in finished.points.positions.iter_mut().zip(&loose).filter(|(_, loose)| **loose) {
+            *place = domain.wrap(*place);
+        }
         finished
     }
 

@@ -20,12 +20,12 @@
 //!    surround are left out.
 //! 3. *Field*: robust implicit moving least squares [Oztireli 2009] or metaballs [Blinn 1982] at the nodes of a grid of which only blocks near points are there.
 //! 4. *March*: marching cubes [Lorensen 1987] with faces decided by the asymptotic decider [Nielson 1991]; the whole is manifold by construction, no triangle is without area, and vertices are shared.
-//! 5. *Border*: where the surface ends, it is cut near the outermost points, along a level of the distance to the middle of the points around [Adamson 2004]; a closed mesh may trim it further.
+//! 5. *Border*: where the surface ends, it is cut near the outermost points, along a level of the distance to the middle of the points around [Adamson 2004]; a closed mesh may trim it further: closed surfaces get a lid there.
 //!
 //! Every step gives the same bytes for any number of threads.
 //!
 //! # Limits
-//! * What no point tells is not made up: walls of steps and holes that are wider than about three spacings stay open. What is trimmed off by a mesh leaves an open edge, not a lid.
+//! * What no point tells is not made up: walls of steps and holes that are wider than about three spacings stay open. An open surface that a mesh trims has an open edge there, a closed one a lid, with a rim as sharp as a cell.
 //! * Solids that pass through one another by less than about a spacing, in one group, look like thin plates where they do; groups keep them apart.
 //! * Interior ambiguities of a cube are not decided as the trilinear function would: two parts of a surface in one cube are never joined by a tunnel.
 //! * The cells are equal everywhere; detail that is finer than they are is lost, and a cell's worth of noise is kept.

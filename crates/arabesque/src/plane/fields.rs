@@ -52,7 +52,8 @@ impl FieldSources<'_> {
     }
 }
 
-fn orientation(input: &Input, bounds: &Bounds<2>, files: &Files) -> Result<OrientationField<2>> {
+/// The directions of a picture or of strokes over `bounds`.
+pub(crate) fn orientation(input: &Input, bounds: &Bounds<2>, files: &Files) -> Result<OrientationField<2>> {
     let bytes = files.read(input)?;
     let is_drawing = bytes.trim_ascii_start().starts_with(b"<") || bytes.starts_with(&[0xEF, 0xBB, 0xBF, b'<']);
     if png::is_png(&bytes) || !is_drawing {
@@ -65,7 +66,7 @@ fn orientation(input: &Input, bounds: &Bounds<2>, files: &Files) -> Result<Orien
 }
 
 /// The field of a factor, whose picture is embedded.
-fn factor(
+pub(crate) fn factor(
     name: &str,
     source: Option<&mut FieldSource>,
     bounds: &Bounds<2>,

@@ -10,7 +10,7 @@ mod request;
 mod surroundings;
 mod tile;
 
-pub(crate) use fields::constant_factor;
+pub(crate) use fields::{constant_factor, factor as factor_field, orientation as orientation_field};
 pub(crate) use made::{snapshot, unfinished};
 pub(crate) use place::options;
 

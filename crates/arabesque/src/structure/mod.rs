@@ -1,30 +1,34 @@
 //! Repetitive structures: points with attributes in the plane, in boxes and along curves.
 
+mod fields;
 mod made;
 mod place;
+mod scene;
+mod shapes;
 
 use std::sync::Arc;
 
 use arabesque_core::{Error, PointSet, Result, StopReason, Unobserved, Warning, Watch};
 use arabesque_io::geometry::Cloud;
 use arabesque_structures::{Prepared as Engine, StructureOutcome, StructureRequest};
-use arabesque_surface::{SurfaceParams, reconstruct};
+use arabesque_surface::{Reconstruction, SurfaceParams, reconstruct};
 
 use crate::{
-    artwork::Artwork,
+    artwork::{Artwork, Origin},
     method::{Preparation, Ready, RunContext, Show},
     plane::in_exemplar,
     recipe::{Job, Structures},
-    solid::read::cloud,
     surface::SurfaceMade,
 };
 use made::{PlanePoints, SpacePoints};
+use scene::{SceneMade, beside};
+use shapes::{Shapes, exemplar};
 
 /// A structure, analysed.
 #[derive(Debug)]
 pub(crate) enum Structure {
     Plane(Engine<2>, Arc<PointSet<2>>),
-    Space(Engine<3>, Arc<PointSet<3>>),
+    Space(Engine<3>, Arc<PointSet<3>>, Shapes),
 }
 
 /// Reads a structure to continue it.
@@ -33,7 +37,7 @@ pub(crate) fn prepare(job: &Structures, preparation: &mut Preparation<'_>) -> Re
     job.surface_params()?;
     job.place()?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
-    let (points, warnings) = cloud(preparation.exemplar.name(), &bytes, preparation.files)?;
+    let (points, shapes, warnings) = exemplar(preparation.exemplar.name(), &bytes, preparation.files)?;
     preparation.warnings.extend(warnings);
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
     let (name, budget) = (preparation.exemplar.name(), preparation.files.budget());
@@ -45,7 +49,7 @@ pub(crate) fn prepare(job: &Structures, preparation: &mut Preparation<'_>) -> Re
         }
         Cloud::Space(points) => {
             let points = Arc::new(points);
-            Structure::Space(Engine::new(Arc::clone(&points), &params, budget).map_err(explained)?, points)
+            Structure::Space(Engine::new(Arc::clone(&points), &params, budget).map_err(explained)?, points, shapes)
         }
     })
 }
@@ -59,7 +63,7 @@ impl Ready for Structure {
     fn understood(&self) -> String {
         let (count, spacing, repeats, window) = match self {
             Self::Plane(engine, points) => (points.len(), engine.spacing(), engine.repeats(), engine.window()),
-            Self::Space(engine, points) => (points.len(), engine.spacing(), engine.repeats(), engine.window()),
+            Self::Space(engine, points, _) => (points.len(), engine.spacing(), engine.repeats(), engine.window()),
         };
         format!(
             "exemplar: a structure of {count} points, {spacing:.4} apart, that repeats along {}; window {window:.4}",
@@ -95,7 +99,7 @@ impl Ready for Structure {
                 outcome.warnings.splice(0..0, context.warnings);
                 Ok(Artwork::new(origin, PlanePoints(outcome)))
             }
-            Self::Space(engine, points) => {
+            Self::Space(engine, points, shapes) => {
                 let mut request = StructureRequest::new(place::in_space(&mut job, points, &mut context)?);
                 if let Some(input) = &mut job.keep {
                     request.kept = place::kept(input, &mut context, |points| match points {
@@ -110,27 +114,58 @@ impl Ready for Structure {
                 let make = |points| SpacePoints::unfinished(points);
                 let mut outcome = engine.run(&request, &mut Show { watch, origin: &origin, make })?;
                 outcome.warnings.splice(0..0, std::mem::take(&mut context.warnings));
-                match surface {
-                    None => Ok(Artwork::new(origin, SpacePoints(outcome))),
-                    Some(params) => Ok(Artwork::new(Arc::clone(&origin), surfaced(outcome, &params, &context)?)),
-                }
+                let artwork = match surface {
+                    _ if !shapes.is_empty() => in_places(outcome, shapes, surface.as_ref(), &context, &origin)?,
+                    None => Artwork::new(origin, SpacePoints(outcome)),
+                    Some(params) => {
+                        let StructureOutcome { points, warnings, stopped, .. } = outcome;
+                        let found = surfaced(&points, (warnings, stopped), &params, &context)?;
+                        Artwork::new(origin, SurfaceMade::new(found))
+                    }
+                };
+                Ok(artwork)
             }
         }
     }
 }
 
-/// The surface of what was made.
-fn surfaced(outcome: StructureOutcome<3>, params: &SurfaceParams, context: &RunContext<'_>) -> Result<SurfaceMade> {
-    let StructureOutcome { points, warnings, stopped, .. } = outcome;
+/// What was made, with meshes for the elements that stand for them.
+fn in_places(
+    mut outcome: StructureOutcome<3>,
+    shapes: &Shapes,
+    surface: Option<&SurfaceParams>,
+    context: &RunContext<'_>,
+    origin: &Arc<Origin>,
+) -> Result<Artwork> {
+    let points = beside(&outcome, shapes);
+    let mesh = match surface.filter(|_| !points.is_empty()) {
+        None => None,
+        Some(params) => {
+            let told = (std::mem::take(&mut outcome.warnings), outcome.stopped);
+            let found = surfaced(&points, told, params, context)?;
+            (outcome.warnings, outcome.stopped) = (found.warnings, found.stopped);
+            Some(found.mesh)
+        }
+    };
+    Ok(Artwork::new(Arc::clone(origin), SceneMade::new(outcome, shapes, points, mesh.as_ref())))
+}
+
+/// The surface of points that were made, with what was told of them before.
+fn surfaced(
+    points: &PointSet<3>,
+    (warnings, stopped): (Vec<Warning>, StopReason),
+    params: &SurfaceParams,
+    context: &RunContext<'_>,
+) -> Result<Reconstruction> {
     // The surface of the best so far has an account of its own, as its file has.
     let budget = if stopped == StopReason::Finished { context.budget().clone() } else { context.budget().fresh() };
-    let mut found = reconstruct(&points, params, None, &budget, &mut Unobserved)?;
+    let mut found = reconstruct(points, params, None, &budget, &mut Unobserved)?;
     let own: Vec<Warning> = std::mem::take(&mut found.warnings);
     found.warnings = warnings.into_iter().chain(own).collect();
     if found.stopped == StopReason::Finished {
         found.stopped = stopped;
     }
-    Ok(SurfaceMade::new(found))
+    Ok(found)
 }
 
 #[cfg(test)]

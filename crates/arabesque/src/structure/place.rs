@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, ScalarField, Vector,
+    Bounds, Domain, Error, Fields, Matrix, OrientationField, Path, PointSet, Result, Vector, Warning, arc_lengths,
 };
 use arabesque_io::{file, geometry::Cloud, mesh::obj, svg};
 use arabesque_structures::{Along, Flat, Shell, Solid, Territory, Thread, Tube};
@@ -11,13 +11,19 @@ use arabesque_surface::{Bend, DirectionField, Directions, MeshReport};
 
 use crate::{
     method::RunContext,
-    plane::{constant_factor, options},
-    recipe::{Direction, FieldSource, Format, Input, Size, Structures},
-    solid::read::{cloud, indexed_mesh},
+    plane::options,
+    recipe::{Direction, Format, Input, Size, Structures},
+    solid::read::indexed_mesh,
+    structure::{
+        fields::{self, degrees, factor},
+        shapes::exemplar,
+    },
 };
 
 /// How far a line may lie from its curve, as a share of its extent.
 const CHORD: f64 = 1e-4;
+/// Cosine of the turn from which a structure folds.
+const FOLD: f64 = 0.54;
 
 /// Lines of a file.
 enum Curves {
@@ -28,12 +34,7 @@ enum Curves {
 /// The place in the plane that `job` asks for, whose files are embedded.
 pub(super) fn in_plane(job: &mut Structures, context: &mut RunContext<'_>) -> Result<Arc<dyn Territory<2>>> {
     let place = job.place()?;
-    let turned = degrees(job)?;
-    let fields = Fields {
-        orientation: (turned != 0.0).then(|| OrientationField::Constant(Matrix::rotation(turned.to_radians()))),
-        scale: factor(job)?,
-        ..Fields::default()
-    };
+    suits(job, place, 2)?;
     let sized = |size: &Size| sides(size).map(|[w, h]| Bounds::new(Vector::ZERO, Vector::xy(w, h)));
     let domain = match (place, &mut *job) {
         ("size", Structures { size: Some(size), .. }) => Domain::Box(sized(size)?),
@@ -48,12 +49,14 @@ pub(super) fn in_plane(job: &mut Structures, context: &mut RunContext<'_>) -> Re
             let Curves::Plane(paths) = curves(input, context)? else {
                 return Err(elsewhere("along", "curves in space", "points in the plane", "give an SVG file"));
             };
-            let threads = threads(&paths, job, turned)?;
+            let threads = threads(&paths, job, 0.0)?;
             return Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or_default())?));
         }
         (other, _) => return Err(elsewhere(other, "in space", "points in the plane", "give points with a z")),
     };
-    Ok(Arc::new(Flat::new(domain, fields)))
+    let bounds = domain.bounds();
+    let fields = fields::over(&bounds, job, context)?;
+    fields::without_avoided(Arc::new(Flat::new(domain, fields)), &bounds, &mut job.avoid, context)
 }
 
 /// The place in space that `job` asks for, whose files are embedded.
@@ -63,36 +66,36 @@ pub(super) fn in_space(
     context: &mut RunContext<'_>,
 ) -> Result<Arc<dyn Territory<3>>> {
     let place = job.place()?;
-    let turned = degrees(job)?;
-    let (sin, cos) = turned.to_radians().sin_cos();
-    let about_z = Matrix([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]);
-    let fields = Fields {
-        orientation: (turned != 0.0).then_some(OrientationField::Constant(about_z)),
-        scale: factor(job)?,
-        ..Fields::default()
-    };
+    suits(job, place, 3)?;
     let height = exemplar.bounds();
     let sheet = |size: &Size| {
         let [w, h] = sides(size)?;
         Ok::<_, Error>(Bounds::new(Vector([0.0, 0.0, height.min[2]]), Vector([w, h, height.max[2]])))
     };
-    let domain = match (place, &mut *job) {
-        ("size", Structures { size: Some(size), .. }) => Domain::Box(sheet(size)?),
+    match (place, &mut *job) {
+        ("size", Structures { size: Some(size), .. }) => {
+            let bounds = sheet(size)?;
+            on_sheet(Domain::Box(bounds), job, context)
+        }
         ("tile", Structures { tile: Some(size), .. }) => {
             // A sheet closes up sideways alone: across itself the next one is far away.
             let mut around = sheet(size)?;
             around.max[2] += around.size().norm();
-            Domain::Torus(around)
+            on_sheet(Domain::Torus(around), job, context)
         }
-        ("box", Structures { cuboid: Some(cuboid), .. }) => Domain::Box(cuboid.bounds()),
+        ("box", Structures { cuboid: Some(cuboid), .. }) => {
+            let domain = Domain::Box(cuboid.bounds());
+            Ok(Arc::new(Flat::new(domain, even(job, place)?)))
+        }
         ("along", Structures { along: Some(input), .. }) => {
             let paths = match curves(input, context)? {
                 Curves::Space(paths) => paths,
                 Curves::Plane(paths) => paths.iter().map(stood_up).collect(),
             };
-            let threads = threads(&paths, job, turned)?;
+            let threads = threads(&paths, job, degrees(job, place)?)?;
             let across = height.size().0.into_iter().fold(f64::INFINITY, f64::min);
-            return Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?));
+            context.warnings.extend(folds(&threads, 0.5 * across));
+            Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?))
         }
         ("on", Structures { on: Some(input), direction, .. }) => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
@@ -101,25 +104,59 @@ pub(super) fn in_space(
             context.warnings.extend(report.surface_of(input.name())?);
             let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
             context.warnings.extend(field.warnings().iter().cloned());
-            return Ok(Arc::new(Shell::new(Arc::new(index), Arc::new(field), fields.scale)));
+            let shell = Shell::new(Arc::new(index), Arc::new(field), factor(job, place)?);
+            Ok(Arc::new(shell.turned(degrees(job, place)?.to_radians())))
         }
         ("inside", Structures { inside: Some(input), .. }) => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
             context.warnings.extend(warnings);
             let report = MeshReport::new(&index, context.budget())?;
             context.warnings.extend(report.volume_of(input.name())?);
-            return Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), fields)));
+            Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), even(job, place)?)))
         }
         (other, _) => {
-            return Err(elsewhere(
-                other,
-                "in the plane",
-                "points in space",
-                "give size, tile, box, along, on or inside",
-            ));
+            Err(elsewhere(other, "in the plane", "points in space", "give size, tile, box, along, on or inside"))
         }
-    };
-    Ok(Arc::new(Flat::new(domain, fields)))
+    }
+}
+
+/// A sheet in space: fields and what is avoided lie over it.
+fn on_sheet(domain: Domain<3>, job: &mut Structures, context: &RunContext<'_>) -> Result<Arc<dyn Territory<3>>> {
+    let around = domain.bounds();
+    let flat = |v: Vector<3>| Vector::xy(v[0], v[1]);
+    let bounds = Bounds::new(flat(around.min), flat(around.max));
+    let fields = fields::raised(fields::over(&bounds, job, context)?);
+    fields::without_avoided(Arc::new(Flat::new(domain, fields)), &bounds, &mut job.avoid, context)
+}
+
+/// Fields that are the same everywhere; the turn is about z.
+fn even(job: &Structures, place: &str) -> Result<Fields<3>> {
+    let turned = degrees(job, place)?;
+    let (sin, cos) = turned.to_radians().sin_cos();
+    let about_z = Matrix([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]);
+    let orientation = (turned != 0.0).then_some(OrientationField::Constant(about_z));
+    Ok(Fields { orientation, scale: factor(job, place)?, ..Fields::default() })
+}
+
+/// Refuses what is given and has no meaning for `place`.
+fn suits(job: &Structures, place: &str, dimension: usize) -> Result<()> {
+    let is_flat = matches!(place, "size" | "tile" | "domain");
+    let along = place == "along";
+    let given = [
+        ("direction", job.direction.is_some() && place != "on", "a place other than a mesh (--on)"),
+        ("taper", job.taper.is_some() && !along, "a place other than curves (--along)"),
+        ("twist", job.twist.is_some() && !along, "a place other than curves (--along)"),
+        ("tube", job.radius.is_some() && !along, "a place other than curves (--along)"),
+        ("twist", job.twist.is_some() && dimension == 2, "curves in the plane, about which nothing turns"),
+        ("orient", job.orient.is_some() && along && dimension == 2, "curves in the plane, about which nothing turns"),
+        ("avoid", !job.avoid.is_empty() && !is_flat, "a place that is not flat (--size, --tile, --domain)"),
+    ];
+    match given.into_iter().find(|(_, is_given, _)| *is_given) {
+        None => Ok(()),
+        Some((name, _, with)) => {
+            Err(Error::Unsupported { what: format!("{name} for {with}"), advice: "leave it out".into() })
+        }
+    }
 }
 
 fn elsewhere(what: &str, place: &str, points: &str, advice: &str) -> Error {
@@ -132,22 +169,6 @@ fn sides(size: &Size) -> Result<[f64; 2]> {
         None => Ok(size.sides),
         Some(_) => Err(Error::parameter("size", size, "plain numbers, because points have no unit of length")),
     }
-}
-
-fn degrees(job: &Structures) -> Result<f64> {
-    match &job.orient {
-        None => Ok(0.0),
-        Some(FieldSource::Constant(v)) if v.is_finite() => Ok(*v),
-        Some(FieldSource::Constant(v)) => Err(Error::parameter("orient", v, "degrees")),
-        Some(FieldSource::File(_)) => {
-            let what = "orient from a file, for a structure".into();
-            Err(Error::Unsupported { what, advice: "give degrees".into() })
-        }
-    }
-}
-
-fn factor<const D: usize>(job: &Structures) -> Result<ScalarField<D>> {
-    constant_factor("scale", job.scale.as_ref())
 }
 
 /// Where the pattern runs on a mesh; strokes are embedded.
@@ -190,15 +211,7 @@ fn stood_up(path: &Path<2>) -> Path<3> {
 
 /// The curves as lines with sizes and turns along them.
 fn threads<const D: usize>(paths: &[Path<D>], job: &Structures, turned: f64) -> Result<Vec<Thread<D>>> {
-    let Some(scale) = job.scale.as_ref().map_or(Some(1.0), |s| match s {
-        FieldSource::Constant(v) => Some(*v),
-        FieldSource::File(_) => None,
-    }) else {
-        return Err(Error::Unsupported {
-            what: "scale from a file, along curves".into(),
-            advice: "give a number".into(),
-        });
-    };
+    let scale = factor::<D>(job, "along")?.range().0;
     let taper = match &job.taper {
         None => vec![(0.0, 1.0)],
         Some(text) => profile("taper", text)?,
@@ -214,6 +227,32 @@ fn threads<const D: usize>(paths: &[Path<D>], job: &Structures, turned: f64) -> 
         }
     };
     Ok(paths.iter().map(thread).collect())
+}
+
+/// Tells where curves bend more sharply than a structure that reaches so far to their sides, times their scale, can follow.
+fn folds(threads: &[Thread<3>], reach: f64) -> Option<Warning> {
+    let mut places = threads.iter().flat_map(|thread| {
+        let lengths = arc_lengths(&thread.corners);
+        let length = lengths.last().copied().unwrap_or(0.0);
+        let sharp = move |k: &usize| {
+            let far = reach * thread.scale.at(lengths[*k] / length.max(f64::MIN_POSITIVE));
+            let at = |s: f64| {
+                let after = lengths.partition_point(|&l| l < s).clamp(1, lengths.len() - 1);
+                let share = (s - lengths[after - 1]) / (lengths[after] - lengths[after - 1]).max(f64::MIN_POSITIVE);
+                thread.corners[after - 1] + (thread.corners[after] - thread.corners[after - 1]) * share.clamp(0.0, 1.0)
+            };
+            let here = thread.corners[*k];
+            let (before, after) = (here - at(lengths[*k] - far), at(lengths[*k] + far) - here);
+            // A circle of that radius turns by one radian in that length.
+            before.dot(after) < before.norm() * after.norm() * FOLD
+        };
+        let inner = 1..thread.corners.len().saturating_sub(1);
+        inner.filter(sharp).map(|k| thread.corners[k]).collect::<Vec<_>>()
+    });
+    let first = places.next()?;
+    let [x, y, z] = first.0.map(|c| (c * 1e4).round() / 1e4);
+    let message = format!("the curve bends so sharply at ({x}, {y}, {z}) that the structure folds there");
+    Some(Warning::new(message, "round the curve, or make the structure smaller with --scale"))
 }
 
 /// Factors along a curve: `2`, `1..0.5` from start to end, or `0:1,0.5:2,1:1` at shares of the length.
@@ -241,7 +280,11 @@ pub(super) fn kept<const D: usize>(
     of_dimension: impl Fn(Cloud) -> Option<PointSet<D>>,
 ) -> Result<PointSet<D>> {
     let bytes = context.files.embed(input)?;
-    let (points, warnings) = cloud(input.name(), &bytes, context.files)?;
+    let (points, shapes, warnings) = exemplar(input.name(), &bytes, context.files)?;
+    if !shapes.is_empty() {
+        let what = format!("{}: meshes among the points to keep", input.name());
+        return Err(Error::Unsupported { what, advice: "give points alone".into() });
+    }
     context.warnings.extend(warnings);
     of_dimension(points).ok_or_else(|| {
         let problem = format!("points of another dimension than those of the exemplar, which have {D} coordinates");
@@ -252,6 +295,18 @@ pub(super) fn kept<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_curve_that_bends_too_sharply_is_told() {
+        let bent = |corners: &[[f64; 3]]| vec![Thread::new(corners.iter().map(|c| Vector(*c)).collect())];
+        let corner = bent(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
+        let told = folds(&corner, 0.1).unwrap().message;
+        assert!(told.contains("at (1, 0, 0)"), "{told}");
+        let arc = |r: f64| -> Vec<[f64; 3]> {
+            (0..60).map(|k| 0.1 * f64::from(k)).map(|a| [r * a.cos(), r * a.sin(), 0.0]).collect()
+        };
+        assert!(folds(&bent(&arc(0.3)), 0.1).is_none() && folds(&bent(&arc(0.05)), 0.1).is_some());
+    }
 
     #[test]
     fn factors_along_a_curve_are_read() {

@@ -1,5 +1,9 @@
 //! Structures through the door.
 
+use std::ops::ControlFlow;
+
+use arabesque_core::{Progress, Vector};
+
 use super::*;
 use crate::{Format, Geometry, Input, OutputOptions, Recipe, Resources, recipe_in};
 
@@ -66,4 +70,56 @@ fn places_that_do_not_suit_are_refused() {
         )
         .contains("few.csv")
     );
+}
+
+/// A sheet of low waves along x and y, 12 points to a side of 1.
+fn sheet() -> String {
+    let rows = (0..144).map(|k| {
+        let (x, y) = ((f64::from(k % 12) + 0.5) / 12.0, (f64::from(k / 12) + 0.5) / 12.0);
+        format!("{x},{y},{}\n", 0.02 * (12.0 * x).sin() * (12.0 * y).cos())
+    });
+    format!("x,y,z\n{}", rows.collect::<String>())
+}
+
+#[test]
+fn a_tile_of_a_sheet_closes_sideways_and_stays_a_sheet() {
+    let job = Structures { tile: Some("1x1".parse().unwrap()), ..Structures::default() };
+    let Geometry::SpacePoints(points) = run("sheet.csv", &sheet(), job).unwrap().geometry() else { panic!("points") };
+    let all = &points.positions;
+    assert!((115..=175).contains(&all.len()), "{}", all.len());
+    assert!(all.iter().all(|p| (0.0..=1.0).contains(&p[0]) && (0.0..=1.0).contains(&p[1]) && p[2].abs() < 0.06));
+    // Across the seams points have neighbours as near as elsewhere.
+    let nearest = |p: Vector<3>| {
+        let others = all.iter().filter(|q| **q != p).map(|q| {
+            let wrapped = |d: f64| d - d.round();
+            wrapped(q[0] - p[0]).hypot(wrapped(q[1] - p[1])).hypot(q[2] - p[2])
+        });
+        others.fold(f64::INFINITY, f64::min)
+    };
+    let at_seam = |p: &&Vector<3>| (0..2).any(|k| p[k] < 0.05 || p[k] > 0.95);
+    let far: Vec<f64> = all.iter().filter(at_seam).map(|p| nearest(*p)).collect();
+    let mean = far.iter().sum::<f64>() / far.len() as f64;
+    assert!(far.len() > 20 && (mean * 12.0 - 1.0).abs() < 0.25, "{mean} of {}", far.len());
+}
+
+/// Asks to stop at a step.
+struct StopAt(usize);
+
+impl Watch<Artwork> for StopAt {
+    fn step(&mut self, _: &Progress, _: &dyn Fn() -> Artwork) -> ControlFlow<()> {
+        self.0 -= 1;
+        if self.0 == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+#[test]
+fn a_stop_with_a_mesh_keeps_the_surface_of_the_best_so_far() {
+    let job = Structures { size: Some("1.2x1".parse().unwrap()), mesh: true, ..Structures::default() };
+    let recipe = Recipe::new(Input::file("sheet.csv").embedding(sheet().as_bytes()), job);
+    let prepared = recipe.prepare(&Resources::default()).unwrap();
+    let artwork = prepared.run(&prepared.request(), &mut StopAt(2)).unwrap();
+    assert_eq!(artwork.stopped(), StopReason::Stopped);
+    assert!(artwork.summary().triangles > 200, "{:?}", artwork.summary());
+    let options = OutputOptions { format: Some(Format::Glb), ..OutputOptions::default() };
+    assert!(artwork.encode(&options).unwrap().bytes.starts_with(b"glTF"));
 }

@@ -24,8 +24,8 @@ use crate::{
 #[derive(Args, Debug)]
 #[command(after_long_help = parameters(), allow_negative_numbers = true)]
 pub(crate) struct Fill {
-    /// The example: an SVG drawing, points as CSV, curves in space as OBJ, or a structure of points with attributes as PLY or XYZ; - is
-    /// standard input
+    /// The example: an SVG drawing, points as CSV, curves in space as OBJ, or a structure: points with attributes as PLY or XYZ, points
+    /// and meshes as GLB; - is standard input
     exemplar: String,
     /// Where to write; the extension chooses SVG, PNG, JSON, CSV, OBJ, PLY, GLB or TOML (the recipe alone); - is standard output
     #[arg(short, long, value_name = "OUT")]
@@ -69,7 +69,7 @@ struct Place {
     /// Structures: fill a closed mesh
     #[arg(long, value_name = "MESH", group = "where")]
     inside: Option<String>,
-    /// Keep these shapes free; may be given several times
+    /// Keep these shapes free; structures also what is dark in a PNG picture; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
     /// Elements and strokes, or points, that stay exactly where this file has them; the rest is fitted around them and joined to them
@@ -225,7 +225,7 @@ impl Fill {
 /// Whether a file holds points with attributes, by its ending.
 fn is_structure(exemplar: &str) -> bool {
     let lower = exemplar.to_ascii_lowercase();
-    [".ply", ".xyz"].iter().any(|ending| lower.ends_with(ending))
+    [".ply", ".xyz", ".glb"].iter().any(|ending| lower.ends_with(ending))
 }
 
 /// Refuses what drawings and elements do not have.
@@ -256,7 +256,6 @@ fn not_for_structures(place: &Place, fields: &Fields, writing: &Writing) -> Resu
 /// The job that the options mean for a structure of points.
 fn structures(place: Place, fields: Fields, engine: Engine, writing: &Writing) -> Result<Job, Error> {
     let given = [
-        ("avoid", !place.avoid.is_empty()),
         ("redo", place.redo.is_some()),
         ("from", place.from.is_some()),
         ("to", place.to.is_some()),
@@ -283,6 +282,7 @@ fn structures(place: Place, fields: Fields, engine: Engine, writing: &Writing) -
         on: place.on.map(Input::file),
         inside: place.inside.map(Input::file),
         keep: place.keep.map(Input::file),
+        avoid: place.avoid.iter().map(|text| Input::shape(text)).collect(),
         orient: fields.orient,
         scale: fields.scale,
         direction: fields.direction.as_deref().map(Direction::parse),

@@ -132,7 +132,7 @@ impl<const D: usize> Scene<D> {
 }
 
 mod tests {
-    use arabesque_core::{Stage, Stream};
+    use arabesque_core::{Similarity, Stage, Stream};
 
     use super::*;
 
@@ -198,5 +198,37 @@ mod tests {
         scene.x.push(scene.x[1]);
         scene.a.push(scene.a[1].clone());
         assert!(scene.error() > before && scene.sampling() > 0.0);
+    }
+
+    proptest::proptest! {
+        /// Where the output is and how it is turned says nothing, nor where the exemplar is.
+        #[test]
+        fn motions_change_nothing(seed in 0_u64..1000, angle in -3.2..3.2_f64, shift in -50.0..50.0_f64, factor in 0.3..3.0_f64) {
+            let before = scene::<2>(seed, Matrix::rotation(0.3), 1.0);
+            let mut after = before.clone();
+            let motion = Similarity::about(Vector::ZERO, Vector::xy(shift, -2.0 * shift), Matrix::rotation(angle), factor);
+            after.x.iter_mut().for_each(|x| *x = motion.apply(*x));
+            after.q = motion.apply(after.q);
+            (after.rotation, after.scale) = (motion.rotation.compose(&before.rotation), factor);
+            let moved = Vector::xy(-shift, 3.0);
+            after.e.iter_mut().for_each(|e| *e += moved);
+            after.m += moved;
+            // Areas grow with the square of the scale.
+            let error = after.error() / (factor * factor);
+            proptest::prop_assert!((error - before.error()).abs() < 1e-8 * before.error().abs(), "{} {}", error, before.error());
+        }
+
+        /// A second point in one place always costs more than the first one did.
+        #[test]
+        fn the_second_of_two_points_helps_less(seed in 0_u64..1000, x in -1.0..1.0_f64, y in -1.0..1.0_f64) {
+            let mut scene = scene::<2>(seed, Matrix::identity(), 1.0);
+            let mut errors = vec![scene.error()];
+            for _ in 0..2 {
+                scene.x.push(Vector::xy(x, y));
+                scene.a.push(vec![1.0, 0.3, -0.4]);
+                errors.push(scene.error());
+            }
+            proptest::prop_assert!(errors[2] - errors[1] > errors[1] - errors[0]);
+        }
     }
 }

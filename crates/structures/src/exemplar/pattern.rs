@@ -77,6 +77,13 @@ impl<const D: usize> Pattern<D> {
             Vector(std::array::from_fn(|k| if base[k] { inner.min[k] } else { all.min[k] })),
             Vector(std::array::from_fn(|k| if base[k] { inner.max[k] } else { all.max[k] })),
         );
+        let single = bodies.iter().filter(|b| b.members.len() == 1).count();
+        if single > 0 {
+            warnings.push(Warning::new(
+                format!("rigid elements of one point: {single}; nothing tells how they are turned"),
+                "leave the attribute element out, or give each element three points or more",
+            ));
+        }
         flatness(&all, base, warnings);
         let axis = Vector(std::array::from_fn(|k| {
             let holds_zero = all.min[k] <= spacing && all.max[k] >= -spacing;

@@ -7,6 +7,11 @@ const ROPE: f64 = 0.6;
 /// A structure that is thicker than this share of its width is no surface.
 const SHEET: f64 = 0.5;
 
+/// Distance of most points to the nearest other one; `None` where all lie in one place.
+pub fn mean_spacing<const D: usize>(points: &[Vector<D>]) -> Option<f64> {
+    spacing(points).map(|s| s.0)
+}
+
 /// Distance to the nearest other point, in the median over all points that do not lie on another one, and by how much of itself it
 /// varies; `None` when all lie on one another.
 pub(crate) fn spacing<const D: usize>(points: &[Vector<D>]) -> Option<(f64, f64)> {

@@ -24,12 +24,19 @@ pub struct Shell {
     index: Arc<MeshIndex>,
     directions: Arc<DirectionField>,
     scale: ScalarField<3>,
+    /// How far the pattern is turned from the directions, about the normals, in radians.
+    turn: f64,
 }
 
 impl Shell {
     /// On the mesh of `index`, with the first direction of the pattern along `directions`, in sizes of `scale`.
     pub fn new(index: Arc<MeshIndex>, directions: Arc<DirectionField>, scale: ScalarField<3>) -> Self {
-        Self { index, directions, scale }
+        Self { index, directions, scale, turn: 0.0 }
+    }
+
+    /// The same with the pattern turned by so many radians from the directions, counter-clockwise as seen from outside.
+    pub fn turned(self, turn: f64) -> Self {
+        Self { turn, ..self }
     }
 
     /// Turns frames half around where they are against those of their neighbours: a field of lines knows no forwards.
@@ -83,9 +90,11 @@ impl Territory<3> for Shell {
         let first = (across + 1) % 3;
         let places = scatter(&self.index, CLOSER * plan.step * smallest, PLACES, budget)?;
         let share = self.index.area() / places.len().max(1) as f64;
+        let (sin, cos) = self.turn.sin_cos();
         let site = |at: &arabesque_surface::Closest| {
             let frame = self.directions.frame(&self.index, at);
-            let columns = [frame.tangent, frame.bitangent(), frame.normal];
+            let (along, beside) = (frame.tangent, frame.bitangent());
+            let columns = [along * cos + beside * sin, beside * cos - along * sin, frame.normal];
             let mut rotation = Matrix::zero();
             for (k, column) in columns.iter().enumerate() {
                 (0..3).for_each(|r| rotation.0[r][(first + k) % 3] = column[r]);

@@ -93,7 +93,22 @@ impl Blocks {
 
     /// Where the first node of a block is.
     pub(crate) fn corner(&self, block: usize) -> Vector<3> {
-        self.origin + Vector(self.place(block).map(|i| (i * SIDE as u64) as f64)) * self.cell
+        self.corner_at(self.place(block))
+    }
+
+    /// Where the first node of a block at a place is, or would be.
+    pub(crate) fn corner_at(&self, place: [u64; 3]) -> Vector<3> {
+        self.origin + Vector(place.map(|i| (i * SIDE as u64) as f64)) * self.cell
+    }
+
+    /// Blocks of the same grid at other places, which no ball is known to reach.
+    pub(crate) fn of_places(&self, places: Vec<[u64; 3]>, budget: &Budget) -> Result<Self> {
+        let held = budget.hold("cells along the mesh that trims", places.len() * 12)?;
+        let mut keys: Vec<u64> = places.into_iter().map(packed).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        let starts = vec![0; keys.len() + 1];
+        Ok(Self { origin: self.origin, cell: self.cell, keys, starts, balls: Vec::new(), _held: held })
     }
 }
 

@@ -4,8 +4,6 @@ mod blocks;
 mod metaballs;
 mod rimls;
 
-#[cfg(test)]
-pub(crate) use blocks::Blocks;
-pub(crate) use blocks::{BLOCK, Field, Node, SIDE};
+pub(crate) use blocks::{BLOCK, Blocks, Field, Node, SIDE};
 pub(crate) use metaballs::{Balls, metaballs};
 pub(crate) use rimls::{Kernel, Oriented, border_offset, rimls};

@@ -1,5 +1,6 @@
 //! From points to a mesh.
 
+mod lid;
 mod parts;
 mod report;
 mod run;

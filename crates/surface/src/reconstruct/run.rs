@@ -27,7 +27,7 @@ pub struct Reconstruction {
 
 /// Makes a surface of points: through points with normals by robust implicit moving least squares, around points with radii by metaballs. Groups and rigid elements
 /// become parts of their own. Where the points surround something the surface is closed, elsewhere it ends near the outermost of them. `trim`, a closed mesh,
-/// cuts off what is outside of it. The watch is asked after each part.
+/// cuts off what is outside of it; a surface that is closed gets a lid there. The watch is asked after each part.
 ///
 /// # Errors
 /// [`Error::Input`] for points of which no surface can be made, [`Error::Parameter`] for parameters that are not allowed or do not fit the points, [`Error::Limit`] where the

@@ -2,7 +2,10 @@
 
 use arabesque_core::{Budget, Error, PointSet, Result, Vector};
 
-use super::report::Notes;
+use super::{
+    lid::{is_closed, trimmed},
+    report::Notes,
+};
 use crate::{
     cloud::{Neighbours, buried, contradictions, estimated, mended, sheets, turned},
     implicit::{Balls, Field, Kernel, Oriented, border_offset, metaballs, rimls},
@@ -66,13 +69,19 @@ impl Job<'_> {
     /// The surface of a field.
     fn patch(&self, field: Field, is_open: bool, grain: f64, notes: &mut Notes) -> Result<Patch> {
         let mut patch = march(&field, self.budget)?;
-        drop(field);
         self.budget.spend(patch.triangles.len() as u64 * 200)?;
         if is_open {
             let values = beyond_border(&patch);
             patch = cut(patch, &values);
         }
-        if let Some(trim) = self.trim {
+        let lidded = match self.trim {
+            Some(trim) if is_closed(&patch) => trimmed(&field, &patch, trim, self.budget)?,
+            _ => None,
+        };
+        drop(field);
+        if let Some(field) = lidded {
+            patch = march(&field, self.budget)?;
+        } else if let Some(trim) = self.trim {
             let places: Vec<_> = patch.vertices.iter().map(|v| v.at).collect();
             let values: Vec<f32> = trim.signed_distances(&places, self.budget)?.iter().map(|d| -d as f32).collect();
             patch = cut(patch, &values);

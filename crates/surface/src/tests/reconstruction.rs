@@ -166,15 +166,69 @@ fn what_is_outside_of_the_trimming_mesh_is_cut_off() {
     let made =
         reconstruct(&points, &SurfaceParams::default(), Some(&trim), &Budget::default(), &mut Unobserved).unwrap();
     let report = report(&made.mesh);
-    assert!(assert_manifold(&made.mesh.triangles, made.mesh.positions.len()) > 20);
-    assert!(
-        (report.bounds.min[2] + 0.3).abs() < 0.005 && (report.bounds.max[2] - 0.5).abs() < 0.005,
-        "{:?}",
-        report.bounds
-    );
+    assert_closed(&made.mesh.triangles, made.mesh.positions.len());
+    let (low, high) = (report.bounds.min[2], report.bounds.max[2]);
+    assert!((low + 0.3).abs() < 0.01 && (high - 0.5).abs() < 0.01, "{:?}", report.bounds);
+    // A slice of a ball: pi (z - z^3 / 3) from -0.3 to 0.5.
+    let slice = |z: f64| std::f64::consts::PI * (z - z * z * z / 3.0);
+    assert!((report.volume - (slice(0.5) - slice(-0.3))).abs() < 0.04, "{}", report.volume);
     let far = MeshIndex::new(&cuboid(Vector([5.0; 3]), Vector([6.0; 3])), "trim", &Budget::default()).unwrap();
     let error = reconstruct(&points, &SurfaceParams::default(), Some(&far), &Budget::default(), &mut Unobserved);
     assert!(error.unwrap_err().to_string().contains("trims it"));
+}
+
+fn trimmed(points: &PointSet<3>, trim: &TriangleMesh) -> TriangleMesh {
+    let trim = MeshIndex::new(trim, "trim", &Budget::default()).unwrap();
+    let params = SurfaceParams::default();
+    let made = reconstruct(points, &params, Some(&trim), &Budget::default(), &mut Unobserved).unwrap();
+    assert!((0..made.mesh.triangles.len()).all(|t| made.mesh.double_area(t).norm() > 0.0));
+    made.mesh
+}
+
+#[test]
+fn closed_surfaces_that_are_trimmed_have_lids() {
+    // A ring cut by a ball in two places, and once more by a ball turned inside out.
+    let ring = points_of(&torus(60, 30, 1.0, 0.3), 0.06);
+    let mut side = ball(24, Vector([1.0, 0.0, 0.0]), 0.9);
+    for round in 0..2 {
+        let mesh = trimmed(&ring, &side);
+        assert_closed(&mesh.triangles, mesh.positions.len());
+        let report = report(&mesh);
+        assert!(report.components == 1 && report.volume > 0.3 && report.volume < 0.75, "{round}: {}", report.volume);
+        assert!(mesh.positions.iter().all(|p| (*p - Vector([1.0, 0.0, 0.0])).norm() < 0.91));
+        let normals = mesh.normals.as_ref().unwrap();
+        let lid = |p: &Vector<3>| {
+            (*p - Vector([1.0, 0.0, 0.0])).norm() > 0.885 && ((p[0].hypot(p[1]) - 1.0).hypot(p[2])) < 0.2
+        };
+        let outwards = |k: usize| normals[k].cosine(mesh.positions[k] - Vector([1.0, 0.0, 0.0])) > 0.9;
+        let lids: Vec<usize> = (0..normals.len()).filter(|&k| lid(&mesh.positions[k])).collect();
+        assert!(lids.len() > 30 && lids.iter().all(|&k| outwards(k)), "{}", lids.len());
+        side.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    }
+}
+
+#[test]
+fn trimmed_metaballs_are_closed_and_keep_their_colours() {
+    let row = (0..40).map(|k| Vector([f64::from(k) * 0.05, 0.0, 0.0])).collect();
+    let colours = Some(vec![[0.9, 0.5, 0.2]; 40]);
+    let points = PointSet { radii: Some(vec![0.2; 40]), colours, ..PointSet::at(row) };
+    let mesh = trimmed(&points, &cuboid(Vector([0.5, -1.0, -1.0]), Vector([1.2, 1.0, 0.1])));
+    assert_closed(&mesh.triangles, mesh.positions.len());
+    let bounds = mesh.bounds();
+    assert!(
+        (bounds.min[0] - 0.5).abs() < 0.02 && (bounds.max[0] - 1.2).abs() < 0.02 && bounds.max[2] < 0.11,
+        "{bounds:?}"
+    );
+    assert!(mesh.colours.unwrap().iter().all(|c| (c[0] - 0.9).abs() < 0.02 && (c[2] - 0.2).abs() < 0.02));
+}
+
+#[test]
+fn an_open_sheet_that_is_trimmed_stays_open() {
+    let sheet = points_of(&grid(20, 20, [false, false], |a, b| Vector([a, b, 0.05 * (a * 9.0).sin()])), 0.04);
+    let mesh = trimmed(&sheet, &cuboid(Vector([0.2, 0.3, -1.0]), Vector([0.8, 0.6, 1.0])));
+    assert!(assert_manifold(&mesh.triangles, mesh.positions.len()) > 20);
+    let bounds = mesh.bounds();
+    assert!((bounds.min[0] - 0.2).abs() < 0.01 && (bounds.max[1] - 0.6).abs() < 0.01, "{bounds:?}");
 }
 
 #[test]

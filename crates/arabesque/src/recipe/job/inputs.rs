@@ -49,6 +49,7 @@ impl Job {
                 wanted.extend(job.keep.iter().map(|input| ("--keep", input)));
                 wanted.extend(field("--orient", job.orient.as_ref()));
                 wanted.extend(field("--scale", job.scale.as_ref()));
+                wanted.extend(avoided(&job.avoid));
                 if let Some(Direction::Strokes(input)) = &job.direction {
                     wanted.push(("--direction", input));
                 }

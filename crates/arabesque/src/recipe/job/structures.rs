@@ -45,14 +45,18 @@ pub struct Structures {
     /// Points that stay where they are, with the attributes of the exemplar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<Input>,
-    /// How the structure is turned: degrees about the z axis, about the normal of a surface, or about a curve.
+    /// Shapes (SVG) and pictures (PNG) that stay free, over `size`, `tile` and `domain`; in pictures what is dark and opaque.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub avoid: Vec<Input>,
+    /// How the structure is turned: degrees about the z axis, about the normal of a surface, or about a curve. Over `size`, `tile` and `domain` also
+    /// strokes (SVG), or a picture whose hue, or gray, is the direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orient: Option<FieldSource>,
     /// Where the structure runs on a mesh: `least` or `most`, along which the mesh bends least or most; a direction in space such as `0,0,1`;
     /// or the lines of an OBJ file as strokes on the mesh. Default: least.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<Direction>,
-    /// Size of the structure relative to the exemplar: a number. Default: 1.
+    /// Size of the structure relative to the exemplar: a number, or over `size`, `tile` and `domain` a picture. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<FieldSource>,
     /// How far from a curve a structure may lie that repeats across it too. Default: half of the exemplar across.

@@ -92,7 +92,13 @@ impl Reader<'_> {
         let found = columns_of(&names);
         for axis in [Attribute::Position(0), Attribute::Position(1)] {
             if found[axis.index()].is_none() {
-                let problem = format!("no property {} among {}", axis.name(), list(&names));
+                let own = |name: &str, is_list: bool| is_list && name == axis.name();
+                if element.properties.iter().any(|p| own(&p.name, p.length.is_some())) {
+                    let problem = format!("the property {} is a list, where a number was expected", axis.name());
+                    return Err(Error::input(self.name, problem, "write one number for each vertex"));
+                }
+                let known: Vec<String> = names.iter().filter(|name| !name.is_empty()).cloned().collect();
+                let problem = format!("no property {} among {}", axis.name(), list(&known));
                 return Err(Error::input(self.name, problem, "name the coordinates x, y and, in space, z"));
             }
         }

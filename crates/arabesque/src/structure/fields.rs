@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn what_does_not_suit_the_place_is_refused() {
         let told = |exemplar: &str, job| run(exemplar, job).unwrap_err().to_string();
-        let cube: String = (0..216).map(|k| format!("{},{},{}\n", k % 6, k / 6 % 6, k / 36)).collect();
+        let cube: String = (0..512).map(|k| format!("{},{},{}\n", k % 8, k / 8 % 8, k / 64)).collect();
         let cube = format!("x,y,z\n{cube}");
         let boxed = Structures::boxed("8x8x8".parse().unwrap());
         let dark = || vec![picture(&[[0; 3]])];

@@ -1,5 +1,6 @@
 //! What is wrong with the files of structures: exemplars, meshes and curves. Each is a clear error, or told and mended; nothing is half written.
 
+#[path = "../common/mod.rs"]
 mod common;
 
 use std::fmt::Write;

@@ -10,7 +10,7 @@ use crate::{
     plane,
     recipe::{Job, Recipe},
     resources::{Files, Resources},
-    ribbon, space, structure, surface,
+    relief, ribbon, space, structure, surface,
 };
 
 /// What one run is to make from what is prepared: everything but the exemplar and how it is analysed.
@@ -74,6 +74,7 @@ impl Recipe {
             Job::Space(job) => Arc::new(space::prepare(job, &mut preparation)?),
             Job::Ribbon(job) => Arc::new(ribbon::prepare(job, &mut preparation)?),
             Job::Structures(job) => Arc::new(structure::prepare(job, &mut preparation)?),
+            Job::Relief(job) => Arc::new(relief::prepare(job, &mut preparation)?),
             Job::Surface(job) => Arc::new(surface::prepare(job, &mut preparation)?),
         };
         let Preparation { exemplar, job, warnings, .. } = preparation;

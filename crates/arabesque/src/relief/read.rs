@@ -1,0 +1,58 @@
+//! Reliefs as inputs: points, meshes, height fields.
+
+use arabesque_core::{Budget, PointSet, Result, Warning};
+use arabesque_io::geometry::{Cloud, read_geometry};
+use arabesque_surface::{MeshIndex, scatter};
+
+use crate::solid::read::raised;
+
+/// Points that a mesh becomes, about.
+const SAMPLES: f64 = 20_000.0;
+
+/// What was read.
+pub(super) struct Found {
+    pub(super) points: PointSet<3>,
+    /// In words.
+    pub(super) kind: &'static str,
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// Reads a relief; `height` is that of a height field.
+pub(super) fn texture(name: &str, bytes: &[u8], height: Option<f64>, budget: &Budget) -> Result<Found> {
+    let _ = height;
+    let mut found = read_geometry(name, bytes, budget)?;
+    let mut warnings = std::mem::take(&mut found.warnings);
+    if found.is_mesh() {
+        let mesh = found.into_mesh(name)?;
+        let index = MeshIndex::new(&mesh, name, budget)?;
+        let spacing = (index.area() / SAMPLES).sqrt();
+        let feet = scatter(&index, spacing, 0, budget)?;
+        let colours = mesh.colours.as_ref().map(|colours| {
+            let of = |at: &arabesque_surface::Closest| {
+                let corners = mesh.triangles[at.triangle].map(|v| colours[v as usize]);
+                std::array::from_fn(|c| (0..3).map(|k| corners[k][c] * at.barycentric[k]).sum())
+            };
+            feet.iter().map(of).collect()
+        });
+        let points = PointSet {
+            positions: feet.iter().map(|f| f.point).collect(),
+            normals: Some(feet.iter().map(|f| f.normal).collect()),
+            colours,
+            ..PointSet::default()
+        };
+        return Ok(Found { points, kind: "of a mesh", warnings });
+    }
+    let points = match found.points {
+        Cloud::Space(points) => points,
+        flat @ Cloud::Plane(_) => raised(flat),
+    };
+    let zero = found.zero_normals;
+    if zero > 0 {
+        warnings.push(Warning::new(
+            format!("{name}: {zero} normals have no length"),
+            "write the points again with all their normals, or without, so that they are estimated",
+        ));
+    }
+    let kind = if points.normals.is_some() { "with normals" } else { "a scan without normals" };
+    Ok(Found { points, kind, warnings })
+}

@@ -27,4 +27,9 @@ pub(crate) trait Canvas {
     fn is_flat(&self) -> bool {
         true
     }
+
+    /// How much larger than the texture the result is.
+    fn scale(&self) -> f64 {
+        1.0
+    }
 }

@@ -1,9 +1,13 @@
 //! Geometry textures from point-set surfaces [Duranleau 2008].
 
 mod canvas;
+mod chart;
 mod fft;
 mod field;
+mod gap;
+mod hole;
 mod mask;
+mod on_mesh;
 mod pairing;
 mod params;
 mod patch;

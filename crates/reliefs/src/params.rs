@@ -34,11 +34,11 @@ params! {
         /// Side of a patch.
         patch "patch": Option<f64> = None, in 1e-9..=1e9, auto "by what repeats in the texture", unit "units of the texture";
         /// Width of the overlap of neighbouring patches, as a share of the patch.
-        overlap "overlap": f64 = 0.3, in 0.05..=0.5;
+        overlap "overlap": f64 = 0.12, in 0.05..=0.5;
         /// Width of the border that is pasted beyond a patch, as a share of the patch.
         border "border": f64 = 0.25, in 0.0..=0.5;
         /// Patches that are worse than the best by at most this share of its difference are chosen from at random.
-        tolerance "tolerance": f64 = 0.2, in 0.0..=10.0;
+        tolerance "tolerance": f64 = 0.1, in 0.0..=10.0;
         /// How far a patch is kept from the one that goes on from its neighbours in the texture, as a share of the patch; 0 allows copies.
         apart "apart": f64 = 0.25, in 0.0..=1.0;
         /// Side of the cells of the distance field.
@@ -64,10 +64,10 @@ params! {
         /// Distance between the points of a pair at most, as a share of the patch.
         reach "reach": f64 = 0.12, in 0.001..=0.5;
         /// How stiff a patch is: 0 bends it exactly onto its pairs.
-        stiffness "stiffness": f64 = 0.02, in 0.0..=10.0;
+        stiffness "stiffness": f64 = 5.0, in 0.0..=1000.0;
         /// Patches that are tried where pairs cannot be made well, before one is laid without being bent.
         tries "tries": usize = 6, in 1..=1000;
         /// Rounds in which points along the seams are spread evenly.
-        relax "relax": usize = 6, in 0..=100;
+        relax "relax": usize = 2, in 0..=100;
     }
 }

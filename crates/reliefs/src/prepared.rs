@@ -6,6 +6,8 @@ use arabesque_core::{Bounds, Budget, Error, PointSet, Progress, Result, StopReas
 
 use crate::{
     canvas::Canvas,
+    hole::HoleCanvas,
+    on_mesh::MeshCanvas,
     params::ReliefParams,
     patch::Notes,
     plane::PlaneCanvas,
@@ -37,7 +39,19 @@ impl Prepared {
     pub fn new(points: &PointSet<3>, bounds: Option<Bounds<3>>, params: &ReliefParams, budget: &Budget) -> Result<Self> {
         params.check()?;
         let budget = budget.stage("preparing the texture");
-        Ok(Self { texture: Arc::new(Texture::new(points, bounds, params, &budget)?), params: params.clone() })
+        let texture = Texture::new(points, (bounds, false), params, &budget)?;
+        Ok(Self { texture: Arc::new(texture), params: params.clone() })
+    }
+
+    /// Understands a scan with a gap that is to be filled: patches are taken from beside it.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`], and when nothing is empty that is wider than the holes of the texture, or when there is no room for patches beside it.
+    pub fn with_gap(points: &PointSet<3>, bounds: Option<Bounds<3>>, params: &ReliefParams, budget: &Budget) -> Result<Self> {
+        params.check()?;
+        let budget = budget.stage("preparing the scan");
+        let texture = Texture::new(points, (bounds, true), params, &budget)?;
+        Ok(Self { texture: Arc::new(texture), params: params.clone() })
     }
 
     /// Number of points of the texture.
@@ -86,17 +100,22 @@ impl Prepared {
     /// When there is no room for a patch, or the budget is used up before there are points.
     pub fn run(&self, request: &ReliefRequest, watch: &mut dyn Watch<PointSet<3>>) -> Result<ReliefOutcome> {
         let budget = request.budget.stage("laying patches");
-        let (canvas, expected): (Box<dyn Canvas + '_>, f64) = match &request.ground {
+        let both = (&*self.texture, &self.params);
+        let canvas: Box<dyn Canvas + '_> = match &request.ground {
             Ground::Plane(size) | Ground::Tile(size) => {
                 let is_tile = matches!(request.ground, Ground::Tile(_));
-                let expected = self.expected(size[0] * size[1]);
-                self.allow(expected, &budget)?;
-                let both = (&*self.texture, &self.params);
-                (Box::new(PlaneCanvas::new(both, *size, is_tile, request.seed, &budget)?), expected)
+                self.allow(self.expected(size[0] * size[1]), &budget)?;
+                Box::new(PlaneCanvas::new(both, *size, is_tile, request.seed, &budget)?)
             }
-            Ground::Mesh(..) | Ground::Hole => unreachable_ground()?,
+            Ground::Hole => {
+                self.allow(2.0 * self.points() as f64, &budget)?;
+                Box::new(HoleCanvas::new(both, request.seed, &budget)?)
+            }
+            Ground::Mesh(mesh, directions, scale) => {
+                self.allow(self.expected(mesh.area() / (scale * scale)), &budget)?;
+                Box::new(MeshCanvas::new(both, (mesh, directions, *scale), request.seed, &budget)?)
+            }
         };
-        let _ = expected;
         self.cover(canvas, &budget, watch)
     }
 
@@ -166,7 +185,7 @@ impl Prepared {
         let budget = if stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
         let texture = &*self.texture;
         let before = samples.clone();
-        let scale = (texture.spacing, texture.radius);
+        let scale = (texture.spacing * canvas.scale(), texture.radius * canvas.scale());
         let merged = match relax(&mut samples, scale, self.params.relax, canvas.period(), &budget) {
             Ok(merged) => merged,
             Err(Error::Limit { .. } | Error::Stopped { .. }) => {
@@ -222,8 +241,4 @@ impl Prepared {
         };
         (points, sources)
     }
-}
-
-fn unreachable_ground<T>() -> Result<T> {
-    Err(Error::Unsupported { what: "this ground".into(), advice: "give an extent".into() })
 }

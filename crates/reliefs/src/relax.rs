@@ -11,7 +11,7 @@ use crate::sample::Sample;
 /// Points nearer than so many spacings are one.
 const CLOSE: f64 = 0.38;
 /// How far points keep others away, in spacings.
-const APART: f64 = 1.05;
+const APART: f64 = 0.7;
 /// Longest step of a round, in spacings.
 const STEP: f64 = 0.25;
 

@@ -12,8 +12,8 @@ pub enum Ground {
     Plane([f64; 2]),
     /// A tile of the plane that repeats without a seam.
     Tile([f64; 2]),
-    /// The shell of a mesh: the plane of the texture lies on it, and runs along the directions.
-    Mesh(Arc<MeshIndex>, Arc<DirectionField>),
+    /// The shell of a mesh: the plane of the texture lies on it, runs along the directions, and is so many times as large.
+    Mesh(Arc<MeshIndex>, Arc<DirectionField>, f64),
     /// The gap in the texture itself.
     Hole,
 }

@@ -5,8 +5,9 @@ use arabesque_surface::{OrientedPoints, estimated_normals, spacing_of};
 use rayon::prelude::*;
 
 use crate::{
+    gap::Gap,
     field::{Field, Lattice},
-    params::{Plane, ReliefParams},
+    params::{Plane, ReliefParams, Search},
     repetition::{Repetition, repetition},
     sample::Sample,
     search::Searcher,
@@ -24,9 +25,11 @@ const CELLS: f64 = 400.0;
 const ROWS: f64 = 16.0;
 /// Cells of a field at most.
 const NODES: usize = 4_000_000;
+/// Places that are enough to choose from beside a gap.
+const ENOUGH: usize = 12;
 /// How far distances are told, in cells.
 const REACH: f64 = 5.0;
-/// Share of a plane's points that have to face up or down by this much for others not to be told of it.
+/// A plane that is narrower than this share of the height is none.
 const COLLAPSED: f64 = 1e-9;
 
 /// How the axes of a file and those of the plane of the texture go together: the plane of all that follows is x, y.
@@ -92,7 +95,10 @@ pub(crate) struct Texture {
     pub(crate) patch: usize,
     pub(crate) overlap: usize,
     pub(crate) border: usize,
+    /// Where patches may be taken from, row by row.
     pub(crate) places: Vec<[u32; 2]>,
+    /// The gap, where there is one to be filled.
+    pub(crate) gap: Option<Gap>,
     pub(crate) warnings: Vec<Warning>,
     _held: Held,
 }
@@ -170,7 +176,7 @@ impl Texture {
     /// Understands a texture. `bounds` is the box of the texture proper, in the axes of the file, where it is known.
     pub(crate) fn new(
         points: &PointSet<3>,
-        bounds: Option<Bounds<3>>,
+        (bounds, has_gap): (Option<Bounds<3>>, bool),
         params: &ReliefParams,
         budget: &Budget,
     ) -> Result<Self> {
@@ -221,10 +227,27 @@ impl Texture {
             overlap: 0,
             border: 0,
             places: Vec::new(),
+            gap: None,
             warnings,
             _held: held,
         };
-        texture.divide(&all, bounds.map(|b| Bounds::around([axes.lie(b.min), axes.lie(b.max)])), params)?;
+        if has_gap {
+            texture.gap = Some(Gap::find(texture.points.positions(), &all, spacing, budget)?);
+        }
+        let given = bounds.map(|b| Bounds::around([axes.lie(b.min), axes.lie(b.max)]));
+        let mut shrink = 1.0;
+        loop {
+            texture.divide(&all, given, params, shrink)?;
+            if texture.beside_gap() {
+                break;
+            }
+            // Beside a gap there may be room for smaller patches only.
+            let side = texture.patch_side();
+            if params.patch.is_some() || 0.85 * side < 6.0 * texture.lattice.cell {
+                return Err(fail(format!("beside the gap there is no room for patches of {side:.4}"), "give a smaller patch, or a larger scan"));
+            }
+            shrink *= 0.85;
+        }
         let (places, nodes) = (texture.places.len(), texture.patch * texture.overlap);
         let wants = match params.search {
             Search::Auto => Searcher::is_faster(&texture.field, places, nodes),
@@ -236,7 +259,7 @@ impl Texture {
     }
 
     /// Settles the patch, the box and the places that patches are taken from.
-    fn divide(&mut self, all: &Bounds<3>, given: Option<Bounds<3>>, params: &ReliefParams) -> Result<()> {
+    fn divide(&mut self, all: &Bounds<3>, given: Option<Bounds<3>>, params: &ReliefParams, shrink: f64) -> Result<()> {
         let cell = self.lattice.cell;
         let short = all.size()[0].min(all.size()[1]);
         let room = given.map_or(short, |b| b.size()[0].min(b.size()[1]));
@@ -247,7 +270,7 @@ impl Texture {
                 return Err(Error::parameter("box", "", format!("a box within the points, which reach over {} and {} along the plane", shown[0], shown[1])));
             }
         }
-        let chosen = params.patch.unwrap_or_else(|| self.usual_patch(room));
+        let chosen = params.patch.unwrap_or_else(|| shrink * self.usual_patch(room));
         let patch = (chosen / cell).round().max(4.0);
         if params.patch.is_some() && chosen > room {
             return Err(Error::parameter("patch", chosen, format!("at most {:.4}, a good part of the box of the texture, which is {room:.4} wide", 0.6 * room)));
@@ -286,6 +309,19 @@ impl Texture {
         Ok(())
     }
 
+    /// Leaves out the places whose patches meet the gap; whether enough are left.
+    fn beside_gap(&mut self) -> bool {
+        let Some(gap) = &self.gap else { return true };
+        let side = self.patch_side();
+        let is_whole = |place: &[u32; 2]| {
+            let corner = self.corner(*place);
+            !gap.meets([corner[0], corner[1]], [corner[0] + side, corner[1] + side])
+        };
+        let places: Vec<_> = self.places.iter().filter(|p| is_whole(p)).copied().collect();
+        self.places = places;
+        self.places.len() >= ENOUGH
+    }
+
     fn count_in(&self, bounds: &Bounds<3>) -> usize {
         let mut count = 0;
         self.points.inside(bounds, |_| count += 1);
@@ -294,16 +330,19 @@ impl Texture {
 
     /// The patch for what repeats, within reason.
     fn usual_patch(&mut self, room: f64) -> f64 {
-        let (least, most) = (8.0 * self.lattice.cell, 0.42 * room);
+        let (least, most) = (8.0 * self.lattice.cell, 0.45 * room);
         let wanted = match self.repetition.length {
             Some(length) => 1.35 * length * self.lattice.cell,
             None => {
-                let message = "the texture does not repeat itself: patches are a third of it";
-                self.warnings.push(Warning::new(message, "give the side of a patch with --patch, or a larger texture"));
-                0.3 * room
+                let message = "the texture does not repeat itself: patches are a good third of it";
+                let warning = Warning::new(message, "give the side of a patch with --patch, or a larger texture");
+                if !self.warnings.contains(&warning) {
+                    self.warnings.push(warning);
+                }
+                0.4 * room
             }
         };
-        wanted.max(0.22 * room).min(most).max(least)
+        wanted.max(0.4 * room).min(most).max(least)
     }
 
     /// Side of a patch.
@@ -352,5 +391,3 @@ fn lattice(all: &Bounds<3>, spacing: f64, params: &ReliefParams) -> Lattice {
     let low = all.centre()[2] - 0.5 * (rows - 1.0) * step;
     Lattice { cell, heights: (0..rows as usize).map(|k| low + k as f64 * step).collect(), reach: REACH * cell.max(0.5 * step) }
 }
-
-use crate::params::Search;

@@ -1,12 +1,14 @@
 //! Reliefs as files.
 
-use arabesque_core::{PointSet, Result, StopReason, Warning};
+use arabesque_core::{Error, PointSet, Result, StopReason, Warning};
 use arabesque_io::render::Item;
-use arabesque_reliefs::{Axes, ReliefOutcome, Statistics};
+use arabesque_reliefs::{ReliefOutcome, Statistics};
 use arabesque_surface::Reconstruction;
 
 use crate::{
     artwork::{Encoded, Geometry, Made, ReliefSummary, Sheet, Summary},
+    recipe::Format,
+    relief::heights::{Grid, encode},
     solid::write::{Said, encode_mesh, encode_points},
 };
 
@@ -14,9 +16,8 @@ use crate::{
 #[derive(Debug)]
 pub(super) struct ReliefMade {
     outcome: ReliefOutcome,
-    axes: Axes,
-    /// Whether a PNG is a height field.
-    as_heights: bool,
+    /// How a PNG is a height field, if it is one.
+    grid: Option<Grid>,
 }
 
 /// A relief as a mesh.
@@ -42,12 +43,12 @@ fn summary(statistics: &Statistics) -> ReliefSummary {
 }
 
 impl ReliefMade {
-    pub(super) fn new(outcome: ReliefOutcome, axes: Axes, as_heights: bool) -> Self {
-        Self { outcome, axes, as_heights }
+    pub(super) fn new(outcome: ReliefOutcome, grid: Option<Grid>) -> Self {
+        Self { outcome, grid }
     }
 
     /// What a run has so far.
-    pub(super) fn unfinished(points: PointSet<3>, axes: Axes, as_heights: bool) -> Self {
+    pub(super) fn unfinished(points: PointSet<3>, grid: Option<Grid>) -> Self {
         let outcome = ReliefOutcome {
             points,
             sources: Vec::new(),
@@ -55,14 +56,21 @@ impl ReliefMade {
             warnings: Vec::new(),
             stopped: StopReason::Stopped,
         };
-        Self { outcome, axes, as_heights }
+        Self { outcome, grid }
     }
 }
 
 impl Made for ReliefMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
         let ReliefOutcome { points, warnings, stopped, .. } = &self.outcome;
-        let _ = (self.axes, self.as_heights);
+        if let (Some(grid), Format::Png) = (&self.grid, sheet.format) {
+            if sheet.output.view.is_some() {
+                let what = "a view of a height field".into();
+                return Err(Error::Unsupported { what, advice: "leave the view or the height field out".into() });
+            }
+            let bytes = encode(points, grid, sheet.recipe, sheet.budget)?;
+            return Ok(Encoded { bytes, warnings: Vec::new() });
+        }
         encode_points(points, Item::Points(points), sheet, Said { warnings, stopped: *stopped })
     }
 

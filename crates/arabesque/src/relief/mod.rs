@@ -1,5 +1,6 @@
 //! Reliefs: more of a patch of surface detail, in the plane, on meshes, and in gaps of scans.
 
+mod heights;
 mod made;
 mod read;
 
@@ -7,14 +8,17 @@ use std::sync::Arc;
 
 use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Unobserved, Vector, Warning, Watch};
 use arabesque_reliefs::{Ground, Prepared as Engine, ReliefOutcome, ReliefRequest};
-use arabesque_surface::reconstruct;
+use arabesque_surface::{DirectionField, MeshReport, reconstruct};
 
 use crate::{
     artwork::Artwork,
     method::{Preparation, Ready, RunContext, Show},
     plane::in_exemplar,
     recipe::{Job, Relief, Size},
+    solid::read::indexed_mesh,
+    structure::directions,
 };
+use heights::Grid;
 use made::{ReliefMade, ReliefMesh};
 
 /// A relief, understood.
@@ -23,6 +27,8 @@ pub(crate) struct Texture {
     engine: Engine,
     /// What was read, in words.
     kind: &'static str,
+    /// Side of a pixel, of a height field.
+    pixel: Option<f64>,
 }
 
 /// Reads a relief to continue it.
@@ -38,15 +44,12 @@ pub(crate) fn prepare(job: &Relief, preparation: &mut Preparation<'_>) -> Result
     // Across the plane the box is as high as the points.
     let all = found.points.bounds();
     let proper = job.proper()?;
-    let engine = Engine::new(
-        &found.points,
-        proper.map(|b| proper_box(&b, &all, &found.points, &params)),
-        &params,
-        preparation.files.budget(),
-    )
+    let bounds = proper.map(|b| proper_box(&b, &all, &found.points, &params));
+    let new = if job.fill_hole { Engine::with_gap } else { Engine::new };
+    let engine = new(&found.points, bounds, &params, preparation.files.budget())
     .map_err(|error| in_exemplar(renamed(error, name), name))?;
     preparation.warnings.extend(engine.warnings().iter().cloned());
-    Ok(Texture { engine, kind: found.kind })
+    Ok(Texture { engine, kind: found.kind, pixel: found.pixel })
 }
 
 /// The box of the relief proper in the axes of the file: `b` along the plane, all of the points across it.
@@ -97,19 +100,24 @@ impl Ready for Texture {
         let mut request = ReliefRequest::new(ground);
         (request.seed, request.budget) = (context.seed, context.budget().clone());
         let surface = if job.mesh { Some(job.surface_params()?) } else { None };
-        let as_heights = job.height_field;
         let engine = &self.engine;
-        let axes = engine.axes();
+        let grid = job.height_field.then(|| Grid {
+            axes: engine.axes(),
+            extent: job.extent.as_ref().map(|size| size.sides),
+            is_tile: job.tile,
+            pixel: self.pixel.unwrap_or(0.5 * engine.spacing()),
+            spacing: engine.spacing(),
+        });
         context.job = Job::Relief(job);
         let origin = context.origin();
-        let make = |points: PointSet<3>| ReliefMade::unfinished(points, axes, as_heights);
+        let make = |points: PointSet<3>| ReliefMade::unfinished(points, grid);
         let outcome = engine.run(&request, &mut Show { watch, origin: &origin, make })?;
         let told: Vec<Warning> = std::mem::take(&mut context.warnings);
         // What the engine says again was said when it was prepared.
         let own = outcome.warnings.iter().filter(|w| !told.contains(w)).cloned().collect::<Vec<_>>();
         let outcome = ReliefOutcome { warnings: told.into_iter().chain(own).collect(), ..outcome };
         let Some(params) = surface else {
-            return Ok(Artwork::new(origin, ReliefMade::new(outcome, axes, as_heights)));
+            return Ok(Artwork::new(origin, ReliefMade::new(outcome, grid)));
         };
         // The surface of the best so far has an account of its own, as its file has.
         let budget = context.budget();
@@ -127,9 +135,16 @@ impl Ready for Texture {
 impl Texture {
     /// Where the relief goes; files are embedded.
     fn ground(&self, job: &mut Relief, context: &mut RunContext<'_>) -> Result<Ground> {
-        let _ = &context;
-        let size = job.extent.as_ref().map(sides).transpose()?;
-        match size {
+        if let Some(input) = &mut job.on {
+            let (index, warnings) = indexed_mesh(input, context.files)?;
+            context.warnings.extend(warnings);
+            let report = MeshReport::new(&index, context.budget())?;
+            context.warnings.extend(report.surface_of(input.name())?);
+            let field = DirectionField::new(&index, &directions(&mut job.direction, context)?, context.budget())?;
+            context.warnings.extend(field.warnings().iter().cloned());
+            return Ok(Ground::Mesh(Arc::new(index), Arc::new(field), job.scale.unwrap_or(1.0)));
+        }
+        match job.extent.as_ref().map(sides).transpose()? {
             Some(size) if job.tile => Ok(Ground::Tile(size)),
             Some(size) => Ok(Ground::Plane(size)),
             None => Ok(Ground::Hole),

@@ -19,6 +19,7 @@ use crate::{
     surface::SurfaceMade,
 };
 use made::{PlanePoints, SpacePoints};
+pub(crate) use place::directions;
 
 /// A structure, analysed.
 #[derive(Debug)]

@@ -151,7 +151,7 @@ fn factor<const D: usize>(job: &Structures) -> Result<ScalarField<D>> {
 }
 
 /// Where the pattern runs on a mesh; strokes are embedded.
-fn directions(source: &mut Option<Direction>, context: &mut RunContext<'_>) -> Result<Directions> {
+pub(crate) fn directions(source: &mut Option<Direction>, context: &mut RunContext<'_>) -> Result<Directions> {
     Ok(match source {
         None => Directions::Curvature(Bend::Least),
         Some(Direction::Bend(bend)) => Directions::Curvature(*bend),

@@ -88,3 +88,49 @@ fn difference(planes: &[Vec<f32>], (width, height): (usize, usize), [x, y]: [i64
     }
     sum / ((to - from) * (height - y)) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use arabesque_core::{Stage, Stream, Vector};
+    use arabesque_surface::OrientedPoints;
+
+    use super::*;
+    use crate::field::Lattice;
+
+    fn of(height: impl Fn(f64, f64) -> f64) -> Repetition {
+        let points: Vec<_> = (0..10_000)
+            .map(|k| {
+                let (x, y) = (0.1 * f64::from(k % 100), 0.1 * f64::from(k / 100));
+                Vector([x, y, height(x, y)])
+            })
+            .collect();
+        let budget = Budget::default();
+        let points = OrientedPoints::new(points, vec![Vector([0.0, 0.0, 1.0]); 10_000], 0.25, &budget).unwrap();
+        let lattice = Lattice { cell: 0.1, heights: vec![-0.4, -0.1, 0.1, 0.4], reach: 0.6 };
+        repetition(&Field::new(&points, &lattice, [0.0, 0.0], (100, 100), &budget).unwrap(), &budget).unwrap()
+    }
+
+    #[test]
+    fn a_lattice_of_bumps_repeats_after_its_period() {
+        let found = of(|x, y| 0.5 * (TAU * x / 2.0).sin() * (TAU * y / 2.0).cos());
+        // The nearest bump of the same kind is half a period away along both axes.
+        assert!((found.length.unwrap() - 14.1).abs() < 2.5 && found.strength > 0.7, "{found:?}");
+    }
+
+    #[test]
+    fn waves_repeat_after_their_length() {
+        let found = of(|x, _| 0.5 * (TAU * x / 1.6).sin());
+        assert!((found.length.unwrap() - 16.0).abs() < 3.0, "{found:?}");
+    }
+
+    #[test]
+    fn noise_does_not_repeat() {
+        let mut random = Stream::new(4, Stage::TEST, 0);
+        let waves: Vec<[f64; 3]> =
+            (0..40).map(|_| [random.range(-2.0, 2.0), random.range(-2.0, 2.0), random.range(0.0, TAU)]).collect();
+        let found = of(|x, y| waves.iter().map(|[a, b, c]| 0.08 * (a * x + b * y + c).cos()).sum());
+        assert!(found.length.is_none() || found.strength < 0.6, "{found:?}");
+    }
+}

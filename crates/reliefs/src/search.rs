@@ -167,3 +167,75 @@ pub(crate) fn best(
     candidates.truncate(within.max(least));
     Ok(candidates)
 }
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Stage, Stream, Vector};
+    use arabesque_surface::OrientedPoints;
+
+    use super::*;
+    use crate::field::Lattice;
+
+    /// The field of a wavy sheet, and that of a part of it.
+    fn fields() -> (Field, Overlap, Vec<[u32; 2]>) {
+        let mut random = Stream::new(2, Stage::TEST, 0);
+        let height = |x: f64, y: f64| 0.4 * (3.0 * x).sin() + 0.3 * (2.0 * y + x * x).cos();
+        let points: Vec<_> = (0..3000)
+            .map(|_| {
+                let (x, y) = (random.range(0.0, 4.0), random.range(0.0, 3.0));
+                Vector([x, y, height(x, y)])
+            })
+            .collect();
+        let normals = vec![Vector([0.0, 0.0, 1.0]); 3000];
+        let budget = Budget::default();
+        let points = OrientedPoints::new(points, normals, 0.25, &budget).unwrap();
+        let lattice = Lattice { cell: 0.1, heights: vec![-0.5, 0.0, 0.5], reach: 0.6 };
+        let field = Field::new(&points, &lattice, [0.0, 0.0], (40, 30), &budget).unwrap();
+        // An overlap in the shape of an L.
+        let nodes = (0..100).map(|k| [k % 10, k / 10]).filter(|[x, y]| *x < 3 || *y < 3).collect();
+        let moved: Vec<_> = points.positions().iter().map(|&p| p - Vector([1.23, 0.98, 0.02])).collect();
+        let moved = OrientedPoints::new(moved, points.normals().to_vec(), 0.25, &budget).unwrap();
+        let overlap = Overlap::new(&moved, &lattice, nodes, &budget).unwrap();
+        let places = (0..20).flat_map(|y| (0..30).map(move |x| [x, y])).filter(|[x, y]| (x + y) % 7 != 3).collect();
+        (field, overlap, places)
+    }
+
+    #[test]
+    fn transforms_find_exactly_what_an_exhaustive_search_finds() {
+        let (field, overlap, places) = fields();
+        let budget = Budget::default();
+        let searcher = Searcher::new(&field, &budget).unwrap();
+        for (tolerance, floor, least) in [(0.2, 0.0, 1), (1.0, 0.0, 9), (0.0, 3.0, 4)] {
+            let how = |search, searcher| {
+                best(&field, searcher, &overlap, &places, (tolerance, floor, least), (search, &budget)).unwrap()
+            };
+            let by_transforms = how(Search::Fft, Some(&searcher));
+            assert_eq!(by_transforms, how(Search::Exhaustive, None));
+            let mut all: Vec<_> =
+                places.iter().map(|&place| Candidate { place, difference: exact(&field, &overlap, place) }).collect();
+            all.sort_by(|a, b| a.difference.total_cmp(&b.difference).then(a.place.cmp(&b.place)));
+            assert_eq!(by_transforms[..], all[..by_transforms.len()]);
+            let most = (1.0 + tolerance) * all[0].difference.max(floor);
+            assert!(by_transforms.len() >= least && all[by_transforms.len()].difference > most);
+        }
+    }
+
+    #[test]
+    fn differences_by_transforms_are_those_of_the_sum() {
+        let (field, overlap, places) = fields();
+        let budget = Budget::default();
+        let about = Searcher::new(&field, &budget).unwrap().differences(&overlap, &places, &budget).unwrap();
+        let rows = in_rows(&field, &overlap, &places, &budget).unwrap();
+        for ((place, d), r) in places.iter().zip(about).zip(rows) {
+            let own = exact(&field, &overlap, *place);
+            assert!((d - own).abs() < 1e-8 * (1.0 + own) && (r - own).abs() < 1e-3 * (1.0 + own), "{place:?}: {d} {r} {own}");
+        }
+    }
+
+    #[test]
+    fn the_place_that_a_part_is_from_is_the_best() {
+        let (field, overlap, places) = fields();
+        let found = best(&field, None, &overlap, &places, (0.0, 0.0, 1), (Search::Exhaustive, &Budget::default())).unwrap();
+        assert!(found[0].place == [12, 10] || found[0].place == [12, 9] || found[0].place == [13, 10], "{:?}", found[0]);
+    }
+}

@@ -93,7 +93,7 @@ pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
     Carrier, Cuboid, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input,
-    Job, Method, OutputOptions, Parameters, Reading, Recipe, Redo, Region, Relief, Ribbon, Size, Space, Structures, Surface,
-    Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
+    Job, Method, OutputOptions, Parameters, Reading, Recipe, Redo, Region, Relief, Ribbon, Size, Space, Structures,
+    Surface, Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

@@ -9,8 +9,9 @@ use crate::{
     method::{Preparation, Ready, RunContext},
     plane,
     recipe::{Job, Recipe},
+    relief,
     resources::{Files, Resources},
-    relief, ribbon, space, structure, surface,
+    ribbon, space, structure, surface,
 };
 
 /// What one run is to make from what is prepared: everything but the exemplar and how it is analysed.

@@ -307,7 +307,8 @@ mod tests {
         let samples = Samples::new(&mesh, 0.08, &budget).unwrap();
         let middle = Vector([1.0, 0.0, 2.0]);
         let far = |f: &Closest| (f.point - middle).norm();
-        let start = (0..samples.feet.len()).min_by(|&a, &b| far(&samples.feet[a]).total_cmp(&far(&samples.feet[b]))).unwrap();
+        let start =
+            (0..samples.feet.len()).min_by(|&a, &b| far(&samples.feet[a]).total_cmp(&far(&samples.feet[b]))).unwrap();
         let origin = samples.feet[start].point;
         let frame = SurfaceFrame { tangent: Vector([0.0, 0.0, 1.0]), normal: samples.feet[start].normal };
         let chart = Chart::new((&samples, &mesh), start as u32, &frame, 0.9, &budget).unwrap();

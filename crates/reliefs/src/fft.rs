@@ -124,6 +124,11 @@ mod tests {
             assert!((got.re - sum.re).abs() < 1e-9 && (got.im - sum.im).abs() < 1e-9, "{got:?} {sum:?}");
         }
         fft.transform(&mut there, true);
-        assert!(there.iter().zip(&grid).all(|(a, b)| (a.re / 32.0 - b.re).abs() < 1e-12 && (a.im / 32.0 - b.im).abs() < 1e-12));
+        assert!(
+            there
+                .iter()
+                .zip(&grid)
+                .all(|(a, b)| (a.re / 32.0 - b.re).abs() < 1e-12 && (a.im / 32.0 - b.im).abs() < 1e-12)
+        );
     }
 }

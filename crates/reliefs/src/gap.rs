@@ -54,7 +54,11 @@ impl Gap {
         let usual = if tops.len() < 10 { 1.5 } else { usual.max(1.5) };
         let widest = tops.last().copied().unwrap_or(0.0);
         if widest < WIDER * usual + 1.0 {
-            let problem = format!("no gap: the widest empty place is {:.4} wide, and {:.4} is usual", 2.0 * widest * cell, 2.0 * usual * cell);
+            let problem = format!(
+                "no gap: the widest empty place is {:.4} wide, and {:.4} is usual",
+                2.0 * widest * cell,
+                2.0 * usual * cell
+            );
             return Err(Error::input("the texture", problem, "leave fill_hole out, or give a scan with a gap"));
         }
         let mut gap = Self {

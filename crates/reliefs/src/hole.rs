@@ -32,11 +32,7 @@ pub(crate) struct HoleCanvas<'a> {
 }
 
 impl<'a> HoleCanvas<'a> {
-    pub(crate) fn new(
-        (texture, params): (&'a Texture, &'a ReliefParams),
-        seed: u64,
-        budget: &Budget,
-    ) -> Result<Self> {
+    pub(crate) fn new((texture, params): (&'a Texture, &'a ReliefParams), seed: u64, budget: &Budget) -> Result<Self> {
         let Some(gap) = &texture.gap else {
             return Err(Error::parameter("request", "a gap to be filled", "a texture that was prepared with its gap"));
         };
@@ -77,7 +73,8 @@ impl<'a> HoleCanvas<'a> {
             .filter(near)
             .map(|(c, place)| [0, 1].map(|k| f64::from(place[k]) + (corner[k] - c[k]) / cell))
             .collect();
-        let more = (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius;
+        let more =
+            (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius + 2.0 * texture.pieces.reach;
         let origin = Vector([corner[0], corner[1], 0.0]);
         let far = Vector([more, more, f64::MAX]);
         let bounds = Bounds::new(origin - far, origin + far + Vector([side, side, 0.0]));
@@ -90,7 +87,7 @@ impl<'a> HoleCanvas<'a> {
         self.store.remove(&bounds, |s| {
             let p = s.at - origin;
             s.is_at_seam |= site.mask.is_at_seam(p, seam);
-            site.mask.is_pasted(p)
+            site.mask.replaces(&Sample { at: p, ..*s })
         });
         laid.samples.iter().for_each(|s| self.store.insert(Sample { at: s.at + origin, ..*s }));
         self.laid.push((corner, laid.place));

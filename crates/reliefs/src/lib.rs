@@ -14,6 +14,7 @@
 //! | pairs of points | `pairing` | [Duranleau 2008 §5.2, eqs 1 to 3] |
 //! | thin-plate spline, normals, folds | `spline`, `patch` | [Duranleau 2008 §5.2] |
 //! | blending, replacement | `patch`, `mask` | [Duranleau 2008 §5.3, §4 steps 5 and 6] |
+//! | loose pieces, laid whole | `pieces` | |
 //! | the result while it grows | `store` | [Duranleau 2008 §4] |
 //! | rows of patches; tiles | `plane` | [Duranleau 2008 fig. 1] |
 //! | gaps of scans | `gap`, `hole` | |
@@ -61,6 +62,7 @@ mod on_mesh;
 mod pairing;
 mod params;
 mod patch;
+mod pieces;
 mod plane;
 mod prepared;
 mod relax;

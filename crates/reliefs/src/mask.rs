@@ -5,6 +5,8 @@
 
 use arabesque_core::Vector;
 
+use crate::sample::Sample;
+
 /// Cells around the place of a patch, whose corner is the origin.
 #[derive(Clone, Debug)]
 pub(crate) struct Mask {
@@ -81,12 +83,22 @@ impl Mask {
         self.under(p).is_some_and(|k| self.kinds[k] != Kind::Kept)
     }
 
+    /// Whether a loose piece with its middle here is the patch's.
+    pub(crate) fn takes(&self, middle: Vector<3>) -> bool {
+        self.is_pasted(middle) && self.share(middle) < 0.5
+    }
+
+    /// Whether a point of the result goes when the patch is pasted: loose pieces as a whole.
+    pub(crate) fn replaces(&self, sample: &Sample) -> bool {
+        if sample.piece == 0 { self.is_pasted(sample.at) } else { self.takes(sample.middle()) }
+    }
+
     /// Whether the result is there and is replaced here.
     pub(crate) fn is_overlap(&self, p: Vector<3>) -> bool {
         self.under(p).is_some_and(|k| self.kinds[k] == Kind::Overlap)
     }
 
-    /// Whether there is nothing within `cells` of here.
+    /// Whether nothing is here yet.
     pub(crate) fn is_free(&self, p: Vector<3>) -> bool {
         self.under(p).is_some_and(|k| self.kinds[k] == Kind::Free)
     }
@@ -106,8 +118,9 @@ impl Mask {
     /// Whether anything is left to fill in the patch itself.
     pub(crate) fn has_room(&self) -> bool {
         let inner = self.margin..self.side - self.margin;
-        (0..self.kinds.len())
-            .any(|k| self.kinds[k] == Kind::Free && inner.contains(&(k % self.side)) && inner.contains(&(k / self.side)))
+        (0..self.kinds.len()).any(|k| {
+            self.kinds[k] == Kind::Free && inner.contains(&(k % self.side)) && inner.contains(&(k / self.side))
+        })
     }
 
     /// The overlapped cells, as steps from the corner of the patch.
@@ -171,7 +184,9 @@ mod tests {
     #[test]
     fn what_is_beside_the_patch_is_kept_and_what_is_in_it_replaced() {
         let mask = left();
-        assert!(!mask.is_pasted(at(-0.5)) && mask.is_overlap(at(0.5)) && mask.is_free(at(5.0)) && mask.is_pasted(at(9.5)));
+        assert!(
+            !mask.is_pasted(at(-0.5)) && mask.is_overlap(at(0.5)) && mask.is_free(at(5.0)) && mask.is_pasted(at(9.5))
+        );
         assert!(!mask.is_pasted(at(11.0)), "beyond the border");
         assert_eq!(mask.overlapped().len(), 24);
         assert!(mask.has_room() && mask.has_overlap());

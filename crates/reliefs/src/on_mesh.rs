@@ -132,7 +132,8 @@ impl Canvas for MeshCanvas<'_> {
         let texture = self.texture;
         let (side, cell, scale) = (texture.patch_side(), texture.lattice.cell, self.scale);
         let half = 0.5 * side;
-        let more = (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius;
+        let more =
+            (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius + 2.0 * texture.pieces.reach;
         let foot = &self.samples.feet[start as usize];
         let frame = self.directions.frame(self.mesh, foot);
         let chart = Chart::new((&self.samples, self.mesh), start, &frame, (half + more) * scale, &self.budget)?;
@@ -160,7 +161,7 @@ impl Canvas for MeshCanvas<'_> {
         self.store.remove(&bounds, |s| {
             let Some(flat) = local(s) else { return false };
             s.is_at_seam |= site.mask.has_overlap() && site.mask.is_at_seam(flat.at, seam);
-            site.mask.is_pasted(flat.at)
+            site.mask.replaces(&flat)
         });
         self.budget.spend(laid.samples.len() as u64 * 6000)?;
         for s in &laid.samples {

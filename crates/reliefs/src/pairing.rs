@@ -54,7 +54,8 @@ impl Pairing<'_> {
             }
             let way = (sources.positions()[source] - target.at) * (1.0 / self.reach);
             let length = d2.sqrt() / self.reach;
-            let cost = params.distance * length + 0.5 * params.normals * (1.0 - facing) + params.variation * differs * differs;
+            let cost =
+                params.distance * length + 0.5 * params.normals * (1.0 - facing) + params.variation * differs * differs;
             choices.push(Choice { source, way, length, cost });
         });
         choices.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.source.cmp(&b.source)));
@@ -104,7 +105,8 @@ impl Pairing<'_> {
         let along = if choice.length > 1e-9 { choice.way.dot(way) / choice.length } else { 1.0 };
         // Where those around lead nowhere, no direction is wrong.
         let certain = way.norm();
-        self.params.length * (choice.length - length).abs() + 0.5 * self.params.direction * (certain - along)* choice.length.min(1.0)
+        self.params.length * (choice.length - length).abs()
+            + 0.5 * self.params.direction * (certain - along) * choice.length.min(1.0)
     }
 }
 
@@ -146,14 +148,7 @@ mod tests {
     use super::*;
 
     fn sample(at: [f64; 3]) -> Sample {
-        Sample {
-            at: Vector(at),
-            normal: Vector([0.0, 0.0, 1.0]),
-            colour: [0.0; 3],
-            variation: 0.0,
-            source: 0,
-            is_at_seam: false,
-        }
+        Sample { at: Vector(at), normal: Vector([0.0, 0.0, 1.0]), ..Sample::default() }
     }
 
     fn bumps(shift: f64) -> (OrientedPoints, Vec<f32>) {

@@ -28,6 +28,8 @@ const WORST: f64 = 0.15;
 const TORN: f64 = 0.01;
 /// Mean difference at a node, as a share of the most there can be, that counts as none.
 const FLOOR: f64 = 2e-3;
+/// Share of a loose piece that may lie within others.
+const PASSING: f64 = 0.02;
 /// Share of a target's surface that bends at most, from which its cluster is split.
 const FLAT: f64 = 0.06;
 /// How far pairs listen to one another, as a share of the patch.
@@ -115,7 +117,7 @@ impl Site<'_> {
         let nodes = self.mask.overlapped();
         if nodes.is_empty() || self.samples.is_empty() {
             let place = self.texture.places[random.below(self.texture.places.len())];
-            let samples = self.source(place).into_iter().filter(|s| self.mask.is_pasted(s.at)).collect();
+            let samples = self.source(place).into_iter().filter(|s| self.mask.replaces(s)).collect();
             return Ok(Some(Laid { samples, place, notes: Notes { patches: 1, ..Notes::default() } }));
         }
         let around = self.around()?;
@@ -157,7 +159,11 @@ impl Site<'_> {
             nearest.map(|i| self.samples[i as usize])
         };
         let targets = some.iter().filter_map(target).collect();
-        Ok(Around { points: OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?, targets, overlapped })
+        Ok(Around {
+            points: OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?,
+            targets,
+            overlapped,
+        })
     }
 
     /// Places to try, in the order in which they are tried: one of the best at random, then the others from the best on.
@@ -211,7 +217,14 @@ impl Site<'_> {
         let from = Vector([corner[0] - more, corner[1] - more, low]);
         let to = Vector([corner[0] + side + more, corner[1] + side + more, high]);
         let mut numbers = Vec::new();
-        texture.points.inside(&Bounds::new(from, to), |i| numbers.push(i));
+        let bounds = Bounds::new(from, to);
+        texture
+            .points
+            .inside(&bounds, |i| numbers.extend((texture.pieces.of.get(i).is_none_or(|p| *p == 0)).then_some(i)));
+        // Loose pieces come whole.
+        let middle = |[x, y]: [f64; 2]| Vector([x, y, 0.5 * (low + high)]);
+        let whole = texture.pieces.members.iter().filter(|p| !p.is_cut && bounds.contains(middle(p.middle)));
+        whole.for_each(|p| numbers.extend(p.points.iter().map(|&i| i as usize)));
         numbers.sort_unstable();
         let moved = |i: usize| {
             let sample = texture.sample(i);
@@ -230,6 +243,7 @@ impl Site<'_> {
             source
         });
         let samples = self.blended(bent, around, &mut notes)?;
+        let samples = self.apart(samples, &mut notes)?;
         notes.cracks = self.cracks(&samples, around)?;
         Ok(Laid { samples, place, notes })
     }
@@ -249,12 +263,19 @@ impl Site<'_> {
         pairs.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         for _ in 0..=MENDINGS {
             let stiffness = self.params.stiffness * self.texture.patch_side();
-            let Some(spline) = Spline::new(&self.with_anchors(&pairs), stiffness, self.budget)? else { return Ok(None) };
+            let Some(spline) = Spline::new(&self.with_anchors(&pairs), stiffness, self.budget)? else {
+                return Ok(None);
+            };
             self.budget.spend(spline.work() * source.len() as u64)?;
             let bend = |s: &Sample| {
                 let (at, columns) = spline.apply(s.at);
                 let volume = determinant(columns);
                 let is_sound = (FOLDED.0..FOLDED.1).contains(&volume) || !self.mask.is_pasted(at);
+                if s.piece > 0 {
+                    // A loose piece is moved, not bent.
+                    let shift = spline.apply(s.middle()).0 - s.middle();
+                    return (Sample { at: s.at + Vector([shift[0], shift[1], 0.0]), ..*s }, is_sound);
+                }
                 (Sample { at, normal: carried(s.normal, columns), ..*s }, is_sound)
             };
             let bent: Vec<(Sample, bool)> = source.par_iter().with_min_len(256).map(bend).collect();
@@ -307,6 +328,9 @@ impl Site<'_> {
     fn blended(&self, bent: Vec<Sample>, around: &Around, notes: &mut Notes) -> Result<Vec<Sample>> {
         let reach = (0.6 * self.reach()).max(3.0 * self.texture.spacing);
         let blend = |s: &Sample| -> Result<Option<(Sample, u8)>> {
+            if s.piece > 0 {
+                return Ok(self.mask.takes(s.middle()).then_some((*s, 0)));
+            }
             // What lies beside may be moved in.
             let is_at_seam = self.mask.is_at_seam(s.at, 1.6 * self.texture.spacing);
             if !self.mask.is_pasted(s.at) && !is_at_seam {
@@ -334,7 +358,7 @@ impl Site<'_> {
         };
         let blended: Result<Vec<Option<(Sample, u8)>>> = bent.par_iter().with_min_len(64).map(blend).collect();
         let mut samples = Vec::with_capacity(bent.len());
-        for (sample, how) in blended?.into_iter().flatten().filter(|(s, _)| self.mask.is_pasted(s.at)) {
+        for (sample, how) in blended?.into_iter().flatten().filter(|(s, _)| self.mask.replaces(s)) {
             match how {
                 1 => notes.by_ray += 1,
                 2 => notes.by_projection += 1,
@@ -346,6 +370,32 @@ impl Site<'_> {
         Ok(samples)
     }
 
+    /// Leaves out loose pieces that would pass through those that stay.
+    fn apart(&self, samples: Vec<Sample>, notes: &mut Notes) -> Result<Vec<Sample>> {
+        if self.texture.pieces.is_empty() {
+            return Ok(samples);
+        }
+        let staying: Vec<&Sample> = self.samples.iter().filter(|s| s.piece > 0 && !self.mask.replaces(s)).collect();
+        let positions = staying.iter().map(|s| s.at).collect();
+        let normals = staying.iter().map(|s| s.normal).collect();
+        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
+        self.budget.spend(samples.len() as u64 * 800)?;
+        let spacing = self.texture.spacing;
+        let is_inside = |s: &Sample| {
+            let near = points.nearest(s.at, 4.0 * spacing, |_| true);
+            near.is_some_and(|(j, _)| (s.at - points.positions()[j]).dot(points.normals()[j]) < -0.4 * spacing)
+        };
+        let mut inside = std::collections::BTreeMap::<u32, (usize, usize)>::new();
+        for s in samples.iter().filter(|s| s.piece > 0) {
+            let count = inside.entry(s.piece).or_default();
+            *count = (count.0 + usize::from(is_inside(s)), count.1 + 1);
+        }
+        let collides = |s: &Sample| inside.get(&s.piece).is_some_and(|(n, all)| *n as f64 > PASSING * *all as f64);
+        let (out, kept): (Vec<Sample>, Vec<Sample>) = samples.into_iter().partition(collides);
+        notes.unmatched += out.len();
+        Ok(kept)
+    }
+
     /// Points of the result near what is kept that nothing in the patch goes on from.
     fn cracks(&self, samples: &[Sample], around: &Around) -> Result<usize> {
         let positions = samples.iter().map(|s| s.at).collect();
@@ -355,7 +405,8 @@ impl Site<'_> {
         self.budget.spend(around.overlapped.len() as u64 * 400)?;
         let is_lost = |i: &&u32| {
             let sample = &self.samples[**i as usize];
-            self.mask.share(sample.at) > 0.6
+            sample.piece == 0
+                && self.mask.share(sample.at) > 0.6
                 && points.nearest(sample.at, reach, |j| points.normals()[j].dot(sample.normal) > 0.3).is_none()
         };
         Ok(around.overlapped.par_iter().with_min_len(128).filter(is_lost).count())

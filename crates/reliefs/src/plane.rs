@@ -70,7 +70,13 @@ impl<'a> PlaneCanvas<'a> {
         let least = patch + step;
         if is_tile && size.iter().any(|s| *s < least) {
             let shown = format!("{}x{}", size[0], size[1]);
-            return Err(Error::parameter("extent", shown, format!("a tile of at least {least:.4} each way, or a smaller patch: two patches have to lie side by side")));
+            return Err(Error::parameter(
+                "extent",
+                shown,
+                format!(
+                    "a tile of at least {least:.4} each way, or a smaller patch: two patches have to lie side by side"
+                ),
+            ));
         }
         let rows = size.map(row);
         let count = rows[0].count * rows[1].count;
@@ -138,9 +144,9 @@ impl Canvas for PlaneCanvas<'_> {
         let is_filled = |x: f64, y: f64| {
             let (x, y) = (x + corner[0], y + corner[1]);
             let eps = 1e-6 * cell;
-            around.iter().any(|([px, py], _)| {
-                x > px - eps && x < px + side + eps && y > py - eps && y < py + side + eps
-            })
+            around
+                .iter()
+                .any(|([px, py], _)| x > px - eps && x < px + side + eps && y > py - eps && y < py + side + eps)
         };
         let mask = Mask::new(cell, (texture.patch, texture.overlap, texture.border), is_filled);
         let near = |c: &[f64; 2]| (0..2).all(|k| (c[k] - corner[k]).abs() < side);
@@ -149,9 +155,11 @@ impl Canvas for PlaneCanvas<'_> {
             .filter(|(c, _)| near(c))
             .map(|(c, place)| [0, 1].map(|k| f64::from(place[k]) + (corner[k] - c[k]) / cell))
             .collect();
-        let more = (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius;
+        let more =
+            (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius + 2.0 * texture.pieces.reach;
         let origin = Vector([corner[0], corner[1], 0.0]);
-        let bounds = Bounds::new(origin - Vector([more, more, f64::MAX]), origin + Vector([side + more, side + more, f64::MAX]));
+        let bounds =
+            Bounds::new(origin - Vector([more, more, f64::MAX]), origin + Vector([side + more, side + more, f64::MAX]));
         let mut samples = Vec::new();
         for shift in self.shifts() {
             let shifted = Bounds::new(bounds.min - shift, bounds.max - shift);
@@ -168,7 +176,7 @@ impl Canvas for PlaneCanvas<'_> {
             self.store.remove(&shifted, |s| {
                 let p = s.at + shift - origin;
                 s.is_at_seam |= site.mask.has_overlap() && site.mask.is_at_seam(p, seam);
-                site.mask.is_pasted(p)
+                site.mask.replaces(&Sample { at: p, ..*s })
             });
         }
         for s in samples {
@@ -192,7 +200,11 @@ impl Canvas for PlaneCanvas<'_> {
     }
 
     fn samples(&self) -> Vec<Sample> {
-        let inside = |s: &&Sample| (0..2).all(|k| (0.0..=self.size[k]).contains(&s.at[k]));
+        // Loose pieces are not cut at the border.
+        let inside = |s: &&Sample| {
+            let at = if self.is_tile { s.at } else { s.middle() };
+            (0..2).all(|k| (0.0..=self.size[k]).contains(&at[k]))
+        };
         let mut samples: Vec<Sample> = self.store.all().filter(inside).copied().collect();
         for s in &mut samples {
             // What lies at the far border of a tile lies at the near one.

@@ -19,6 +19,10 @@ use crate::{
 
 /// Work units a point of the result takes, about.
 const EACH: f64 = 60_000.0;
+/// Overlap of the patches in a gap at least, as a share of the patch.
+const GAP_OVERLAP: f64 = 0.2;
+/// How many more patches are tried in a gap.
+const GAP_TRIES: usize = 4;
 /// Share of points in overlaps that may be torn before it is told.
 const TOLD: f64 = 0.03;
 
@@ -36,7 +40,12 @@ impl Prepared {
     /// # Errors
     /// When there are too few points, when some are not numbers, when normals are missing in part or contradict one another, when a patch is larger
     /// than the box, or the box than the points; [`Error::Parameter`] for parameters out of range; [`Error::Limit`] when the budget is used up.
-    pub fn new(points: &PointSet<3>, bounds: Option<Bounds<3>>, params: &ReliefParams, budget: &Budget) -> Result<Self> {
+    pub fn new(
+        points: &PointSet<3>,
+        bounds: Option<Bounds<3>>,
+        params: &ReliefParams,
+        budget: &Budget,
+    ) -> Result<Self> {
         params.check()?;
         let budget = budget.stage("preparing the texture");
         let texture = Texture::new(points, (bounds, false), params, &budget)?;
@@ -47,11 +56,24 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Prepared::new`], and when nothing is empty that is wider than the holes of the texture, or when there is no room for patches beside it.
-    pub fn with_gap(points: &PointSet<3>, bounds: Option<Bounds<3>>, params: &ReliefParams, budget: &Budget) -> Result<Self> {
+    pub fn with_gap(
+        points: &PointSet<3>,
+        bounds: Option<Bounds<3>>,
+        params: &ReliefParams,
+        budget: &Budget,
+    ) -> Result<Self> {
         params.check()?;
         let budget = budget.stage("preparing the scan");
-        let texture = Texture::new(points, (bounds, true), params, &budget)?;
-        Ok(Self { texture: Arc::new(texture), params: params.clone() })
+        // A gap is closed once, in one place: what fits best is wanted there, not variety.
+        let params = ReliefParams {
+            tolerance: 0.0,
+            apart: 0.0,
+            overlap: params.overlap.max(GAP_OVERLAP),
+            tries: params.tries.saturating_mul(GAP_TRIES),
+            ..params.clone()
+        };
+        let texture = Texture::new(points, (bounds, true), &params, &budget)?;
+        Ok(Self { texture: Arc::new(texture), params })
     }
 
     /// Number of points of the texture.
@@ -207,7 +229,10 @@ impl Prepared {
         }
         let torn = notes.cracks + notes.unmatched;
         if torn as f64 > TOLD * notes.overlapped as f64 {
-            let message = format!("patches do not fit well: {torn} of {} points where they meet have nothing to go on to", notes.overlapped);
+            let message = format!(
+                "patches do not fit well: {torn} of {} points where they meet have nothing to go on to",
+                notes.overlapped
+            );
             warnings.push(Warning::new(message, "give a larger texture, other patches with --patch, or another seed"));
         }
         let (points, sources) = self.points_of(&samples, canvas.is_flat());

@@ -25,7 +25,9 @@ fn with_ghosts(samples: &[Sample], period: Period, margin: f64) -> (Vec<Vector<3
     let mut numbers: Vec<u32> = (0..samples.len() as u32).collect();
     let Some([width, depth]) = period else { return (positions, normals, numbers) };
     for (i, s) in samples.iter().enumerate() {
-        for (dx, dy) in [(-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0), (0.0, -1.0), (0.0, 1.0), (1.0, -1.0), (1.0, 0.0), (1.0, 1.0)] {
+        for (dx, dy) in
+            [(-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0), (0.0, -1.0), (0.0, 1.0), (1.0, -1.0), (1.0, 0.0), (1.0, 1.0)]
+        {
             let at = s.at + Vector([dx * width, dy * depth, 0.0]);
             if at[0] > -margin && at[0] < width + margin && at[1] > -margin && at[1] < depth + margin {
                 positions.push(at);
@@ -113,9 +115,7 @@ mod tests {
     fn sheet() -> Vec<Sample> {
         let at = |k: usize| Vector([(k % 20) as f64, (k / 20) as f64, 0.0]);
         let normal = Vector([0.0, 0.0, 1.0]);
-        (0..400)
-            .map(|k| Sample { at: at(k), normal, colour: [0.0; 3], variation: 0.0, source: k as u32, is_at_seam: false })
-            .collect()
+        (0..400).map(|k| Sample { at: at(k), normal, source: k as u32, ..Sample::default() }).collect()
     }
 
     #[test]

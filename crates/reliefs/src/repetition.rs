@@ -52,7 +52,11 @@ pub(crate) fn repetition(field: &Field, budget: &Budget) -> Result<Repetition> {
     let at = |x: i64, y: i64| -> f64 {
         // Below the first row the shifts are those above it, turned round.
         let (x, y) = if y < 0 { (-x, -y) } else { (x, y) };
-        if x.abs() > most_x || y > most_y { f64::INFINITY } else { differences[y as usize * row + (x + most_x) as usize] }
+        if x.abs() > most_x || y > most_y {
+            f64::INFINITY
+        } else {
+            differences[y as usize * row + (x + most_x) as usize]
+        }
     };
     let minima: Vec<(f64, f64)> = shifts
         .iter()

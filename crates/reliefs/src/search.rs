@@ -55,7 +55,10 @@ impl Searcher {
             grid
         };
         let number = |plane: Option<&Vec<f32>>, k: usize| plane.map_or(0.0, |p| f64::from(p[k]));
-        let spectra = pairs.par_iter().map(|pair| lay(&|k| Complex::new(number(pair.first(), k), number(pair.get(1), k)))).collect();
+        let spectra = pairs
+            .par_iter()
+            .map(|pair| lay(&|k| Complex::new(number(pair.first(), k), number(pair.get(1), k))))
+            .collect();
         let square = |k: usize| field.planes.iter().map(|p| f64::from(p[k]) * f64::from(p[k])).sum();
         let squares = lay(&|k| Complex::new(square(k), 0.0));
         Ok(Self { fft, spectra, squares })
@@ -228,14 +231,22 @@ mod tests {
         let rows = in_rows(&field, &overlap, &places, &budget).unwrap();
         for ((place, d), r) in places.iter().zip(about).zip(rows) {
             let own = exact(&field, &overlap, *place);
-            assert!((d - own).abs() < 1e-8 * (1.0 + own) && (r - own).abs() < 1e-3 * (1.0 + own), "{place:?}: {d} {r} {own}");
+            assert!(
+                (d - own).abs() < 1e-8 * (1.0 + own) && (r - own).abs() < 1e-3 * (1.0 + own),
+                "{place:?}: {d} {r} {own}"
+            );
         }
     }
 
     #[test]
     fn the_place_that_a_part_is_from_is_the_best() {
         let (field, overlap, places) = fields();
-        let found = best(&field, None, &overlap, &places, (0.0, 0.0, 1), (Search::Exhaustive, &Budget::default())).unwrap();
-        assert!(found[0].place == [12, 10] || found[0].place == [12, 9] || found[0].place == [13, 10], "{:?}", found[0]);
+        let found =
+            best(&field, None, &overlap, &places, (0.0, 0.0, 1), (Search::Exhaustive, &Budget::default())).unwrap();
+        assert!(
+            found[0].place == [12, 10] || found[0].place == [12, 9] || found[0].place == [13, 10],
+            "{:?}",
+            found[0]
+        );
     }
 }

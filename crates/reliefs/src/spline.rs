@@ -125,7 +125,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn affine_maps_are_kept_exactly(points in points(), m in prop::array::uniform12(-2.0..2.0), stiffness in 0.0..1.0) {
+        fn affine_maps_are_kept_exactly(points in points(), m in prop::array::uniform12(-2.0_f64..2.0), stiffness in 0.0..1.0) {
             let map = |p: Vector<3>| Vector(std::array::from_fn(|r| m[r] + (0..3).map(|c| m[3 + 3 * r + c] * p[c]).sum::<f64>()));
             let pairs: Vec<_> = points.iter().map(|&p| (p, map(p))).collect();
             let Some(spline) = Spline::new(&pairs, stiffness, &Budget::default()).unwrap() else { return Ok(()) };
@@ -133,7 +133,7 @@ mod tests {
             let (image, columns) = spline.apply(x);
             prop_assert!((image - map(x)).norm() < 1e-6, "{image:?}");
             for (k, column) in columns.iter().enumerate() {
-                prop_assert!((0..3).all(|r| (column[r] - m[3 + 3 * r + k]).abs() < 1e-6));
+                prop_assert!((0..3).all(|r: usize| (column[r] - m[3 + 3 * r + k]).abs() < 1e-6));
             }
         }
 

@@ -83,7 +83,7 @@ mod tests {
         for k in 0..125_u32 {
             let at = Vector([f64::from(k % 5) - 2.0, f64::from(k / 5 % 5) - 2.0, f64::from(k / 25) - 2.0]);
             let normal = Vector([0.0, 0.0, 1.0]);
-            store.insert(Sample { at, normal, colour: [0.0; 3], variation: 0.0, source: k, is_at_seam: false });
+            store.insert(Sample { at, normal, source: k, ..Sample::default() });
         }
         let bounds = Bounds::new(Vector::splat(-1.0), Vector::splat(1.0));
         let mut found = 0;

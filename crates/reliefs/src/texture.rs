@@ -5,9 +5,10 @@ use arabesque_surface::{OrientedPoints, estimated_normals, spacing_of};
 use rayon::prelude::*;
 
 use crate::{
-    gap::Gap,
     field::{Field, Lattice},
+    gap::Gap,
     params::{Plane, ReliefParams, Search},
+    pieces::Pieces,
     repetition::{Repetition, repetition},
     sample::Sample,
     search::Searcher,
@@ -97,6 +98,7 @@ pub(crate) struct Texture {
     pub(crate) border: usize,
     /// Where patches may be taken from, row by row.
     pub(crate) places: Vec<[u32; 2]>,
+    pub(crate) pieces: Pieces,
     /// The gap, where there is one to be filled.
     pub(crate) gap: Option<Gap>,
     pub(crate) warnings: Vec<Warning>,
@@ -112,7 +114,10 @@ fn oriented(points: &PointSet<3>, budget: &Budget, warnings: &mut Vec<Warning>) 
     if let Some(normals) = &points.normals {
         let bad = normals.iter().filter(|n| !n.is_finite() || n.norm() < 1e-6).count();
         if bad > 0 {
-            return Err(fail(format!("{bad} of {} normals have no direction", normals.len()), "write the points with all their normals, or without, so that they are estimated"));
+            return Err(fail(
+                format!("{bad} of {} normals have no direction", normals.len()),
+                "write the points with all their normals, or without, so that they are estimated",
+            ));
         }
         let mut points = points.clone();
         points.normals = Some(normals.iter().map(|n| n.unit()).collect());
@@ -159,10 +164,14 @@ fn axes(points: &PointSet<3>, plane: Plane, warnings: &mut Vec<Warning>) -> Resu
     let flat = axes.lie(size);
     let name = ["x", "y", "z"][axis];
     if flat[0].min(flat[1]) <= COLLAPSED * flat[2] || flat[0].min(flat[1]) <= 0.0 {
-        return Err(fail(format!("the points have no extent across {name}"), "choose another plane with --plane, or leave it out"));
+        return Err(fail(
+            format!("the points have no extent across {name}"),
+            "choose another plane with --plane, or leave it out",
+        ));
     }
     if flat[2] > flat[0].min(flat[1]) {
-        let (advice, other) = ("choose the plane along which the texture goes on with --plane", ["x", "y", "z"][thinnest]);
+        let (advice, other) =
+            ("choose the plane along which the texture goes on with --plane", ["x", "y", "z"][thinnest]);
         let message = format!("the texture is higher across {name} than it is wide; it is thinnest across {other}");
         if thinnest != axis {
             return Err(fail(message, advice));
@@ -195,13 +204,20 @@ impl Texture {
         let all = Bounds::around(positions.iter().copied());
         let points = OrientedPoints::new(positions, normals, radius, budget)?;
         if contradictions(&points, radius, budget)? > 0.1 {
-            return Err(fail("neighbouring normals face opposite ways", "leave the normals out, so that they are estimated, or turn them to one side"));
+            return Err(fail(
+                "neighbouring normals face opposite ways",
+                "leave the normals out, so that they are estimated, or turn them to one side",
+            ));
         }
         let lattice = lattice(&all, spacing, params);
         let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
         if nodes.iter().product::<usize>().saturating_mul(lattice.heights.len()) > NODES {
             let least = (all.size()[0] * all.size()[1] * lattice.heights.len() as f64 / NODES as f64).sqrt();
-            return Err(Error::parameter("cell", lattice.cell, format!("at least {least:.4}, so that the field has at most {NODES} nodes")));
+            return Err(Error::parameter(
+                "cell",
+                lattice.cell,
+                format!("at least {least:.4}, so that the field has at most {NODES} nodes"),
+            ));
         }
         let origin = [0, 1].map(|k| all.min[k] + 0.5 * (all.size()[k] - nodes[k] as f64 * lattice.cell));
         let field = Field::new(&points, &lattice, origin, (nodes[0], nodes[1]), budget)?;
@@ -227,6 +243,7 @@ impl Texture {
             overlap: 0,
             border: 0,
             places: Vec::new(),
+            pieces: Pieces::default(),
             gap: None,
             warnings,
             _held: held,
@@ -243,11 +260,19 @@ impl Texture {
             }
             // Beside a gap there may be room for smaller patches only.
             let side = texture.patch_side();
+            let is_least = params.patch.is_some() || 0.85 * side < 10.0 * texture.lattice.cell;
+            if is_least && texture.places.len() >= ENOUGH {
+                break;
+            }
             if params.patch.is_some() || 0.85 * side < 6.0 * texture.lattice.cell {
-                return Err(fail(format!("beside the gap there is no room for patches of {side:.4}"), "give a smaller patch, or a larger scan"));
+                return Err(fail(
+                    format!("beside the gap there is no room for patches of {side:.4}"),
+                    "give a smaller patch, or a larger scan",
+                ));
             }
             shrink *= 0.85;
         }
+        texture.pieces = Pieces::find(&texture.points, spacing, texture.patch_side(), budget)?;
         let (places, nodes) = (texture.places.len(), texture.patch * texture.overlap);
         let wants = match params.search {
             Search::Auto => Searcher::is_faster(&texture.field, places, nodes),
@@ -267,13 +292,21 @@ impl Texture {
             let slack = 1e-6 * short;
             if (0..2).any(|k| given.min[k] < all.min[k] - slack || given.max[k] > all.max[k] + slack) {
                 let shown = [0, 1].map(|k| format!("{:.4}..{:.4}", all.min[k], all.max[k]));
-                return Err(Error::parameter("box", "", format!("a box within the points, which reach over {} and {} along the plane", shown[0], shown[1])));
+                return Err(Error::parameter(
+                    "box",
+                    "",
+                    format!("a box within the points, which reach over {} and {} along the plane", shown[0], shown[1]),
+                ));
             }
         }
         let chosen = params.patch.unwrap_or_else(|| shrink * self.usual_patch(room));
         let patch = (chosen / cell).round().max(4.0);
         if params.patch.is_some() && chosen > room {
-            return Err(Error::parameter("patch", chosen, format!("at most {:.4}, a good part of the box of the texture, which is {room:.4} wide", 0.6 * room)));
+            return Err(Error::parameter(
+                "patch",
+                chosen,
+                format!("at most {:.4}, a good part of the box of the texture, which is {room:.4} wide", 0.6 * room),
+            ));
         }
         let border = (params.border * patch).ceil();
         // Beside the border there is what a patch may move.
@@ -285,24 +318,40 @@ impl Texture {
             Vector([all.min[0] + margin, all.min[1] + margin, all.min[2]]),
             Vector([all.max[0] - margin, all.max[1] - margin, all.max[2]]),
         ));
-        self.bounds = Bounds::new(Vector([inner.min[0], inner.min[1], all.min[2]]), Vector([inner.max[0], inner.max[1], all.max[2]]));
+        self.bounds = Bounds::new(
+            Vector([inner.min[0], inner.min[1], all.min[2]]),
+            Vector([inner.max[0], inner.max[1], all.max[2]]),
+        );
         self.patch = patch as usize;
         self.overlap = ((params.overlap * patch).round() as usize).clamp(2, self.patch / 2);
         self.border = border as usize;
         let limits = |k: usize| {
             let low = ((self.bounds.min[k] - self.origin[k]) / cell - 1e-6).ceil().max(0.0);
-            let high = ((self.bounds.max[k] - self.origin[k]) / cell + 1e-6).floor().min([self.field.width, self.field.height][k] as f64) - patch;
+            let high = ((self.bounds.max[k] - self.origin[k]) / cell + 1e-6)
+                .floor()
+                .min([self.field.width, self.field.height][k] as f64)
+                - patch;
             (low, high)
         };
         let ((x0, x1), (y0, y1)) = (limits(0), limits(1));
         if x1 < x0 || y1 < y0 {
             let side = self.bounds.size();
-            return Err(Error::parameter("patch", format!("{:.4}", patch * cell), format!("a patch smaller than the box of the texture, which is {:.4} by {:.4}, or a larger texture", side[0], side[1])));
+            return Err(Error::parameter(
+                "patch",
+                format!("{:.4}", patch * cell),
+                format!(
+                    "a patch smaller than the box of the texture, which is {:.4} by {:.4}, or a larger texture",
+                    side[0], side[1]
+                ),
+            ));
         }
         let inside = self.count_in(&self.bounds.clone());
         let each = inside as f64 * (patch * cell).powi(2) / (self.bounds.size()[0] * self.bounds.size()[1]);
         if each < 20.0 {
-            return Err(fail(format!("a patch of {:.4} holds {each:.0} points", patch * cell), "give a texture with more points, or a larger patch"));
+            return Err(fail(
+                format!("a patch of {:.4} holds {each:.0} points", patch * cell),
+                "give a texture with more points, or a larger patch",
+            ));
         }
         let (x0, x1, y0, y1) = (x0 as u32, x1 as u32, y0 as u32, y1 as u32);
         self.places = (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| [x, y])).collect();
@@ -319,7 +368,9 @@ impl Texture {
         };
         let places: Vec<_> = self.places.iter().filter(|p| is_whole(p)).copied().collect();
         self.places = places;
-        self.places.len() >= ENOUGH
+        // There has to be a place for every way in which what repeats may meet the gap.
+        let repeats = self.repetition.length.map_or(0.0, |length| 1.5 * length * length);
+        self.places.len() >= ENOUGH.max(repeats as usize)
     }
 
     fn count_in(&self, bounds: &Bounds<3>) -> usize {
@@ -352,6 +403,7 @@ impl Texture {
 
     /// Point `i` where it is in the texture.
     pub(crate) fn sample(&self, i: usize) -> Sample {
+        let (piece, from) = self.pieces.piece(i, self.points.positions()[i]);
         Sample {
             at: self.points.positions()[i],
             normal: self.points.normals()[i],
@@ -359,12 +411,18 @@ impl Texture {
             variation: self.variations[i],
             source: i as u32,
             is_at_seam: false,
+            piece,
+            from,
         }
     }
 
     /// Corner of the patch at a place.
     pub(crate) fn corner(&self, [x, y]: [u32; 2]) -> Vector<3> {
-        Vector([self.origin[0] + f64::from(x) * self.lattice.cell, self.origin[1] + f64::from(y) * self.lattice.cell, 0.0])
+        Vector([
+            self.origin[0] + f64::from(x) * self.lattice.cell,
+            self.origin[1] + f64::from(y) * self.lattice.cell,
+            0.0,
+        ])
     }
 }
 
@@ -375,7 +433,10 @@ fn checked<'a>(points: &'a PointSet<3>, budget: &Budget) -> Result<&'a PointSet<
         return Err(fail(format!("point {} has a coordinate that is not a number", k + 1), "leave it out"));
     }
     if points.len() < LEAST {
-        return Err(fail(format!("{} points are no texture", points.len()), format!("give at least {LEAST}, a few thousand for most textures")));
+        return Err(fail(
+            format!("{} points are no texture", points.len()),
+            format!("give at least {LEAST}, a few thousand for most textures"),
+        ));
     }
     budget.within("points of the texture", points.len(), ("nodes", budget.limits().nodes))?;
     budget.spend(points.len() as u64 * 50)?;
@@ -389,5 +450,9 @@ fn lattice(all: &Bounds<3>, spacing: f64, params: &ReliefParams) -> Lattice {
     let step = cell.max(size[2] / ROWS);
     let rows = (size[2] / step).ceil().max(1.0);
     let low = all.centre()[2] - 0.5 * (rows - 1.0) * step;
-    Lattice { cell, heights: (0..rows as usize).map(|k| low + k as f64 * step).collect(), reach: REACH * cell.max(0.5 * step) }
+    Lattice {
+        cell,
+        heights: (0..rows as usize).map(|k| low + k as f64 * step).collect(),
+        reach: REACH * cell.max(0.5 * step),
+    }
 }

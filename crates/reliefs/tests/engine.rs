@@ -2,13 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, its helpers too")]
 
-use std::{
-    f64::consts::TAU,
-    ops::ControlFlow,
-    sync::Arc,
-};
+use std::{f64::consts::TAU, ops::ControlFlow, sync::Arc};
 
-use arabesque_core::{Bounds, Budget, Error, Limits, PointSet, Progress, StopReason, TriangleMesh, Unobserved, Vector, Watch};
+use arabesque_core::{
+    Bounds, Budget, Error, Limits, PointSet, Progress, StopReason, TriangleMesh, Unobserved, Vector, Watch,
+};
 use arabesque_reliefs::{Ground, Plane, Prepared, ReliefOutcome, ReliefParams, ReliefRequest};
 use arabesque_surface::{DirectionField, Directions, MeshIndex};
 
@@ -26,7 +24,8 @@ fn bumps(side: f64, keeps: impl Fn(f64, f64) -> bool) -> PointSet<3> {
             continue;
         }
         let e = 1e-5;
-        let slope = [(height(x + e, y) - height(x - e, y)) / (2.0 * e), (height(x, y + e) - height(x, y - e)) / (2.0 * e)];
+        let slope =
+            [(height(x + e, y) - height(x - e, y)) / (2.0 * e), (height(x, y + e) - height(x, y - e)) / (2.0 * e)];
         set.positions.push(Vector([x, y, height(x, y)]));
         set.normals.as_mut().unwrap().push(Vector([-slope[0], -slope[1], 1.0]).unit());
         set.colours.as_mut().unwrap().push([if height(x, y) > 0.0 { 1.0 } else { 0.0 }, 0.5, 0.0]);
@@ -46,7 +45,9 @@ fn run(points: &PointSet<3>, ground: Ground, seed: u64) -> ReliefOutcome {
 /// The largest distance of a place of a rectangle from the nearest point, seen from above.
 fn widest_gap(points: &[Vector<3>], low: [f64; 2], high: [f64; 2]) -> f64 {
     let steps = 60;
-    let place = |k: usize| [0, 1].map(|a| low[a] + (high[a] - low[a]) * ([k % steps, k / steps][a] as f64 + 0.5) / steps as f64);
+    let place = |k: usize| {
+        [0, 1].map(|a| low[a] + (high[a] - low[a]) * ([k % steps, k / steps][a] as f64 + 0.5) / steps as f64)
+    };
     let far = |[x, y]: [f64; 2]| points.iter().map(|p| (p[0] - x).hypot(p[1] - y)).fold(f64::INFINITY, f64::min);
     (0..steps * steps).map(|k| far(place(k))).fold(0.0, f64::max)
 }
@@ -58,7 +59,12 @@ fn the_plane_is_covered_as_densely_as_the_texture_and_on_its_surface() {
     let points = &made.points;
     let density = points.len() as f64 / 48.0;
     assert!((density / 144.0 - 1.0).abs() < 0.08, "{density}");
-    assert!(points.positions.iter().all(|p| (0.0..=8.0).contains(&p[0]) && (0.0..=6.0).contains(&p[1]) && p[2].abs() < 0.26));
+    assert!(
+        points
+            .positions
+            .iter()
+            .all(|p| (0.0..=8.0).contains(&p[0]) && (0.0..=6.0).contains(&p[1]) && p[2].abs() < 0.26)
+    );
     assert!(widest_gap(&points.positions, [0.0, 0.0], [8.0, 6.0]) < 0.16, "a hole");
     assert!(points.normals.as_ref().unwrap().iter().all(|n| (n.norm() - 1.0).abs() < 1e-9 && n[2] > 0.3));
     let colours = points.colours.as_ref().unwrap();

@@ -47,7 +47,7 @@ pub(crate) fn prepare(job: &Relief, preparation: &mut Preparation<'_>) -> Result
     let bounds = proper.map(|b| proper_box(&b, &all, &found.points, &params));
     let new = if job.fill_hole { Engine::with_gap } else { Engine::new };
     let engine = new(&found.points, bounds, &params, preparation.files.budget())
-    .map_err(|error| in_exemplar(renamed(error, name), name))?;
+        .map_err(|error| in_exemplar(renamed(error, name), name))?;
     preparation.warnings.extend(engine.warnings().iter().cloned());
     Ok(Texture { engine, kind: found.kind, pixel: found.pixel })
 }

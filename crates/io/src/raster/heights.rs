@@ -58,7 +58,12 @@ pub fn read_heights(name: &str, bytes: &[u8], budget: &Budget) -> Result<Heights
 ///
 /// # Errors
 /// [`Error::Input`] when the encoder refuses it, [`Error::Limit`] when the work or the memory is used up.
-pub fn write_heights([width, height]: [usize; 2], values: &[f32], recipe: Option<&str>, budget: &Budget) -> Result<Vec<u8>> {
+pub fn write_heights(
+    [width, height]: [usize; 2],
+    values: &[f32],
+    recipe: Option<&str>,
+    budget: &Budget,
+) -> Result<Vec<u8>> {
     let refuse = |e: png::EncodingError| refused(&e.into());
     let (mut data, _data) = budget.list::<u8>("the height field", values.len() * 2)?;
     budget.spend(values.len() as u64 * WRITING)?;

@@ -62,6 +62,8 @@ mod tests {
         assert_eq!(all, (0..400).collect::<Vec<_>>());
         assert!(flat.iter().all(|c| c.len() <= 60) && bent.len() > flat.len());
         let heap = vec![Vector::ZERO; 100];
-        assert!(clusters(&heap, (0..100).collect(), (4, 8), 0.02, &Budget::default()).unwrap().iter().all(|c| c.len() <= 8));
+        assert!(
+            clusters(&heap, (0..100).collect(), (4, 8), 0.02, &Budget::default()).unwrap().iter().all(|c| c.len() <= 8)
+        );
     }
 }

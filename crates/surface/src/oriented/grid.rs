@@ -28,7 +28,13 @@ impl Grid {
             cell *= 1.25;
         }
         let counts = count(cell).map(|n| n as usize);
-        let mut grid = Self { origin, cell, counts, starts: vec![0; counts.iter().product::<usize>() + 1], order: vec![0; points.len()] };
+        let mut grid = Self {
+            origin,
+            cell,
+            counts,
+            starts: vec![0; counts.iter().product::<usize>() + 1],
+            order: vec![0; points.len()],
+        };
         let cells: Vec<u32> = points.iter().map(|&p| grid.flat(grid.of(p)) as u32).collect();
         cells.iter().for_each(|&c| grid.starts[c as usize + 1] += 1);
         for c in 1..grid.starts.len() {

@@ -263,7 +263,8 @@ mod tests {
     fn the_nearest_point_is_that_of_an_exhaustive_search() {
         let sphere = sphere(500);
         for k in 0..200_u32 {
-            let x = Vector([f64::from(k % 7) * 0.4 - 1.2, f64::from(k % 11) * 0.25 - 1.2, f64::from(k % 5) * 0.5 - 1.0]);
+            let x =
+                Vector([f64::from(k % 7) * 0.4 - 1.2, f64::from(k % 11) * 0.25 - 1.2, f64::from(k % 5) * 0.5 - 1.0]);
             let d2 = |i: usize| (sphere.positions()[i] - x).norm2();
             let best = (0..500).min_by(|&a, &b| d2(a).total_cmp(&d2(b)).then(a.cmp(&b))).unwrap();
             assert_eq!(sphere.nearest(x, 5.0, |_| true), Some((best, d2(best))));

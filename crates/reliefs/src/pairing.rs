@@ -167,7 +167,7 @@ mod tests {
                 Sample { variation: (0.1 * (0.5 + 0.5 * (at[0] * 4.0).sin())) as f32, ..sample(at) }
             })
             .collect();
-        let params = ReliefParams { variation: 400.0, ..ReliefParams::default() };
+        let params = ReliefParams { variation: 1000.0, distance: 0.3, ..ReliefParams::default() };
         let pairing = Pairing { params: &params, reach: 0.5, listening: 0.3 };
         let pairs = pairing.pairs(&targets, &sources, &variations, &Budget::default()).unwrap();
         assert_eq!(pairs.len(), 60);

@@ -34,7 +34,7 @@ params! {
         /// Side of a patch.
         patch "patch": Option<f64> = None, in 1e-9..=1e9, auto "by what repeats in the texture", unit "units of the texture";
         /// Width of the overlap of neighbouring patches, as a share of the patch.
-        overlap "overlap": f64 = 0.12, in 0.05..=0.5;
+        overlap "overlap": f64 = 0.1, in 0.05..=0.5;
         /// Width of the border that is pasted beyond a patch, as a share of the patch.
         border "border": f64 = 0.25, in 0.0..=0.5;
         /// Patches that are worse than the best by at most this share of its difference are chosen from at random.
@@ -68,6 +68,6 @@ params! {
         /// Patches that are tried where pairs cannot be made well, before one is laid without being bent.
         tries "tries": usize = 6, in 1..=1000;
         /// Rounds in which points along the seams are spread evenly.
-        relax "relax": usize = 2, in 0..=100;
+        relax "relax": usize = 1, in 0..=100;
     }
 }

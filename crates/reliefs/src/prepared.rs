@@ -5,16 +5,16 @@ use std::sync::Arc;
 use arabesque_core::{Bounds, Budget, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
 
 use crate::{
-    canvas::Canvas,
-    hole::HoleCanvas,
-    on_mesh::MeshCanvas,
+    ground::canvas::Canvas,
+    ground::hole::HoleCanvas,
+    ground::on_mesh::MeshCanvas,
+    ground::plane::PlaneCanvas,
+    ground::relax::relax,
     params::ReliefParams,
-    patch::Notes,
-    plane::PlaneCanvas,
-    relax::relax,
+    patch::notes::Notes,
     request::{Ground, ReliefOutcome, ReliefRequest, Statistics},
     sample::Sample,
-    texture::{Axes, Texture},
+    texture::{axes::Axes, understand::Texture},
 };
 
 /// Work units a point of the result takes, about.

@@ -121,7 +121,7 @@ impl OrientedPoints {
         for _ in 0..STEPS {
             let Some((a, n)) = self.mean(y, facing) else { break };
             let step = n.dot(y - a);
-            y = y - n * step;
+            y -= n * step;
             normal = n;
             if step.abs() < ARRIVED * self.radius {
                 break;

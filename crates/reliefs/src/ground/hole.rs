@@ -3,14 +3,14 @@
 use arabesque_core::{Bounds, Budget, Error, Result, Stage, Stream, Vector};
 
 use crate::{
-    canvas::Canvas,
-    gap::Gap,
-    mask::Mask,
+    ground::canvas::Canvas,
+    ground::store::Store,
     params::ReliefParams,
-    patch::{Notes, Site},
+    patch::mask::Mask,
+    patch::{blend::Site, notes::Notes},
     sample::Sample,
-    store::Store,
-    texture::Texture,
+    texture::gap::Gap,
+    texture::understand::Texture,
 };
 
 const PATCHES: Stage = Stage::new(502);

@@ -8,9 +8,9 @@ use arabesque_core::{Budget, Result};
 use rayon::prelude::*;
 
 use crate::{
-    fft::{Complex, Fft},
-    field::{Field, Overlap},
     params::Search,
+    search::fft::{Complex, Fft},
+    search::field::{Field, Overlap},
 };
 
 /// Differences by transforms or in 32 bits are off by less than this share of what is summed.
@@ -177,7 +177,7 @@ mod tests {
     use arabesque_surface::OrientedPoints;
 
     use super::*;
-    use crate::field::Lattice;
+    use crate::search::field::Lattice;
 
     /// The field of a wavy sheet, and that of a part of it.
     fn fields() -> (Field, Overlap, Vec<[u32; 2]>) {

@@ -6,14 +6,14 @@ use arabesque_core::{Budget, Error, Result, Stage, Stream, Vector};
 use arabesque_surface::{DirectionField, MeshIndex};
 
 use crate::{
-    canvas::Canvas,
-    chart::{Chart, Samples},
-    mask::Mask,
+    ground::canvas::Canvas,
+    ground::chart::{Chart, Samples},
+    ground::store::Store,
     params::ReliefParams,
-    patch::{Notes, Site},
+    patch::mask::Mask,
+    patch::{blend::Site, notes::Notes},
     sample::Sample,
-    store::Store,
-    texture::Texture,
+    texture::understand::Texture,
 };
 
 const PATCHES: Stage = Stage::new(503);

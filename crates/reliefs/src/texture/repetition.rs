@@ -3,7 +3,7 @@
 use arabesque_core::{Budget, Result};
 use rayon::prelude::*;
 
-use crate::field::Field;
+use crate::search::field::Field;
 
 /// Columns along the longer side that are compared at most.
 const COLUMNS: usize = 48;
@@ -114,7 +114,7 @@ mod tests {
     use arabesque_surface::OrientedPoints;
 
     use super::*;
-    use crate::field::Lattice;
+    use crate::search::field::Lattice;
 
     fn of(height: impl Fn(f64, f64) -> f64) -> Repetition {
         let points: Vec<_> = (0..10_000)

@@ -3,13 +3,13 @@
 use arabesque_core::{Bounds, Budget, Error, Result, Stage, Stream, Vector};
 
 use crate::{
-    canvas::Canvas,
-    mask::Mask,
+    ground::canvas::Canvas,
+    ground::store::Store,
     params::ReliefParams,
-    patch::{Laid, Notes, Site},
+    patch::mask::Mask,
+    patch::{blend::Site, notes::Notes, site::Laid},
     sample::Sample,
-    store::Store,
-    texture::Texture,
+    texture::understand::Texture,
 };
 
 const PATCHES: Stage = Stage::new(501);

@@ -12,6 +12,10 @@ use crate::sample::Sample;
 const CLOSE: f64 = 0.38;
 /// How far points keep others away, in spacings.
 const APART: f64 = 0.7;
+/// A point that would leave its tangent plane by more, in spacings, or turn by more, stays.
+const OFF: f64 = 0.15;
+/// The cosine of that turn.
+const ALIKE: f64 = 0.93;
 /// Longest step of a round, in spacings.
 const STEP: f64 = 0.25;
 
@@ -103,7 +107,10 @@ fn step(sample: &Sample, now: &OrientedPoints, surface: &OrientedPoints, spacing
     }
     let to = sample.at + along.unit_or_zero() * length;
     match surface.project(to, spacing, Some(sample.normal)) {
-        Some(foot) if (foot.point - sample.at).norm() < 2.0 * STEP * spacing => (foot.point, foot.normal),
+        // Near an edge the surface is not where the points say.
+        Some(foot) if (foot.point - to).norm() < OFF * spacing && foot.normal.dot(sample.normal) > ALIKE => {
+            (foot.point, foot.normal)
+        }
         _ => (sample.at, sample.normal),
     }
 }

@@ -2,7 +2,7 @@
 
 use arabesque_core::Result;
 
-use crate::{patch::Notes, relax::Period, sample::Sample};
+use crate::{ground::relax::Period, patch::notes::Notes, sample::Sample};
 
 /// A ground that is covered patch by patch.
 pub(crate) trait Canvas {

@@ -50,7 +50,7 @@
 //! ```
 //!
 //! Whoever watches a run gets [`Progress`] and, when wanted, the present state as an [`Artwork`]; see [`Watch`]. Files that carry a recipe
-//! are read by [`recipe_in`]. The methods and their vocabulary are re-exported as [`core`], [`patterns`], [`ribbons`], [`structures`] and [`surfaces`], the file formats
+//! are read by [`recipe_in`]. The methods and their vocabulary are re-exported as [`core`], [`patterns`], [`ribbons`], [`structures`], [`reliefs`] and [`surfaces`], the file formats
 //! as [`io`].
 
 mod artwork;
@@ -62,6 +62,7 @@ mod plane;
 mod pool;
 mod prepared;
 mod recipe;
+mod relief;
 mod resources;
 mod ribbon;
 mod solid;
@@ -73,6 +74,7 @@ mod surface;
 pub use arabesque_core as core;
 pub use arabesque_io as io;
 pub use arabesque_patterns as patterns;
+pub use arabesque_reliefs as reliefs;
 pub use arabesque_ribbons as ribbons;
 pub use arabesque_structures as structures;
 pub use arabesque_surface as surfaces;
@@ -83,7 +85,7 @@ pub use arabesque_core::{
     Unobserved, Warning, Watch,
 };
 pub use arabesque_ribbons::Closing;
-pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, RibbonSummary, Summary};
+pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, ReliefSummary, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};
 pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, Measurements, Verdict, measure};
@@ -91,7 +93,7 @@ pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
     Carrier, Cuboid, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input,
-    Job, Method, OutputOptions, Parameters, Reading, Recipe, Redo, Region, Ribbon, Size, Space, Structures, Surface,
-    Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
+    Job, Method, OutputOptions, Parameters, Reading, Recipe, Redo, Region, Relief, Ribbon, Size, Space, Structures,
+    Surface, Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;

@@ -9,6 +9,7 @@ use crate::{
     method::{Preparation, Ready, RunContext},
     plane,
     recipe::{Job, Recipe},
+    relief,
     resources::{Files, Resources},
     ribbon, space, structure, surface,
 };
@@ -74,6 +75,7 @@ impl Recipe {
             Job::Space(job) => Arc::new(space::prepare(job, &mut preparation)?),
             Job::Ribbon(job) => Arc::new(ribbon::prepare(job, &mut preparation)?),
             Job::Structures(job) => Arc::new(structure::prepare(job, &mut preparation)?),
+            Job::Relief(job) => Arc::new(relief::prepare(job, &mut preparation)?),
             Job::Surface(job) => Arc::new(surface::prepare(job, &mut preparation)?),
         };
         let Preparation { exemplar, job, warnings, .. } = preparation;

@@ -8,6 +8,7 @@ use arabesque::{
     Limits, Measurements, Recipe,
     core::options::{markdown_table, preset_list},
     patterns::Params,
+    reliefs::ReliefParams,
     ribbons::RibbonParams,
     structures::StructureParams,
     surfaces::SurfaceParams,
@@ -51,11 +52,13 @@ fn the_shipped_tables_of_parameters_are_current() {
          generated from the code.\n\n## Elements and curves: `arabesque fill`\n\n{}\n### Presets, for `--preset`\n\n{presets}\n\
          ## Ribbons: `arabesque ribbon`\n\n{}\nThese have options of their own, and keys of their own in the table `[ribbon]`:\n\n{}\n\
          ## Structures: `arabesque fill` on points with attributes\n\n{}\n\
-         ## Surfaces: `arabesque surface`, and `arabesque fill --mesh` by `--surface NAME=VALUE`\n\n{}",
+         ## Reliefs: `arabesque relief`\n\n{}\n\
+         ## Surfaces: `arabesque surface`, `arabesque fill --mesh` and `arabesque relief --mesh` by `--surface NAME=VALUE`\n\n{}",
         markdown_table(&Params::specs()),
         markdown_table(&set),
         markdown_table(&own),
         markdown_table(&StructureParams::specs()),
+        markdown_table(&ReliefParams::specs()),
         markdown_table(&SurfaceParams::specs()),
     );
     is_current("parameters.md", &text);

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    commands::{completions, fill, inspect, man, measure, ribbon, run, surface},
+    commands::{completions, fill, inspect, man, measure, relief, ribbon, run, surface},
     failure::Failure,
 };
 
@@ -27,6 +27,8 @@ enum Command {
     Fill(Box<fill::Fill>),
     /// Lay the pattern of a picture along curves without bending it
     Ribbon(Box<ribbon::Ribbon>),
+    /// Continue a relief: more of a scanned or modelled patch of surface detail
+    Relief(Box<relief::Relief>),
     /// Make the surface of points
     Surface(Box<surface::Surface>),
     /// Say what was understood of an exemplar
@@ -46,6 +48,7 @@ impl App {
         match self.command {
             Command::Fill(c) => c.execute(),
             Command::Ribbon(c) => c.execute(),
+            Command::Relief(c) => c.execute(),
             Command::Surface(c) => c.execute(),
             Command::Inspect(c) => c.execute(),
             Command::Measure(c) => c.execute(),

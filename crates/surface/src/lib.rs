@@ -6,6 +6,7 @@
 //! | what is wrong with a mesh | [`MeshReport`] |
 //! | which way does a pattern run along it | [`DirectionField`] of [`Directions`], [`curvatures`] |
 //! | points spread on it, in a shell around it, inside of it | [`scatter`], [`shell_grid`], [`inside_grid`] |
+//! | where is the nearest point of a surface that points alone stand for, where does a ray meet it, how does it bend | [`OrientedPoints`] |
 //! | the surface through points, or around balls | [`reconstruct`] with [`SurfaceParams`] |
 //!
 //! # Meshes
@@ -36,6 +37,7 @@ mod directions;
 mod implicit;
 mod isosurface;
 mod mesh;
+mod oriented;
 mod params;
 mod reconstruct;
 mod spread;
@@ -45,6 +47,7 @@ mod tree;
 
 pub use directions::{Bend, Curvature, DirectionField, Directions, SurfaceFrame, curvatures};
 pub use mesh::{Closest, Found, MeshIndex, MeshReport};
+pub use oriented::{EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of};
 pub use params::{Method, Normals, Parts, SurfaceParams};
 pub use reconstruct::{Reconstruction, reconstruct};
 pub use spread::{inside_grid, scatter, shell_grid};

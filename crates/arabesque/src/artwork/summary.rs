@@ -31,6 +31,9 @@ pub struct Summary {
     /// Of ribbons alone.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub ribbons: Option<RibbonSummary>,
+    /// Of reliefs alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reliefs: Option<ReliefSummary>,
     /// The last mean energy, in squared mean spacings, where the method has one.
     pub energy: Option<f64>,
 }
@@ -44,6 +47,31 @@ pub struct RibbonSummary {
     pub pieces: usize,
     /// Their cost together, in 8-bit colour steps.
     pub cost: f64,
+}
+
+/// How the patches of a relief went together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ReliefSummary {
+    /// Patches that were laid.
+    pub patches: usize,
+    /// Times that a patch would have folded and was bent again with fewer pairs.
+    pub folds: usize,
+    /// Patches that did not fit well and were passed over for the next best.
+    pub passed: usize,
+    /// Patches that were laid without being bent, because no pairs could be made.
+    pub unbent: usize,
+    /// Points where patches meet.
+    pub overlapped: usize,
+    /// Of these, points that were blended along their normals.
+    pub by_ray: usize,
+    /// Points that were blended by projection, because no ray met the surface.
+    pub by_projection: usize,
+    /// Points beside what was there already that nothing leads to.
+    pub seams: usize,
+    /// Points that were there already from which nothing goes on.
+    pub cracks: usize,
+    /// Points along seams that lay too close to another and were left out.
+    pub merged: usize,
 }
 
 impl Summary {
@@ -61,6 +89,7 @@ impl Summary {
             triangles: 0,
             tile: None,
             ribbons: None,
+            reliefs: None,
             energy: outcome.energy.last().map(|e| e.energy),
         }
     }

@@ -125,7 +125,7 @@ impl<'a> Surroundings<'a> {
             Job::Redo(Redo { border, orient, scale, density, avoid, .. }) => {
                 Ok(Self { border: *border, fields: FieldSources { orient, scale, density }, avoid, keep: None })
             }
-            Job::Space(_) | Job::Ribbon(_) | Job::Surface(_) | Job::Structures(_) => {
+            Job::Space(_) | Job::Ribbon(_) | Job::Surface(_) | Job::Structures(_) | Job::Relief(_) => {
                 Err(Error::parameter("request", job.name(), "a request for a part of the plane"))
             }
         }

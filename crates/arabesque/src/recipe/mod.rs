@@ -20,7 +20,7 @@ pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
 pub use job::{
-    Direction, ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Ribbon, Space, Structures, Surface,
+    Direction, ExemplarTile, Fill, Job, Method, Parameters, Reading, Redo, Relief, Ribbon, Space, Structures, Surface,
     WidthSource, ribbon_options,
 };
 pub use output::OutputOptions;
@@ -68,7 +68,7 @@ struct Document {
     seed: u64,
     /// The exemplar.
     exemplar: Input,
-    /// Fill a part of the plane. One of `fill`, `redo`, `space`, `ribbon`, `surface` and `structures` may be there; with none of them the
+    /// Fill a part of the plane. One of `fill`, `redo`, `space`, `ribbon`, `surface`, `structures` and `relief` may be there; with none of them the
     /// layer Domain of the exemplar is filled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     fill: Option<Fill>,
@@ -87,6 +87,9 @@ struct Document {
     /// Continue a repetitive structure that is given as points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     structures: Option<Structures>,
+    /// Continue a relief: more of a patch of surface detail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    relief: Option<Relief>,
     /// What to write.
     #[serde(default)]
     output: OutputOptions,
@@ -96,11 +99,12 @@ impl TryFrom<Document> for Recipe {
     type Error = String;
 
     fn try_from(document: Document) -> std::result::Result<Self, String> {
-        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, output } = document;
+        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, relief, output } =
+            document;
         let plane = [fill.map(Job::Fill), redo.map(Job::Redo), ribbon.map(Job::Ribbon)];
         let mut jobs = plane
             .into_iter()
-            .chain([space.map(Job::Space), surface.map(Job::Surface), structures.map(Job::from)])
+            .chain([space.map(Job::Space), surface.map(Job::Surface), structures.map(Job::from), relief.map(Job::from)])
             .flatten();
         match (jobs.next(), jobs.next()) {
             (Some(job), None) => Ok(Self { arabesque, seed, exemplar, job, output }),
@@ -113,17 +117,18 @@ impl TryFrom<Document> for Recipe {
 impl From<Recipe> for Document {
     fn from(recipe: Recipe) -> Self {
         let Recipe { arabesque, seed, exemplar, job, output } = recipe;
-        let (mut fill, mut redo, mut space, mut ribbon, mut surface, mut structures) =
-            (None, None, None, None, None, None);
+        let (mut fill, mut redo, mut space, mut ribbon, mut surface, mut structures, mut relief) =
+            (None, None, None, None, None, None, None);
         match job {
             Job::Surface(job) => surface = Some(job),
             Job::Structures(job) => structures = Some(*job),
+            Job::Relief(job) => relief = Some(*job),
             Job::Fill(job) => fill = Some(job),
             Job::Redo(job) => redo = Some(job),
             Job::Space(job) => space = Some(job),
             Job::Ribbon(job) => ribbon = Some(job),
         }
-        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, output }
+        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, relief, output }
     }
 }
 
@@ -249,6 +254,7 @@ mod tests {
             Job::from(Redo::of(Region::Own("hole".into()))),
             Job::from(Space::new("5x5x5".parse().unwrap())),
             Job::from(Structures::along(Input::file("curve.obj"))),
+            Job::from(Relief { on: Some(Input::file("hull.ply")), ..Relief::default() }),
             Job::from(Surface { trim: Some(Input::file("hull.ply")), ..Surface::default() }),
             Job::from(ribbon),
         ] {

@@ -23,6 +23,7 @@ use crate::{
 use made::{PlanePoints, SpacePoints};
 use scene::{SceneMade, beside};
 use shapes::{Shapes, exemplar};
+pub(crate) use place::directions;
 
 /// A structure, analysed.
 #[derive(Debug)]

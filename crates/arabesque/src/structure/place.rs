@@ -172,7 +172,7 @@ fn sides(size: &Size) -> Result<[f64; 2]> {
 }
 
 /// Where the pattern runs on a mesh; strokes are embedded.
-fn directions(source: &mut Option<Direction>, context: &mut RunContext<'_>) -> Result<Directions> {
+pub(crate) fn directions(source: &mut Option<Direction>, context: &mut RunContext<'_>) -> Result<Directions> {
     Ok(match source {
         None => Directions::Curvature(Bend::Least),
         Some(Direction::Bend(bend)) => Directions::Curvature(*bend),

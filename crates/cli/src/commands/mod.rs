@@ -5,6 +5,7 @@ pub(crate) mod fill;
 pub(crate) mod inspect;
 pub(crate) mod man;
 pub(crate) mod measure;
+pub(crate) mod relief;
 pub(crate) mod ribbon;
 pub(crate) mod run;
 pub(crate) mod surface;

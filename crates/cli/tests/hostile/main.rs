@@ -12,6 +12,7 @@ mod options;
 mod outlines;
 mod pictures;
 mod recipes;
+mod reliefs;
 mod ribbons;
 mod structure;
 mod tables;
@@ -27,6 +28,7 @@ fn corpus() -> Vec<(&'static str, Vec<Case>)> {
         ("outlines", outlines::cases()),
         ("pictures", pictures::cases()),
         ("recipes", recipes::cases()),
+        ("reliefs", reliefs::cases()),
         ("ribbons", ribbons::cases()),
         ("structure", structure::cases()),
         ("tables", tables::cases()),
@@ -68,6 +70,11 @@ fn pictures_as_fields_and_areas() {
 #[test]
 fn recipes_and_results() {
     check_all(recipes::cases());
+}
+
+#[test]
+fn reliefs() {
+    check_all(reliefs::cases());
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod drawn;
 mod expansion;
 pub mod field;
 mod filtered;
+pub mod heights;
 pub mod image;
 pub mod mask;
 mod palette;

@@ -29,7 +29,7 @@ impl Default for Resolution {
 }
 
 /// Keyword of the text chunk that holds the recipe.
-const RECIPE_KEYWORD: &str = "arabesque recipe";
+pub(super) const RECIPE_KEYWORD: &str = "arabesque recipe";
 
 /// Most bytes of a recipe that was compressed.
 const RECIPE: usize = 64 << 20;

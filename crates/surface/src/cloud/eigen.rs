@@ -3,7 +3,7 @@
 use arabesque_core::Vector;
 
 /// Eigenvalues, the smallest first, with their directions of length 1, of the symmetric matrix with these entries: xx, xy, xz, yy, yz, zz.
-pub(super) fn eigen(entries: [f64; 6]) -> [(f64, Vector<3>); 3] {
+pub(crate) fn eigen(entries: [f64; 6]) -> [(f64, Vector<3>); 3] {
     let [xx, xy, xz, yy, yz, zz] = entries;
     let mut m = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

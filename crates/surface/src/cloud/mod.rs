@@ -7,6 +7,7 @@ mod normals;
 mod sheets;
 
 pub(crate) use buried::buried;
+pub(crate) use eigen::eigen;
 pub(crate) use neighbours::Neighbours;
 pub(crate) use normals::{contradictions, estimated, mended, turned};
 pub(crate) use sheets::sheets;

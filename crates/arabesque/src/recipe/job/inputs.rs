@@ -54,6 +54,12 @@ impl Job {
                     wanted.push(("--direction", input));
                 }
             }
+            Self::Relief(job) => {
+                wanted.extend(job.on.iter().map(|input| ("--on", input)));
+                if let Some(Direction::Strokes(input)) = &job.direction {
+                    wanted.push(("--direction", input));
+                }
+            }
             Self::Surface(job) => wanted.extend(job.trim.iter().map(|input| ("--trim", input))),
         }
         wanted

@@ -4,6 +4,7 @@ mod fill;
 mod inputs;
 mod parameters;
 mod redo;
+mod relief;
 mod ribbon;
 mod space;
 mod structures;
@@ -12,6 +13,7 @@ mod surface;
 pub use fill::{ExemplarTile, Fill, Method, Reading};
 pub use parameters::Parameters;
 pub use redo::Redo;
+pub use relief::Relief;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};
 pub use space::Space;
 pub use structures::{Direction, Structures};
@@ -36,6 +38,8 @@ pub enum Job {
     Surface(Surface),
     /// Continue a repetitive structure that is given as points.
     Structures(Box<Structures>),
+    /// Continue a relief.
+    Relief(Box<Relief>),
 }
 
 impl Job {
@@ -48,11 +52,12 @@ impl Job {
             Self::Ribbon(_) => "ribbon",
             Self::Surface(_) => "surface",
             Self::Structures(_) => "structures",
+            Self::Relief(_) => "relief",
         }
     }
 
     /// The file format where nobody says which: SVG for the plane, OBJ for curves and CSV for points in space, PNG for ribbons, GLB
-    /// for ribbons in space, PLY for surfaces and structures, CSV for structures from a table.
+    /// for ribbons in space, PLY for surfaces, reliefs and structures, CSV for structures from a table.
     pub(crate) fn usual_format(&self, exemplar: &Input) -> Format {
         let is = |input: &Input, format| Format::of_path(&input.path).ok().flatten() == Some(format);
         match self {
@@ -62,7 +67,7 @@ impl Job {
             Self::Ribbon(ribbon) if is(&ribbon.along, Format::Obj) => Format::Glb,
             Self::Ribbon(_) => Format::Png,
             Self::Structures(_) if is(exemplar, Format::Csv) => Format::Csv,
-            Self::Surface(_) | Self::Structures(_) => Format::Ply,
+            Self::Surface(_) | Self::Structures(_) | Self::Relief(_) => Format::Ply,
         }
     }
 
@@ -89,6 +94,7 @@ impl Job {
             Self::Ribbon(job) => Self::Ribbon(job.prepared_part()),
             Self::Surface(job) => Self::Surface(job.prepared_part()),
             Self::Structures(job) => Self::Structures(Box::new(job.prepared_part())),
+            Self::Relief(job) => Self::Relief(Box::new(job.prepared_part())),
         }
     }
 }
@@ -114,6 +120,12 @@ impl From<Space> for Job {
 impl From<Structures> for Job {
     fn from(job: Structures) -> Self {
         Self::Structures(Box::new(job))
+    }
+}
+
+impl From<Relief> for Job {
+    fn from(job: Relief) -> Self {
+        Self::Relief(Box::new(job))
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use arabesque_core::options::{Kind, ParamSpec};
 use arabesque_patterns::Params;
+use arabesque_reliefs::ReliefParams;
 use arabesque_ribbons::RibbonParams;
 use arabesque_structures::StructureParams;
 use arabesque_surface::SurfaceParams;
@@ -84,6 +85,11 @@ pub(super) fn of_ribbons(_: &mut SchemaGenerator) -> Schema {
 /// The schema of the parameters of structures.
 pub(super) fn of_structures(_: &mut SchemaGenerator) -> Schema {
     table(StructureParams::specs(), [])
+}
+
+/// The schema of the parameters of reliefs.
+pub(super) fn of_reliefs(_: &mut SchemaGenerator) -> Schema {
+    table(ReliefParams::specs(), [])
 }
 
 /// The schema of the parameters of surfaces.

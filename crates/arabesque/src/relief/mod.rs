@@ -1,0 +1,161 @@
+//! Reliefs: more of a patch of surface detail, in the plane, on meshes, and in gaps of scans.
+
+mod heights;
+mod made;
+mod read;
+
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Unobserved, Vector, Warning, Watch};
+use arabesque_reliefs::{Ground, Prepared as Engine, ReliefOutcome, ReliefRequest};
+use arabesque_surface::{DirectionField, MeshReport, reconstruct};
+
+use crate::{
+    artwork::Artwork,
+    method::{Preparation, Ready, RunContext, Show},
+    plane::in_exemplar,
+    recipe::{Job, Relief, Size},
+    solid::read::indexed_mesh,
+    structure::directions,
+};
+use heights::Grid;
+use made::{ReliefMade, ReliefMesh};
+
+/// A relief, understood.
+#[derive(Debug)]
+pub(crate) struct Texture {
+    engine: Engine,
+    /// What was read, in words.
+    kind: &'static str,
+    /// Side of a pixel, of a height field.
+    pixel: Option<f64>,
+}
+
+/// Reads a relief to continue it.
+pub(crate) fn prepare(job: &Relief, preparation: &mut Preparation<'_>) -> Result<Texture> {
+    let params = job.engine_params()?;
+    job.surface_params()?;
+    job.check()?;
+    let bytes = preparation.files.read(&preparation.exemplar)?;
+    let found = read::texture(preparation.exemplar.name(), &bytes, job.height, preparation.files.budget())?;
+    preparation.warnings.extend(found.warnings);
+    preparation.exemplar = preparation.exemplar.embedding(&bytes);
+    let name = preparation.exemplar.name();
+    // Across the plane the box is as high as the points.
+    let all = found.points.bounds();
+    let proper = job.proper()?;
+    let bounds = proper.map(|b| proper_box(&b, &all, &found.points, &params));
+    let new = if job.fill_hole { Engine::with_gap } else { Engine::new };
+    let engine = new(&found.points, bounds, &params, preparation.files.budget())
+        .map_err(|error| in_exemplar(renamed(error, name), name))?;
+    preparation.warnings.extend(engine.warnings().iter().cloned());
+    Ok(Texture { engine, kind: found.kind, pixel: found.pixel })
+}
+
+/// The box of the relief proper in the axes of the file: `b` along the plane, all of the points across it.
+fn proper_box(
+    b: &Bounds<2>,
+    all: &Bounds<3>,
+    points: &PointSet<3>,
+    params: &arabesque_reliefs::ReliefParams,
+) -> Bounds<3> {
+    let axes = arabesque_reliefs::Axes::of(points, params.plane);
+    let (low, high) = (axes.lie(all.min), axes.lie(all.max));
+    let corner = |p: Vector<2>, z: f64| axes.stand(Vector([p[0], p[1], z]));
+    Bounds::new(corner(b.min, low[2]), corner(b.max, high[2]))
+}
+
+/// The engine knows no file names.
+fn renamed(error: Error, name: &str) -> Error {
+    match error {
+        Error::Input { problem, advice, .. } => Error::input(name, problem, advice),
+        other => other,
+    }
+}
+
+impl Ready for Texture {
+    fn understood(&self) -> String {
+        let engine = &self.engine;
+        let [w, d, h] = engine.size();
+        let across = ["x", "y", "z"][engine.axes().across_axis()];
+        let repeats = match engine.repetition() {
+            Some(length) => format!("repeats after {length:.4} ({:.0} %)", 100.0 * engine.regularity()),
+            None => "does not repeat".to_owned(),
+        };
+        format!(
+            "exemplar: a relief of {} points ({}), {:.4} apart, across {across}; its box is {w:.4} by {d:.4} and {h:.4} high; it {repeats}; patches of {:.4}",
+            engine.points(),
+            self.kind,
+            engine.spacing(),
+            engine.patch()
+        )
+    }
+
+    fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        let Job::Relief(mut job) = context.job.clone() else {
+            return Err(Error::parameter("request", context.job.name(), "a request for a relief"));
+        };
+        job.check()?;
+        let ground = self.ground(&mut job, &mut context)?;
+        let mut request = ReliefRequest::new(ground);
+        (request.seed, request.budget) = (context.seed, context.budget().clone());
+        let surface = if job.mesh { Some(job.surface_params()?) } else { None };
+        let engine = &self.engine;
+        let grid = job.height_field.then(|| Grid {
+            axes: engine.axes(),
+            extent: job.extent.as_ref().map(|size| size.sides),
+            is_tile: job.tile,
+            pixel: self.pixel.unwrap_or(0.5 * engine.spacing()),
+            spacing: engine.spacing(),
+        });
+        context.job = Job::Relief(job);
+        let origin = context.origin();
+        let make = |points: PointSet<3>| ReliefMade::unfinished(points, grid);
+        let outcome = engine.run(&request, &mut Show { watch, origin: &origin, make })?;
+        let told: Vec<Warning> = std::mem::take(&mut context.warnings);
+        // What the engine says again was said when it was prepared.
+        let own = outcome.warnings.iter().filter(|w| !told.contains(w)).cloned().collect::<Vec<_>>();
+        let outcome = ReliefOutcome { warnings: told.into_iter().chain(own).collect(), ..outcome };
+        let Some(params) = surface else {
+            return Ok(Artwork::new(origin, ReliefMade::new(outcome, grid)));
+        };
+        // The surface of the best so far has an account of its own, as its file has.
+        let budget = context.budget();
+        let budget = if outcome.stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
+        let mut found = reconstruct(&outcome.points, &params, None, &budget, &mut Unobserved)?;
+        let more = std::mem::take(&mut found.warnings);
+        found.warnings = outcome.warnings.iter().cloned().chain(more).collect();
+        if found.stopped == StopReason::Finished {
+            found.stopped = outcome.stopped;
+        }
+        Ok(Artwork::new(origin, ReliefMesh::new(found, outcome.statistics)))
+    }
+}
+
+impl Texture {
+    /// Where the relief goes; files are embedded.
+    fn ground(&self, job: &mut Relief, context: &mut RunContext<'_>) -> Result<Ground> {
+        if let Some(input) = &mut job.on {
+            let (index, warnings) = indexed_mesh(input, context.files)?;
+            context.warnings.extend(warnings);
+            let report = MeshReport::new(&index, context.budget())?;
+            context.warnings.extend(report.surface_of(input.name())?);
+            let field = DirectionField::new(&index, &directions(&mut job.direction, context)?, context.budget())?;
+            context.warnings.extend(field.warnings().iter().cloned());
+            return Ok(Ground::Mesh(Arc::new(index), Arc::new(field), job.scale.unwrap_or(1.0)));
+        }
+        match job.extent.as_ref().map(sides).transpose()? {
+            Some(size) if job.tile => Ok(Ground::Tile(size)),
+            Some(size) => Ok(Ground::Plane(size)),
+            None => Ok(Ground::Hole),
+        }
+    }
+}
+
+/// Width and depth in the units of the exemplar.
+fn sides(size: &Size) -> Result<[f64; 2]> {
+    match size.unit {
+        None => Ok(size.sides),
+        Some(_) => Err(Error::parameter("extent", size, "plain numbers, because points have no unit of length")),
+    }
+}

@@ -1,0 +1,142 @@
+//! `arabesque relief`: every ground, kind of input and of output, and what is refused.
+
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking, their helpers too")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use common::{Folder, example};
+use serde_json::Value;
+
+/// Bumps one apart over a square of 4 with normals, as a table; nothing where `keeps` does not hold.
+fn bumps(keeps: impl Fn(f64, f64) -> bool) -> String {
+    let mut text = String::from("x,y,z,nx,ny,nz\n");
+    for k in 0..2304_u32 {
+        let (x, y) =
+            (f64::from(k % 48) / 12.0 + 0.01 * f64::from(k % 3), f64::from(k / 48) / 12.0 + 0.01 * f64::from(k % 5));
+        let (a, b) = (x * std::f64::consts::TAU, y * std::f64::consts::TAU);
+        if keeps(x, y) {
+            let (dx, dy) = (0.15 * a.cos() * b.sin() * 6.283, 0.15 * a.sin() * b.cos() * 6.283);
+            let z = 0.15 * a.sin() * b.sin();
+            text += &format!("{x:.4},{y:.4},{z:.4},{:.4},{:.4},1\n", -dx, -dy);
+        }
+    }
+    text
+}
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("bumps.csv", bumps(|_, _| true));
+    folder
+}
+
+fn json(folder: &Folder, line: &str) -> Value {
+    serde_json::from_slice(&folder.ok(line).stdout).unwrap()
+}
+
+#[test]
+fn points_meshes_pictures_and_tables_come_out() {
+    let folder = folder();
+    for name in ["out.ply", "out.obj", "out.glb", "out.csv", "out.json", "out.png", "out.toml"] {
+        folder.ok(&format!("relief bumps.csv --extent 5x4 -o {name}"));
+    }
+    let made = json(&folder, "relief bumps.csv --extent 5x4 -o again.ply --json");
+    let (points, reliefs) = (&made["outputs"][0]["points"], &made["outputs"][0]["reliefs"]);
+    assert!(points.as_u64().unwrap() > 2400 && reliefs["patches"].as_u64().unwrap() > 4, "{made}");
+    assert!(reliefs["cracks"].as_u64().unwrap() * 20 < reliefs["overlapped"].as_u64().unwrap(), "{made}");
+    assert_eq!(folder.read("out.ply"), folder.read("again.ply"), "the same seed gives the same bytes");
+    folder.ok("run out.ply -o repeated.ply");
+    assert_eq!(folder.read("out.ply"), folder.read("repeated.ply"));
+    let mesh = json(&folder, "relief bumps.csv --extent 5x4 --mesh -o mesh.ply --json");
+    assert!(mesh["outputs"][0]["triangles"].as_u64().unwrap() > 4000, "{mesh}");
+    folder.ok("relief bumps.csv --extent 5x4 --seed 3 --variations 2 -o some.ply");
+    assert_ne!(folder.read("some-1.ply"), folder.read("some-2.ply"));
+}
+
+#[test]
+fn any_number_of_threads_writes_the_same() {
+    let folder = folder();
+    for threads in [1, 2, 8] {
+        folder.ok(&format!("relief bumps.csv --extent 6x5 --tile --threads {threads} -o t{threads}.ply --no-recipe"));
+    }
+    assert!(folder.read("t1.ply") == folder.read("t2.ply") && folder.read("t1.ply") == folder.read("t8.ply"));
+}
+
+#[test]
+fn heights_go_in_and_come_out_with_16_bits() {
+    let folder = folder();
+    folder.ok("relief bumps.csv --extent 5x4 --height-field -o heights.png");
+    let bytes = folder.read("heights.png");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    assert_eq!(
+        (reader.info().bit_depth, reader.info().color_type),
+        (png::BitDepth::Sixteen, png::ColorType::Grayscale)
+    );
+    let mut values = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut values).unwrap();
+    let levels: std::collections::BTreeSet<_> =
+        values.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();
+    assert!(levels.len() > 500, "{} heights", levels.len());
+    folder.ok("relief heights.png --extent 140x120 --height 8 --height-field -o more.png");
+    let more = folder.read("more.png");
+    let reader = png::Decoder::new(std::io::Cursor::new(&more)).read_info().unwrap();
+    assert_eq!((reader.info().width, reader.info().height), (140, 120), "a pixel is a unit");
+    folder.ok("run more.png -o again.png");
+    assert_eq!(folder.read("again.png"), more);
+}
+
+#[test]
+fn gaps_are_filled_and_meshes_covered() {
+    let folder = folder();
+    folder.write("scan.csv", bumps(|x, y| (x - 2.0).hypot(y - 2.2) > 0.55));
+    let made = json(&folder, "relief scan.csv --fill-hole -o whole.ply --json");
+    let count = made["outputs"][0]["points"].as_u64().unwrap();
+    assert!((2240..2370).contains(&count), "{made}");
+    folder.write("floor.obj", "v 0 0 0\nv 6 0 0\nv 6 5 0\nv 0 5 0\nf 1 2 3\nf 1 3 4\n");
+    let made = json(&folder, "relief bumps.csv --on floor.obj --direction 1,0,0 -o on.ply --json");
+    let count = made["outputs"][0]["points"].as_u64().unwrap() as f64;
+    assert!((count / 30.0 / 144.0 - 1.0).abs() < 0.2, "{made}");
+}
+
+#[test]
+fn scans_without_normals_and_meshes_are_textures_too() {
+    let folder = folder();
+    let raw: String =
+        bumps(|_, _| true).lines().skip(1).map(|l| l.split(',').take(3).collect::<Vec<_>>().join(" ") + "\n").collect();
+    folder.write("raw.xyz", raw);
+    folder.ok("relief raw.xyz --extent 5x4 -o raw.ply");
+    folder.ok("relief bumps.csv --extent 4x4 --mesh -o mesh.obj");
+    folder.ok("relief mesh.obj --extent 5x4 -o of-mesh.ply");
+    folder.ok(&format!("relief {} --extent 1.2x1 -o wall.ply", example("relief-wall.ply")));
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_what_to_do() {
+    let folder = folder();
+    folder.write("few.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0.1\n");
+    let normals = bumps(|_, _| true).replacen(",1\n", ",nan\n", 1);
+    folder.write("nan.csv", normals);
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    folder.write("empty.obj", "v 0 0 0\nv 1 0 0\n");
+    for (line, word) in [
+        ("relief bumps.csv -o a.ply", "one of extent"),
+        ("relief bumps.csv --extent 3mmx3mm -o a.ply", "plain numbers"),
+        ("relief bumps.csv --extent 5x4 --patch 9 -o a.ply", "patch"),
+        ("relief bumps.csv --extent 5x4 --plane x -o a.ply", "--plane"),
+        ("relief bumps.csv --extent 5x4 --box 0,0,9,9 -o a.ply", "within the points"),
+        ("relief bumps.csv --extent 5x4 --box 2,2,1,1 -o a.ply", "x0 below x1"),
+        ("relief bumps.csv --extent 5x4 --height 3 -o a.ply", "height field"),
+        ("relief bumps.csv --extent 0.5x4 --tile -o a.ply", "a tile of at least"),
+        ("relief bumps.csv --fill-hole -o a.ply", "no gap"),
+        ("relief bumps.csv --on empty.obj -o a.ply", "empty.obj"),
+        ("relief bumps.csv --extent 5x4 -o a.svg", "svg"),
+        ("relief few.csv --extent 5x4 -o a.ply", "4 points"),
+        ("relief nan.csv --extent 5x4 -o a.ply", "nan.csv"),
+        ("relief bumps.csv --extent 5x4 --set stifness=1 -o a.ply", "stiffness"),
+        ("relief bumps.csv --extent 1000000x1000000 -o a.ply", "output-elements"),
+    ] {
+        let output = folder.run(line);
+        let message = common::stderr(&output);
+        assert!(!output.status.success() && message.contains(word), "{line}: {message}");
+    }
+}

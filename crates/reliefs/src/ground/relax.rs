@@ -1,0 +1,147 @@
+//! Points along seams are spread evenly: those that lie too close go, the others keep apart along the surface [Duranleau 2008 §6].
+//!
+//! Departure: the rest of the points stays where it is, since it lies as in the texture.
+
+use arabesque_core::{Budget, Result, Vector};
+use arabesque_surface::OrientedPoints;
+use rayon::prelude::*;
+
+use crate::sample::Sample;
+
+/// Points nearer than so many spacings are one.
+const CLOSE: f64 = 0.38;
+/// How far points keep others away, in spacings.
+const APART: f64 = 0.7;
+/// A point that would leave its tangent plane by more, in spacings, or turn by more, stays.
+const OFF: f64 = 0.15;
+/// The cosine of that turn.
+const ALIKE: f64 = 0.93;
+/// Longest step of a round, in spacings.
+const STEP: f64 = 0.25;
+
+/// How the plane repeats: by so much along x and y.
+pub(crate) type Period = Option<[f64; 2]>;
+
+/// Positions and normals with copies beyond the borders of a tile, as far as `margin`; and for each the number of the original.
+fn with_ghosts(samples: &[Sample], period: Period, margin: f64) -> (Vec<Vector<3>>, Vec<Vector<3>>, Vec<u32>) {
+    let mut positions: Vec<_> = samples.iter().map(|s| s.at).collect();
+    let mut normals: Vec<_> = samples.iter().map(|s| s.normal).collect();
+    let mut numbers: Vec<u32> = (0..samples.len() as u32).collect();
+    let Some([width, depth]) = period else { return (positions, normals, numbers) };
+    for (i, s) in samples.iter().enumerate() {
+        for (dx, dy) in
+            [(-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0), (0.0, -1.0), (0.0, 1.0), (1.0, -1.0), (1.0, 0.0), (1.0, 1.0)]
+        {
+            let at = s.at + Vector([dx * width, dy * depth, 0.0]);
+            if at[0] > -margin && at[0] < width + margin && at[1] > -margin && at[1] < depth + margin {
+                positions.push(at);
+                normals.push(s.normal);
+                numbers.push(i as u32);
+            }
+        }
+    }
+    (positions, normals, numbers)
+}
+
+/// Spreads the points along seams; answers how many went.
+pub(crate) fn relax(
+    samples: &mut Vec<Sample>,
+    (spacing, radius): (f64, f64),
+    rounds: usize,
+    period: Period,
+    budget: &Budget,
+) -> Result<usize> {
+    let cloud = |samples: &[Sample]| -> Result<(OrientedPoints, Vec<u32>)> {
+        let (positions, normals, numbers) = with_ghosts(samples, period, radius);
+        Ok((OrientedPoints::new(positions, normals, radius, budget)?, numbers))
+    };
+    let (points, numbers) = cloud(samples)?;
+    let mut is_gone = vec![false; samples.len()];
+    let mut meter = budget.meter();
+    for i in 0..samples.len() {
+        if !samples[i].is_at_seam {
+            continue;
+        }
+        meter.spend(400)?;
+        let mut is_close = false;
+        points.around(samples[i].at, CLOSE * spacing, |j, _| {
+            let other = numbers[j] as usize;
+            is_close |= other != i && !is_gone[other] && points.normals()[j].dot(samples[i].normal) > 0.3;
+        });
+        is_gone[i] = is_close;
+    }
+    let merged = is_gone.iter().filter(|gone| **gone).count();
+    let mut k = 0;
+    samples.retain(|_| {
+        k += 1;
+        !is_gone[k - 1]
+    });
+    let (surface, _) = cloud(samples)?;
+    let seams: Vec<usize> = (0..samples.len()).filter(|&i| samples[i].is_at_seam).collect();
+    for _ in 0..rounds {
+        let (now, _) = cloud(samples)?;
+        budget.spend(seams.len() as u64 * 2500)?;
+        let moved: Vec<(Vector<3>, Vector<3>)> =
+            seams.par_iter().with_min_len(128).map(|&i| step(&samples[i], &now, &surface, spacing)).collect();
+        for (&i, (at, normal)) in seams.iter().zip(moved) {
+            (samples[i].at, samples[i].normal) = (at, normal);
+        }
+    }
+    Ok(merged)
+}
+
+/// Where one point goes: away from those around it, and back onto the surface.
+fn step(sample: &Sample, now: &OrientedPoints, surface: &OrientedPoints, spacing: f64) -> (Vector<3>, Vector<3>) {
+    let reach = APART * spacing;
+    let mut away = Vector::ZERO;
+    now.around(sample.at, reach, |j, d2| {
+        let d = d2.sqrt();
+        if d > 1e-9 * spacing && now.normals()[j].dot(sample.normal) > 0.0 {
+            away += (sample.at - now.positions()[j]) * ((1.0 - d / reach) / d);
+        }
+    });
+    let along = away - sample.normal * away.dot(sample.normal);
+    let length = (0.4 * along.norm() * spacing).min(STEP * spacing);
+    if length < 1e-3 * spacing {
+        return (sample.at, sample.normal);
+    }
+    let to = sample.at + along.unit_or_zero() * length;
+    match surface.project(to, spacing, Some(sample.normal)) {
+        // Near an edge the surface is not where the points say.
+        Some(foot) if (foot.point - to).norm() < OFF * spacing && foot.normal.dot(sample.normal) > ALIKE => {
+            (foot.point, foot.normal)
+        }
+        _ => (sample.at, sample.normal),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet() -> Vec<Sample> {
+        let at = |k: usize| Vector([(k % 20) as f64, (k / 20) as f64, 0.0]);
+        let normal = Vector([0.0, 0.0, 1.0]);
+        (0..400).map(|k| Sample { at: at(k), normal, source: k as u32, ..Sample::default() }).collect()
+    }
+
+    #[test]
+    fn close_points_are_merged_and_pushed_ones_stay_on_the_surface() {
+        let mut samples = sheet();
+        samples.push(Sample { at: Vector([5.1, 5.1, 0.0]), is_at_seam: true, ..samples[0] });
+        samples.push(Sample { at: Vector([7.6, 7.2, 0.0]), is_at_seam: true, ..samples[0] });
+        let merged = relax(&mut samples, (1.0, 2.5), 8, None, &Budget::default()).unwrap();
+        assert_eq!((merged, samples.len()), (1, 401));
+        let moved = samples[400].at;
+        assert!((moved - Vector([7.5, 7.5, 0.0])).norm() < 0.25 && moved[2].abs() < 1e-9, "{moved:?}");
+        assert_eq!(samples[..400], sheet()[..]);
+    }
+
+    #[test]
+    fn tiles_see_across_their_border() {
+        let mut samples = sheet();
+        samples.push(Sample { at: Vector([19.9, 5.0, 0.0]), is_at_seam: true, ..samples[0] });
+        let merged = relax(&mut samples, (1.0, 2.5), 0, Some([20.0, 20.0]), &Budget::default()).unwrap();
+        assert_eq!(merged, 1, "the point at 0 is the one at 20");
+    }
+}

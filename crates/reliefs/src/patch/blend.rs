@@ -1,0 +1,130 @@
+//! The place of a patch, and how a bent patch is blended with what is there [Duranleau 2008 §5.3].
+
+use arabesque_core::{Budget, Result};
+use arabesque_surface::OrientedPoints;
+use rayon::prelude::*;
+
+use crate::{
+    params::ReliefParams,
+    patch::{mask::Mask, notes::Notes},
+    sample::Sample,
+    texture::understand::Texture,
+};
+
+/// Share of a loose piece that may lie within others.
+const PASSING: f64 = 0.02;
+
+/// What is known of the place of a patch.
+pub(crate) struct Site<'a> {
+    pub(crate) texture: &'a Texture,
+    pub(crate) params: &'a ReliefParams,
+    pub(crate) mask: Mask,
+    /// The result around.
+    pub(crate) samples: Vec<Sample>,
+    /// Places of the texture that would go on from patches around, in cells.
+    pub(crate) shunned: Vec<[f64; 2]>,
+    pub(crate) budget: &'a Budget,
+}
+
+/// What is there already, as a surface.
+pub(super) struct Around {
+    pub(super) points: OrientedPoints,
+    /// Targets of pairs.
+    pub(super) targets: Vec<Sample>,
+    pub(super) overlapped: Vec<u32>,
+}
+
+impl Site<'_> {
+    /// How far points may move.
+    pub(super) fn reach(&self) -> f64 {
+        self.params.reach * self.texture.patch_side()
+    }
+
+    /// Moves points in the overlap towards what is there, along their normals if that leads to it, and keeps those that are pasted.
+    pub(super) fn blended(&self, bent: Vec<Sample>, around: &Around, notes: &mut Notes) -> Result<Vec<Sample>> {
+        let reach = (0.6 * self.reach()).max(3.0 * self.texture.spacing);
+        let blend = |s: &Sample| -> Result<Option<(Sample, u8)>> {
+            if s.piece > 0 {
+                return Ok(self.mask.takes(s.middle()).then_some((*s, 0)));
+            }
+            // What lies beside may be moved in.
+            let is_at_seam = self.mask.is_at_seam(s.at, 1.6 * self.texture.spacing);
+            if !self.mask.is_pasted(s.at) && !is_at_seam {
+                return Ok(None);
+            }
+            let mut sample = Sample { is_at_seam, ..*s };
+            let share = self.mask.share(s.at);
+            if share <= 0.0 {
+                return Ok(Some((sample, 0)));
+            }
+            self.budget.spend(6000)?;
+            let hit = around.points.hit(s.at, s.normal, reach);
+            let how = if hit.is_some() { 1 } else { 2 };
+            let Some(foot) = hit.or_else(|| around.points.project(s.at, reach, Some(s.normal))) else {
+                return Ok(Some((sample, 3)));
+            };
+            let other = &self.samples[foot.nearest];
+            sample.at = s.at + (foot.point - s.at) * share;
+            let mixed = s.normal * (1.0 - share) + foot.normal * share;
+            sample.normal = mixed.unit_if_longer(1e-9).unwrap_or(s.normal);
+            let mix = |a: f32, b: f32| a + (b - a) * share as f32;
+            sample.variation = mix(s.variation, other.variation);
+            sample.colour = std::array::from_fn(|k| mix(s.colour[k], other.colour[k]));
+            Ok(Some((sample, how)))
+        };
+        let blended: Result<Vec<Option<(Sample, u8)>>> = bent.par_iter().with_min_len(64).map(blend).collect();
+        let mut samples = Vec::with_capacity(bent.len());
+        for (sample, how) in blended?.into_iter().flatten().filter(|(s, _)| self.mask.replaces(s)) {
+            match how {
+                1 => notes.by_ray += 1,
+                2 => notes.by_projection += 1,
+                3 => notes.unmatched += usize::from(self.mask.share(sample.at) > 0.5),
+                _ => {}
+            }
+            samples.push(sample);
+        }
+        Ok(samples)
+    }
+
+    /// Leaves out loose pieces that would pass through those that stay.
+    pub(super) fn apart(&self, samples: Vec<Sample>, notes: &mut Notes) -> Result<Vec<Sample>> {
+        if self.texture.pieces.is_empty() {
+            return Ok(samples);
+        }
+        let staying: Vec<&Sample> = self.samples.iter().filter(|s| s.piece > 0 && !self.mask.replaces(s)).collect();
+        let positions = staying.iter().map(|s| s.at).collect();
+        let normals = staying.iter().map(|s| s.normal).collect();
+        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
+        self.budget.spend(samples.len() as u64 * 800)?;
+        let spacing = self.texture.spacing;
+        let is_inside = |s: &Sample| {
+            let near = points.nearest(s.at, 4.0 * spacing, |_| true);
+            near.is_some_and(|(j, _)| (s.at - points.positions()[j]).dot(points.normals()[j]) < -0.4 * spacing)
+        };
+        let mut inside = std::collections::BTreeMap::<u32, (usize, usize)>::new();
+        for s in samples.iter().filter(|s| s.piece > 0) {
+            let count = inside.entry(s.piece).or_default();
+            *count = (count.0 + usize::from(is_inside(s)), count.1 + 1);
+        }
+        let collides = |s: &Sample| inside.get(&s.piece).is_some_and(|(n, all)| *n as f64 > PASSING * *all as f64);
+        let (out, kept): (Vec<Sample>, Vec<Sample>) = samples.into_iter().partition(collides);
+        notes.unmatched += out.len();
+        Ok(kept)
+    }
+
+    /// Points of the result near what is kept that nothing in the patch goes on from.
+    pub(super) fn cracks(&self, samples: &[Sample], around: &Around) -> Result<usize> {
+        let positions = samples.iter().map(|s| s.at).collect();
+        let normals = samples.iter().map(|s| s.normal).collect();
+        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
+        let reach = 2.2 * self.texture.spacing;
+        self.budget.spend(around.overlapped.len() as u64 * 400)?;
+        let is_lost = |i: &&u32| {
+            let sample = &self.samples[**i as usize];
+            sample.piece == 0
+                && self.mask.share(sample.at) > 0.6
+                && points.nearest(sample.at, reach, |j| points.normals()[j].dot(sample.normal) > 0.3).is_none()
+        };
+        Ok(around.overlapped.par_iter().with_min_len(128).filter(is_lost).count())
+    }
+}

@@ -1,0 +1,216 @@
+//! What of the place of a patch is there already, and how much of it counts where.
+//!
+//! Cells are *kept* where the result stays as it is, *overlapped* where it is there and is replaced, and *free* where nothing is. What is
+//! pasted is wholly the result's at the kept cells and wholly the patch's at the free ones [Duranleau 2008 fig. 3 c].
+
+use arabesque_core::Vector;
+
+use crate::sample::Sample;
+
+/// Cells around the place of a patch, whose corner is the origin.
+#[derive(Clone, Debug)]
+pub(crate) struct Mask {
+    cell: f64,
+    /// Cells of the border on each side.
+    margin: usize,
+    /// Cells along a side, borders included.
+    side: usize,
+    kinds: Vec<Kind>,
+    /// Share of the result in what is pasted, at the middle of each cell.
+    shares: Vec<f64>,
+    /// Distance of each cell from those that are kept, and from those that are pasted, in cells.
+    from_kept: Vec<f64>,
+    from_pasted: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Kept,
+    Overlap,
+    Free,
+}
+
+impl Mask {
+    /// The mask of a patch of `patch` cells a side with `border` around, of which `is_filled` holds where the result is there already, by the middle of
+    /// the cell. Overlapped are cells at most `overlap` from free ones.
+    pub(crate) fn new(
+        cell: f64,
+        (patch, overlap, border): (usize, usize, usize),
+        is_filled: impl Fn(f64, f64) -> bool,
+    ) -> Self {
+        let margin = border.max(1);
+        let side = patch + 2 * margin;
+        let filled: Vec<bool> = (0..side * side)
+            .map(|k| {
+                let at = [k % side, k / side].map(|i| (i as f64 - margin as f64 + 0.5) * cell);
+                is_filled(at[0], at[1])
+            })
+            .collect();
+        let inner = |k: usize| [k % side, k / side].iter().all(|i| (margin..margin + patch).contains(i));
+        let from_free = distances(side, |k| !filled[k]);
+        let kind = |k: usize| match (filled[k], inner(k) && from_free[k] <= overlap as f64 + 0.01) {
+            (false, _) => Kind::Free,
+            (true, true) => Kind::Overlap,
+            (true, false) => Kind::Kept,
+        };
+        let kinds: Vec<Kind> = (0..side * side).map(kind).collect();
+        let from_kept = distances(side, |k| kinds[k] == Kind::Kept);
+        let from_pasted = distances(side, |k| kinds[k] != Kind::Kept);
+        let share = |k: usize| match kinds[k] {
+            Kind::Kept => 1.0,
+            Kind::Free => 0.0,
+            Kind::Overlap if from_kept[k].is_infinite() => 0.0,
+            Kind::Overlap => {
+                // The outermost cells are wholly the result's, so that there is no step to what is kept.
+                let x = (from_free[k] - 1.0) / (from_free[k] + from_kept[k] - 2.0).max(1.0);
+                let x = x.clamp(0.0, 1.0);
+                x * x * (3.0 - 2.0 * x)
+            }
+        };
+        let shares = (0..side * side).map(share).collect();
+        Self { cell, margin, side, kinds, shares, from_kept, from_pasted }
+    }
+
+    /// The cell under a place; `None` beyond the border.
+    fn under(&self, p: Vector<3>) -> Option<usize> {
+        let at = [0, 1].map(|k| (p[k] / self.cell).floor() + self.margin as f64);
+        let is_in = at.iter().all(|v| (0.0..self.side as f64).contains(v));
+        is_in.then(|| at[1] as usize * self.side + at[0] as usize)
+    }
+
+    /// Whether the patch is pasted here.
+    pub(crate) fn is_pasted(&self, p: Vector<3>) -> bool {
+        self.under(p).is_some_and(|k| self.kinds[k] != Kind::Kept)
+    }
+
+    /// Whether a loose piece with its middle here is the patch's.
+    pub(crate) fn takes(&self, middle: Vector<3>) -> bool {
+        self.is_pasted(middle) && self.share(middle) < 0.5
+    }
+
+    /// Whether a point of the result goes when the patch is pasted: loose pieces as a whole.
+    pub(crate) fn replaces(&self, sample: &Sample) -> bool {
+        if sample.piece == 0 { self.is_pasted(sample.at) } else { self.takes(sample.middle()) }
+    }
+
+    /// Whether the result is there and is replaced here.
+    pub(crate) fn is_overlap(&self, p: Vector<3>) -> bool {
+        self.under(p).is_some_and(|k| self.kinds[k] == Kind::Overlap)
+    }
+
+    /// Whether nothing is here yet.
+    pub(crate) fn is_free(&self, p: Vector<3>) -> bool {
+        self.under(p).is_some_and(|k| self.kinds[k] == Kind::Free)
+    }
+
+    /// Whether a seam runs within `reach` of here.
+    pub(crate) fn is_at_seam(&self, p: Vector<3>, reach: f64) -> bool {
+        let Some(k) = self.under(p) else { return false };
+        let far = if self.kinds[k] == Kind::Kept { self.from_pasted[k] } else { self.from_kept[k] };
+        (far - 0.5) * self.cell <= reach
+    }
+
+    /// Whether anything is compared.
+    pub(crate) fn has_overlap(&self) -> bool {
+        self.kinds.contains(&Kind::Overlap)
+    }
+
+    /// Whether anything is left to fill in the patch itself.
+    pub(crate) fn has_room(&self) -> bool {
+        let inner = self.margin..self.side - self.margin;
+        (0..self.kinds.len()).any(|k| {
+            self.kinds[k] == Kind::Free && inner.contains(&(k % self.side)) && inner.contains(&(k / self.side))
+        })
+    }
+
+    /// The overlapped cells, as steps from the corner of the patch.
+    pub(crate) fn overlapped(&self) -> Vec<[u32; 2]> {
+        let cells = (0..self.kinds.len()).filter(|&k| self.kinds[k] == Kind::Overlap);
+        cells.map(|k| [k % self.side, k / self.side].map(|i| (i - self.margin) as u32)).collect()
+    }
+
+    /// The share of the result at a place, as smooth as the cells tell it.
+    pub(crate) fn share(&self, p: Vector<3>) -> f64 {
+        let last = self.side - 1;
+        let at = [0, 1].map(|k| (p[k] / self.cell + self.margin as f64 - 0.5).clamp(0.0, last as f64));
+        let low = at.map(|v| (v.floor() as usize).min(last.saturating_sub(1)));
+        let [u, v] = [at[0] - low[0] as f64, at[1] - low[1] as f64];
+        let of = |dx: usize, dy: usize| self.shares[(low[1] + dy).min(last) * self.side + (low[0] + dx).min(last)];
+        (of(0, 0) * (1.0 - u) + of(1, 0) * u) * (1.0 - v) + (of(0, 1) * (1.0 - u) + of(1, 1) * u) * v
+    }
+}
+
+/// Distance of the middle of each cell from that of the nearest for which `counts` holds.
+fn distances(side: usize, counts: impl Fn(usize) -> bool) -> Vec<f64> {
+    let far = f64::INFINITY;
+    let mut along = vec![far; side * side];
+    for y in 0..side {
+        let row = y * side..(y + 1) * side;
+        let mut last = far;
+        for k in row.clone() {
+            last = if counts(k) { 0.0 } else { last + 1.0 };
+            along[k] = last;
+        }
+        last = far;
+        for k in row.rev() {
+            last = if counts(k) { 0.0 } else { last + 1.0 };
+            along[k] = along[k].min(last);
+        }
+    }
+    let of = |k: usize| {
+        let (x, y) = (k % side, k / side);
+        let squares = (0..side).map(|j| {
+            let (dx, dy) = (along[j * side + x], y.abs_diff(j) as f64);
+            dx * dx + dy * dy
+        });
+        squares.fold(far, f64::min).sqrt()
+    };
+    (0..side * side).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A patch of 8 cells with what lies left of 3 filled.
+    fn left() -> Mask {
+        Mask::new(1.0, (8, 3, 2), |x, _| x < 3.0)
+    }
+
+    fn at(x: f64) -> Vector<3> {
+        Vector([x, 4.0, 0.0])
+    }
+
+    #[test]
+    fn what_is_beside_the_patch_is_kept_and_what_is_in_it_replaced() {
+        let mask = left();
+        assert!(
+            !mask.is_pasted(at(-0.5)) && mask.is_overlap(at(0.5)) && mask.is_free(at(5.0)) && mask.is_pasted(at(9.5))
+        );
+        assert!(!mask.is_pasted(at(11.0)), "beyond the border");
+        assert_eq!(mask.overlapped().len(), 24);
+        assert!(mask.has_room() && mask.has_overlap());
+        let full = Mask::new(1.0, (8, 3, 2), |_, _| true);
+        assert!(!full.has_room() && !full.has_overlap());
+    }
+
+    #[test]
+    fn blending_is_continuous_at_both_ends() {
+        let mask = left();
+        assert_eq!((mask.share(at(-0.5)), mask.share(at(3.5))), (1.0, 0.0));
+        let mut last = 1.0;
+        for k in 0..=500 {
+            let share = mask.share(at(-0.5 + f64::from(k) * 0.01));
+            assert!(share <= last + 1e-12 && last - share < 0.02, "{k}: {last} {share}");
+            last = share;
+        }
+    }
+
+    #[test]
+    fn what_is_far_from_a_hole_is_kept() {
+        let mask = Mask::new(1.0, (12, 2, 2), |x, y| !((5.0..7.0).contains(&x) && (5.0..7.0).contains(&y)));
+        assert!(mask.is_pasted(Vector([6.0, 6.0, 0.0])) && mask.is_overlap(Vector([4.5, 6.0, 0.0])));
+        assert!(!mask.is_pasted(Vector([1.5, 6.0, 0.0])));
+        assert!(mask.is_at_seam(Vector([3.5, 6.0, 0.0]), 1.0) && !mask.is_at_seam(Vector([0.5, 6.0, 0.0]), 1.0));
+    }
+}

@@ -1,0 +1,261 @@
+//! One patch [Duranleau 2008 §4, §5]: what fits is found in the texture, bent onto what is there, blended with it.
+//!
+//! All is in the frame of the patch: its corner is the origin, its sides are x and y. Who lays patches brings what is there into this frame and
+//! takes the new points out of it.
+
+use arabesque_core::{Bounds, Result, Stream, Vector};
+use arabesque_surface::{OrientedPoints, clusters};
+use rayon::prelude::*;
+
+use crate::{
+    patch::pairing::{Pair, Pairing},
+    patch::spline::{Spline, carried, determinant},
+    patch::{
+        blend::{Around, Site},
+        notes::Notes,
+    },
+    sample::Sample,
+    search::best::{Candidate, best},
+    search::field::Overlap,
+};
+
+/// Volumes that are squeezed to less than the first share, or blown up to more than the second, are folds.
+const FOLDED: (f64, f64) = (0.15, 8.0);
+/// Times that the worst pairs are left out before a patch is given up.
+const MENDINGS: usize = 4;
+/// Share of pairs that is left out each time.
+const WORST: f64 = 0.15;
+/// Share of the overlap that may be without a counterpart in a patch that is taken at once.
+const TORN: f64 = 0.01;
+/// Mean difference at a node, as a share of the most there can be, that counts as none.
+const FLOOR: f64 = 2e-3;
+/// Share of a target's surface that bends at most, from which its cluster is split.
+const FLAT: f64 = 0.06;
+/// How far pairs listen to one another, as a share of the patch.
+const LISTENING: f64 = 0.15;
+
+/// A patch, ready to be pasted.
+#[derive(Debug)]
+pub(crate) struct Laid {
+    pub(crate) samples: Vec<Sample>,
+    /// Where in the texture it comes from.
+    pub(crate) place: [u32; 2],
+    pub(crate) notes: Notes,
+}
+
+impl Site<'_> {
+    /// Chooses a patch and makes it fit. `None` where the texture has no place for it.
+    pub(crate) fn lay(&self, random: &mut Stream) -> Result<Option<Laid>> {
+        if self.texture.places.is_empty() {
+            return Ok(None);
+        }
+        let nodes = self.mask.overlapped();
+        if nodes.is_empty() || self.samples.is_empty() {
+            let place = self.texture.places[random.below(self.texture.places.len())];
+            let samples = self.source(place).into_iter().filter(|s| self.mask.replaces(s)).collect();
+            return Ok(Some(Laid { samples, place, notes: Notes { patches: 1, ..Notes::default() } }));
+        }
+        let around = self.around()?;
+        let overlap = Overlap::new(&around.points, &self.texture.lattice, nodes, self.budget)?;
+        let candidates = self.candidates(&overlap, random)?;
+        let mut best: Option<Laid> = None;
+        for (n, candidate) in candidates.iter().enumerate() {
+            let mut laid = self.fitted(candidate.place, &around)?;
+            laid.notes.passed = n;
+            let is_good = laid.notes.torn() <= TORN && laid.notes.unbent == 0;
+            let folds = laid.notes.folds + best.as_ref().map_or(0, |b| b.notes.folds);
+            let rank = |l: &Laid| (l.notes.unbent, l.notes.torn());
+            if best.as_ref().is_none_or(|b| rank(&laid) < rank(b)) {
+                best = Some(laid);
+            }
+            if let Some(best) = &mut best {
+                (best.notes.folds, best.notes.passed) = (folds, n);
+            }
+            if is_good {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// What is there already, prepared.
+    fn around(&self) -> Result<Around> {
+        let positions: Vec<_> = self.samples.iter().map(|s| s.at).collect();
+        let normals = self.samples.iter().map(|s| s.normal).collect();
+        let overlapped: Vec<u32> =
+            (0..positions.len() as u32).filter(|&i| self.mask.is_overlap(positions[i as usize])).collect();
+        let most = (overlapped.len() / self.params.pairs).max(3);
+        let some = clusters(&positions, overlapped.clone(), (most / 3, most), FLAT, self.budget)?;
+        let target = |cluster: &Vec<u32>| {
+            let sum = cluster.iter().fold(Vector::ZERO, |sum, &i| sum + positions[i as usize]);
+            let mean = sum * (1.0 / cluster.len() as f64);
+            let far = |i: u32| (positions[i as usize] - mean).norm2();
+            let nearest = cluster.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+            nearest.map(|i| self.samples[i as usize])
+        };
+        let targets = some.iter().filter_map(target).collect();
+        Ok(Around {
+            points: OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?,
+            targets,
+            overlapped,
+        })
+    }
+
+    /// Places to try, in the order in which they are tried: one of the best at random, then the others from the best on.
+    fn candidates(&self, overlap: &Overlap, random: &mut Stream) -> Result<Vec<Candidate>> {
+        let texture = self.texture;
+        let apart = self.params.apart * texture.patch as f64;
+        let is_shunned = |place: &[u32; 2]| {
+            self.shunned.iter().any(|s| {
+                let d = [0, 1].map(|k| f64::from(place[k]) - s[k]);
+                d[0] * d[0] + d[1] * d[1] < apart * apart
+            })
+        };
+        let mut places: Vec<_> = texture.places.iter().filter(|p| !is_shunned(p)).copied().collect();
+        if places.is_empty() {
+            places.clone_from(&texture.places);
+        }
+        let floor = FLOOR * (overlap.nodes.len() * texture.field.planes.len()) as f64;
+        let tolerance = self.params.tolerance;
+        let found = best(
+            &texture.field,
+            texture.searcher.as_ref(),
+            overlap,
+            &places,
+            (tolerance, floor, 4 * self.params.tries),
+            (self.params.search, self.budget),
+        )?;
+        let most = (1.0 + tolerance) * found[0].difference.max(floor);
+        let within = found.partition_point(|c| c.difference <= most).max(1);
+        let mut order = vec![found[random.below(within)]];
+        // Beside those that were tried others are hardly better.
+        let near = (0.1 * texture.patch as f64).max(1.5);
+        for candidate in found {
+            let is_near = |c: &Candidate| {
+                let d = [0, 1].map(|k| f64::from(c.place[k]) - f64::from(candidate.place[k]));
+                d[0] * d[0] + d[1] * d[1] < near * near
+            };
+            if order.len() < self.params.tries && !order.iter().any(is_near) {
+                order.push(candidate);
+            }
+        }
+        Ok(order)
+    }
+
+    /// The points of the texture for a patch, and as far around as they may move.
+    fn source(&self, place: [u32; 2]) -> Vec<Sample> {
+        let texture = self.texture;
+        let corner = texture.corner(place);
+        let side = texture.patch_side();
+        let more = texture.border as f64 * texture.lattice.cell + self.reach();
+        let (low, high) = (texture.bounds.min[2], texture.bounds.max[2]);
+        let from = Vector([corner[0] - more, corner[1] - more, low]);
+        let to = Vector([corner[0] + side + more, corner[1] + side + more, high]);
+        let mut numbers = Vec::new();
+        let bounds = Bounds::new(from, to);
+        texture
+            .points
+            .inside(&bounds, |i| numbers.extend((texture.pieces.of.get(i).is_none_or(|p| *p == 0)).then_some(i)));
+        // Loose pieces come whole.
+        let middle = |[x, y]: [f64; 2]| Vector([x, y, 0.5 * (low + high)]);
+        let whole = texture.pieces.members.iter().filter(|p| !p.is_cut && bounds.contains(middle(p.middle)));
+        whole.for_each(|p| numbers.extend(p.points.iter().map(|&i| i as usize)));
+        numbers.sort_unstable();
+        let moved = |i: usize| {
+            let sample = texture.sample(i);
+            Sample { at: sample.at - corner, ..sample }
+        };
+        numbers.into_iter().map(moved).collect()
+    }
+
+    /// The patch of a place, bent and blended.
+    fn fitted(&self, place: [u32; 2], around: &Around) -> Result<Laid> {
+        let source = self.source(place);
+        let mut notes = Notes { patches: 1, overlapped: around.overlapped.len(), ..Notes::default() };
+        let bent = self.bent(&source, around, &mut notes)?;
+        let bent = bent.unwrap_or_else(|| {
+            notes.unbent = 1;
+            source
+        });
+        let samples = self.blended(bent, around, &mut notes)?;
+        let samples = self.apart(samples, &mut notes)?;
+        notes.cracks = self.cracks(&samples, around)?;
+        Ok(Laid { samples, place, notes })
+    }
+
+    /// The patch, bent onto what is there; `None` where that cannot be done without folds.
+    fn bent(&self, source: &[Sample], around: &Around, notes: &mut Notes) -> Result<Option<Vec<Sample>>> {
+        let positions = source.iter().map(|s| s.at).collect();
+        let normals = source.iter().map(|s| s.normal).collect();
+        let variations: Vec<f32> = source.iter().map(|s| s.variation).collect();
+        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
+        let listening = LISTENING * self.texture.patch_side();
+        let pairing = Pairing { params: self.params, reach: self.reach(), listening };
+        let mut pairs = pairing.pairs(&around.targets, &points, &variations, self.budget)?;
+        if pairs.len() * 2 < around.targets.len() || pairs.len() < 4 {
+            return Ok(None);
+        }
+        pairs.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        for _ in 0..=MENDINGS {
+            let stiffness = self.params.stiffness * self.texture.patch_side();
+            let Some(spline) = Spline::new(&self.with_anchors(&pairs), stiffness, self.budget)? else {
+                return Ok(None);
+            };
+            self.budget.spend(spline.work() * source.len() as u64)?;
+            let bend = |s: &Sample| {
+                let (at, columns) = spline.apply(s.at);
+                let volume = determinant(columns);
+                let is_sound = (FOLDED.0..FOLDED.1).contains(&volume) || !self.mask.is_pasted(at);
+                if s.piece > 0 {
+                    // A loose piece is moved, not bent.
+                    let shift = spline.apply(s.middle()).0 - s.middle();
+                    return (Sample { at: s.at + Vector([shift[0], shift[1], 0.0]), ..*s }, is_sound);
+                }
+                (Sample { at, normal: carried(s.normal, columns), ..*s }, is_sound)
+            };
+            let bent: Vec<(Sample, bool)> = source.par_iter().with_min_len(256).map(bend).collect();
+            if bent.iter().all(|(_, is_sound)| *is_sound) {
+                return Ok(Some(bent.into_iter().map(|(s, _)| s).collect()));
+            }
+            notes.folds += 1;
+            let fewer = ((pairs.len() as f64 * (1.0 - WORST)) as usize).min(pairs.len() - 1);
+            if fewer < 4 {
+                break;
+            }
+            pairs.truncate(fewer);
+        }
+        Ok(None)
+    }
+
+    /// The pairs, with points that stay where they are: in the free part of the patch, and above and below some of the pairs, since all pairs
+    /// may lie in one plane.
+    fn with_anchors(&self, pairs: &[Pair]) -> Vec<(Vector<3>, Vector<3>)> {
+        let texture = self.texture;
+        let (low, high) = (texture.bounds.min[2], texture.bounds.max[2]);
+        let lift = (high - low).max(0.1 * texture.patch_side());
+        let (middle, half) = (0.5 * (low + high), lift);
+        let mut all: Vec<_> = pairs.iter().map(|p| (p.source, p.target)).collect();
+        for (k, pair) in pairs.iter().enumerate().filter(|(k, _)| k % 4 == 0) {
+            let up = Vector([0.0, 0.0, if k % 8 == 0 { lift } else { -lift }]);
+            all.push((pair.source + up, pair.target + up));
+        }
+        let border = texture.border as f64 * texture.lattice.cell;
+        let side = texture.patch_side();
+        let steps = 4;
+        let near2 = (0.2 * side).powi(2);
+        for k in 0..(steps + 1) * (steps + 1) {
+            let at = [k % (steps + 1), k / (steps + 1)]
+                .map(|i| (i as f64 / f64::from(steps as u32)) * (side + 1.98 * border) - 0.99 * border);
+            let p = Vector([at[0], at[1], middle]);
+            let is_near = |pair: &Pair| {
+                let d = pair.target - p;
+                d[0] * d[0] + d[1] * d[1] < near2
+            };
+            if self.mask.is_free(p) && !pairs.iter().any(is_near) {
+                let up = Vector([0.0, 0.0, half]);
+                all.extend([(p + up, p + up), (p - up, p - up)]);
+            }
+        }
+        all
+    }
+}

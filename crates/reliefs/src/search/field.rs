@@ -1,0 +1,117 @@
+//! Signed distance and its gradient at the nodes of a grid [Duranleau 2008 §5.1].
+//!
+//! Distances end at a reach beyond which nothing is told: they are in units of it, and so weigh as much as gradients, which have length 1.
+
+use arabesque_core::{Budget, Held, Result, Vector};
+use arabesque_surface::OrientedPoints;
+use rayon::prelude::*;
+
+/// Numbers at a node: distance and gradient.
+pub(crate) const CHANNELS: usize = 4;
+/// Work units of a projection.
+pub(crate) const PROJECTION: u64 = 3000;
+
+/// Where the nodes of all grids are: columns stand at multiples of `cell`, and in each the same heights.
+#[derive(Clone, Debug)]
+pub(crate) struct Lattice {
+    pub(crate) cell: f64,
+    pub(crate) heights: Vec<f64>,
+    /// How far distances are told.
+    pub(crate) reach: f64,
+}
+
+impl Lattice {
+    /// Planes of numbers: one for each height and channel.
+    pub(crate) fn planes(&self) -> usize {
+        self.heights.len() * CHANNELS
+    }
+
+    /// The numbers of one column, height by height.
+    pub(crate) fn column(&self, points: &OrientedPoints, x: f64, y: f64, out: &mut Vec<f32>) {
+        for &z in &self.heights {
+            out.extend(self.at(points, Vector([x, y, z])));
+        }
+    }
+
+    /// Distance and gradient at one node; zeros where there is no surface within reach.
+    fn at(&self, points: &OrientedPoints, x: Vector<3>) -> [f32; CHANNELS] {
+        let Some(foot) = points.project(x, self.reach, None) else { return [1.0, 0.0, 0.0, 0.0] };
+        let way = x - foot.point;
+        let far = way.norm();
+        let sign = if way.dot(foot.normal) < 0.0 { -1.0 } else { 1.0 };
+        let gradient = if far > 0.25 * self.cell { way * (sign / far) } else { foot.normal };
+        // Towards the reach gradients fade, as there are none beyond.
+        let fade = (2.0 - 2.0 * far / self.reach).clamp(0.0, 1.0);
+        let [a, b, c] = gradient.0.map(|v| (v * fade) as f32);
+        [(sign * (far / self.reach).min(1.0)) as f32, a, b, c]
+    }
+}
+
+/// The field of the texture, plane by plane, row by row.
+#[derive(Debug)]
+pub(crate) struct Field {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) planes: Vec<Vec<f32>>,
+    _held: Held,
+}
+
+impl Field {
+    /// The field of points over `width` by `height` columns, the first of which stands half a cell beyond `origin`.
+    pub(crate) fn new(
+        points: &OrientedPoints,
+        lattice: &Lattice,
+        origin: [f64; 2],
+        (width, height): (usize, usize),
+        budget: &Budget,
+    ) -> Result<Self> {
+        let held = budget.hold("the distance field", width * height * lattice.planes() * 8)?;
+        let rows: Result<Vec<Vec<f32>>> = (0..height)
+            .into_par_iter()
+            .map(|j| {
+                let mut row = Vec::with_capacity(width * lattice.planes());
+                for i in 0..width {
+                    budget.spend(PROJECTION * lattice.heights.len() as u64)?;
+                    let at = [i, j].map(|k| (k as f64 + 0.5) * lattice.cell);
+                    lattice.column(points, origin[0] + at[0], origin[1] + at[1], &mut row);
+                }
+                Ok(row)
+            })
+            .collect();
+        let rows = rows?;
+        let planes = lattice.planes();
+        let plane = |p: usize| rows.iter().flat_map(|row| row.iter().skip(p).step_by(planes).copied()).collect();
+        Ok(Self { width, height, planes: (0..planes).map(plane).collect(), _held: held })
+    }
+}
+
+/// What is there already of the place of a patch: the numbers at the nodes that are compared.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Overlap {
+    /// Columns, as steps from the corner of the patch.
+    pub(crate) nodes: Vec<[u32; 2]>,
+    /// For each plane the number at each of them.
+    pub(crate) planes: Vec<Vec<f32>>,
+}
+
+impl Overlap {
+    /// The field of points at `nodes` of a patch whose corner is the origin.
+    pub(crate) fn new(
+        points: &OrientedPoints,
+        lattice: &Lattice,
+        nodes: Vec<[u32; 2]>,
+        budget: &Budget,
+    ) -> Result<Self> {
+        budget.spend(nodes.len() as u64 * PROJECTION * lattice.heights.len() as u64)?;
+        let planes = lattice.planes();
+        let of = |node: &[u32; 2]| {
+            let mut column = Vec::with_capacity(planes);
+            let [x, y] = node.map(|k| (f64::from(k) + 0.5) * lattice.cell);
+            lattice.column(points, x, y, &mut column);
+            column
+        };
+        let columns: Vec<Vec<f32>> = nodes.par_iter().map(of).collect();
+        let plane = |p: usize| columns.iter().map(|c| c[p]).collect();
+        Ok(Self { planes: (0..planes).map(plane).collect(), nodes })
+    }
+}

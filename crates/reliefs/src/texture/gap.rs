@@ -1,0 +1,244 @@
+//! The gap in a scan: where nothing lies over more of the plane than anywhere else.
+
+use arabesque_core::{Bounds, Budget, Error, Result, Vector};
+
+/// Side of a cell, in spacings.
+const CELL: f64 = 1.0;
+/// How much wider than the others a gap is.
+const WIDER: f64 = 1.5;
+/// Share of the empty places that are usual.
+const USUAL: f64 = 0.9;
+/// Cells at most.
+const MOST: f64 = 16e6;
+
+/// The cells of a gap.
+#[derive(Clone, Debug)]
+pub(crate) struct Gap {
+    origin: [f64; 2],
+    cell: f64,
+    width: usize,
+    height: usize,
+    is_gap: Vec<bool>,
+    /// Cells of the gap below and left of each corner.
+    sums: Vec<u32>,
+    /// The smallest box around the gap.
+    pub(crate) bounds: [[f64; 2]; 2],
+}
+
+impl Gap {
+    /// Looks for gaps that are wider than what is usual between the points.
+    pub(crate) fn find(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Self> {
+        let size = all.size();
+        let cell = (CELL * spacing).max((size[0] * size[1] / MOST).sqrt());
+        let (width, height) = ((size[0] / cell) as usize + 1, (size[1] / cell) as usize + 1);
+        budget.spend((width * height * 60 + points.len() * 10) as u64)?;
+        let mut is_there = vec![false; width * height];
+        for p in points {
+            let [x, y] = [0, 1].map(|k| ((p[k] - all.min[k]) / cell) as usize);
+            is_there[y.min(height - 1) * width + x.min(width - 1)] = true;
+        }
+        let far = distances(&is_there, (width, height));
+        let mut tops: Vec<f64> = Vec::new();
+        let at = |x: usize, y: usize| far[y * width + x];
+        for y in 1..height.saturating_sub(1) {
+            for x in 1..width.saturating_sub(1) {
+                let own = at(x, y);
+                if own > 0.0 && (0..9).all(|k| at(x + k % 3 - 1, y + k / 3 - 1) <= own) {
+                    tops.push(own);
+                }
+            }
+        }
+        tops.sort_by(f64::total_cmp);
+        let usual = tops.get((tops.len() as f64 * USUAL) as usize).copied().unwrap_or(1.0);
+        // With few empty places the widest is usual only if another one is as wide.
+        let usual = if tops.len() < 10 { 1.5 } else { usual.max(1.5) };
+        let widest = tops.last().copied().unwrap_or(0.0);
+        if widest < WIDER * usual + 1.0 {
+            let problem = format!(
+                "no gap: the widest empty place is {:.4} wide, and {:.4} is usual",
+                2.0 * widest * cell,
+                2.0 * usual * cell
+            );
+            return Err(Error::input("the texture", problem, "leave fill_hole out, or give a scan with a gap"));
+        }
+        let mut gap = Self {
+            origin: [all.min[0], all.min[1]],
+            cell,
+            width,
+            height,
+            is_gap: vec![false; width * height],
+            sums: Vec::new(),
+            bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+        };
+        gap.mark(&far, WIDER * usual, budget)?;
+        Ok(gap)
+    }
+
+    /// Marks the empty discs around the places that are farther from all points than `least`.
+    fn mark(&mut self, far: &[f64], least: f64, budget: &Budget) -> Result<()> {
+        let (width, height) = (self.width as i64, self.height as i64);
+        let mut meter = budget.meter();
+        for k in 0..far.len() {
+            if far[k] <= least {
+                continue;
+            }
+            let (x, y) = ((k % self.width) as i64, (k / self.width) as i64);
+            // Where a neighbour's disc holds this one there is nothing new.
+            let is_held = [(1, 0), (-1, 0), (0, 1), (0, -1)].iter().any(|(dx, dy)| {
+                let (i, j) = (x + dx, y + dy);
+                (0..width).contains(&i) && (0..height).contains(&j) && far[(j * width + i) as usize] >= far[k] + 0.99
+            });
+            if is_held {
+                continue;
+            }
+            let reach = far[k].floor() as i64;
+            meter.spend((4 * reach * reach) as u64 + 10)?;
+            for j in (y - reach).max(0)..=(y + reach).min(height - 1) {
+                for i in (x - reach).max(0)..=(x + reach).min(width - 1) {
+                    if (((i - x).pow(2) + (j - y).pow(2)) as f64) < far[k] * far[k] {
+                        self.is_gap[(j * width + i) as usize] = true;
+                    }
+                }
+            }
+        }
+        self.sums = vec![0; (self.width + 1) * (self.height + 1)];
+        let row = self.width + 1;
+        for y in 0..self.height {
+            for x in 0..self.width {
+                let own = self.is_gap[y * self.width + x];
+                self.sums[(y + 1) * row + x + 1] =
+                    self.sums[y * row + x + 1] + self.sums[(y + 1) * row + x] - self.sums[y * row + x] + u32::from(own);
+                if own {
+                    for (k, i) in [x, y].into_iter().enumerate() {
+                        self.bounds[0][k] = self.bounds[0][k].min(self.origin[k] + i as f64 * self.cell);
+                        self.bounds[1][k] = self.bounds[1][k].max(self.origin[k] + (i + 1) as f64 * self.cell);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a place lies in the gap.
+    pub(crate) fn contains(&self, x: f64, y: f64) -> bool {
+        let at = [(x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell];
+        let is_in = at[0] >= 0.0 && at[1] >= 0.0 && at[0] < self.width as f64 && at[1] < self.height as f64;
+        is_in && self.is_gap[at[1] as usize * self.width + at[0] as usize]
+    }
+
+    /// Whether a rectangle meets the gap.
+    fn count(&self, low: [f64; 2], high: [f64; 2]) -> u32 {
+        let limit = [self.width as f64, self.height as f64];
+        let [x0, y0] = [0, 1].map(|k| ((low[k] - self.origin[k]) / self.cell).floor().clamp(0.0, limit[k]) as usize);
+        let [x1, y1] = [0, 1].map(|k| ((high[k] - self.origin[k]) / self.cell).ceil().clamp(0.0, limit[k]) as usize);
+        let row = self.width + 1;
+        self.sums[y1 * row + x1] + self.sums[y0 * row + x0] - self.sums[y0 * row + x1] - self.sums[y1 * row + x0]
+    }
+
+    /// Whether a rectangle meets the gap.
+    pub(crate) fn meets(&self, low: [f64; 2], high: [f64; 2]) -> bool {
+        self.count(low, high) > 0
+    }
+}
+
+/// Distance of each cell from the nearest that is marked; what lies beyond the border is.
+fn distances(is_marked: &[bool], (width, height): (usize, usize)) -> Vec<f64> {
+    let mut squares: Vec<f64> = vec![0.0; width * height];
+    for x in 0..width {
+        let mut last = 1.0;
+        for y in 0..height {
+            last = if is_marked[y * width + x] { 0.0 } else { last };
+            squares[y * width + x] = last;
+            last += 1.0;
+        }
+        last = 1.0;
+        for y in (0..height).rev() {
+            last = if is_marked[y * width + x] { 0.0 } else { last };
+            let d = squares[y * width + x].min(last);
+            squares[y * width + x] = d * d;
+            last += 1.0;
+        }
+    }
+    for row in squares.chunks_exact_mut(width) {
+        envelope(row);
+    }
+    squares
+}
+
+/// From squared distances along columns to distances, along one row: the lower envelope of parabolas [Felzenszwalb 2012].
+fn envelope(row: &mut [f64]) {
+    let n = row.len() as i64;
+    // Beyond both ends stands a cell that is marked.
+    let value = |i: i64, row: &[f64]| if (0..n).contains(&i) { row[i as usize] } else { 0.0 };
+    let (mut feet, mut starts): (Vec<i64>, Vec<f64>) = (vec![-1], vec![f64::NEG_INFINITY]);
+    for q in 0..=n {
+        loop {
+            let p = feet[feet.len() - 1];
+            let meet = ((value(q, row) + (q * q) as f64) - (value(p, row) + (p * p) as f64)) / (2 * (q - p)) as f64;
+            if meet > starts[starts.len() - 1] {
+                feet.push(q);
+                starts.push(meet);
+                break;
+            }
+            feet.pop();
+            starts.pop();
+        }
+    }
+    let mut k = 0;
+    let answers: Vec<f64> = (0..n)
+        .map(|x| {
+            while k + 1 < feet.len() && starts[k + 1] < x as f64 {
+                k += 1;
+            }
+            (value(feet[k], row) + (x - feet[k]).pow(2) as f64).sqrt()
+        })
+        .collect();
+    row.copy_from_slice(&answers);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sheet of points one apart with a round gap of radius 6.
+    fn sheet(is_out: impl Fn(f64, f64) -> bool) -> Vec<Vector<3>> {
+        let all = (0..2500).map(|k| [f64::from(k % 50), f64::from(k / 50)]);
+        all.filter(|[x, y]| !is_out(*x, *y)).map(|[x, y]| Vector([x, y, 0.0])).collect()
+    }
+
+    fn find(points: &[Vector<3>]) -> Result<Gap> {
+        let all = Bounds::around(points.iter().copied());
+        Gap::find(points, &all, 1.0, &Budget::default())
+    }
+
+    #[test]
+    fn a_gap_is_what_is_wider_than_the_rest() {
+        let points = sheet(|x, y| (x - 20.0).hypot(y - 30.0) < 6.0 || (x as u32 % 4 == 1 && y as u32 % 4 == 1));
+        let gap = find(&points).unwrap();
+        assert!(gap.contains(20.0, 30.0) && gap.contains(24.0, 30.0) && !gap.contains(28.0, 30.0));
+        assert!(!gap.contains(5.0, 5.0), "the holes of the texture are none");
+        assert!(gap.meets([10.0, 20.0], [21.0, 31.0]) && !gap.meets([30.0, 0.0], [49.0, 49.0]));
+        assert!((gap.bounds[0][0] - 14.5).abs() < 1.6 && (gap.bounds[1][1] - 36.5).abs() < 1.6, "{:?}", gap.bounds);
+    }
+
+    #[test]
+    fn without_a_gap_nothing_is_filled() {
+        let whole = find(&sheet(|_, _| false)).unwrap_err().to_string();
+        assert!(whole.contains("no gap"), "{whole}");
+        assert!(find(&sheet(|x, y| x as u32 % 4 == 1 && y as u32 % 4 == 1)).is_err());
+    }
+
+    #[test]
+    fn distances_are_those_of_an_exhaustive_search() {
+        let (width, height) = (13, 9);
+        let is_marked: Vec<bool> = (0..width * height).map(|k| k * k % 31 == 5).collect();
+        let far = distances(&is_marked, (width, height));
+        for (k, d) in far.iter().enumerate() {
+            let (x, y) = ((k % width) as i64, (k / width) as i64);
+            let border = [x + 1, y + 1, width as i64 - x, height as i64 - y].into_iter().min().unwrap() as f64;
+            let marked = (0..width * height).filter(|&m| is_marked[m]);
+            let own = marked.map(|m| ((x - (m % width) as i64) as f64).hypot((y - (m / width) as i64) as f64));
+            assert!((d - own.fold(border, f64::min)).abs() < 1e-9, "{k}");
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What is checked of the points of a texture, and made of them before it is understood.
+
+use arabesque_core::{Budget, Error, PointSet, Result, Vector, Warning};
+use arabesque_surface::{OrientedPoints, estimated_normals};
+
+use crate::{params::Plane, texture::axes::Axes};
+
+/// Least points of a texture.
+const LEAST: usize = 60;
+/// A plane that is narrower than this share of the height is none.
+const COLLAPSED: f64 = 1e-9;
+
+/// A fault of the texture, whose name the caller knows.
+pub(super) fn fail(problem: impl Into<String>, advice: impl Into<String>) -> Error {
+    Error::input("the texture", problem.into(), advice.into())
+}
+
+/// Normals of the points; estimated where there are none, and outliers left out.
+pub(super) fn oriented(points: &PointSet<3>, budget: &Budget, warnings: &mut Vec<Warning>) -> Result<PointSet<3>> {
+    if let Some(normals) = &points.normals {
+        let bad = normals.iter().filter(|n| !n.is_finite() || n.norm() < 1e-6).count();
+        if bad > 0 {
+            return Err(fail(
+                format!("{bad} of {} normals have no direction", normals.len()),
+                "write the points with all their normals, or without, so that they are estimated",
+            ));
+        }
+        let mut points = points.clone();
+        points.normals = Some(normals.iter().map(|n| n.unit()).collect());
+        return Ok(points);
+    }
+    let found = estimated_normals(&points.positions, budget)?;
+    let mut points = PointSet { normals: Some(found.normals), ..points.clone() };
+    if !found.outliers.is_empty() {
+        let message = format!("{} of {} points lie alone: left out", found.outliers.len(), points.len());
+        warnings.push(Warning::new(message, "clean the scan if they belong to the texture"));
+        let is_out: std::collections::BTreeSet<usize> = found.outliers.into_iter().collect();
+        let kept: Vec<usize> = (0..points.len()).filter(|i| !is_out.contains(i)).collect();
+        points = points.selected(&kept);
+    }
+    Ok(points)
+}
+
+/// What of normals contradicts itself: the share of points whose neighbours on the same sheet face the other way.
+pub(super) fn contradictions(points: &OrientedPoints, radius: f64, budget: &Budget) -> Result<f64> {
+    let step = points.len().div_ceil(2000).max(1);
+    let (mut all, mut against, mut meter) = (0_usize, 0_usize, budget.meter());
+    for i in (0..points.len()).step_by(step) {
+        meter.spend(1500)?;
+        let (at, n) = (points.positions()[i], points.normals()[i]);
+        points.around(at, 0.7 * radius, |j, d2| {
+            let way = points.positions()[j] - at;
+            let m = points.normals()[j];
+            let is_flat = |n: Vector<3>| n.dot(way).powi(2) < 0.04 * d2;
+            if j != i && is_flat(n) && is_flat(m) {
+                all += 1;
+                against += usize::from(n.dot(m) < -0.3);
+            }
+        });
+    }
+    Ok(against as f64 / all.max(1) as f64)
+}
+
+/// The axis across the plane.
+pub(super) fn axes(points: &PointSet<3>, plane: Plane, warnings: &mut Vec<Warning>) -> Result<Axes> {
+    let size = points.bounds().size();
+    let thinnest = Axes::of(points, Plane::Auto).across_axis();
+    let axes = Axes::of(points, plane);
+    let axis = axes.across_axis();
+    let flat = axes.lie(size);
+    let name = ["x", "y", "z"][axis];
+    if flat[0].min(flat[1]) <= COLLAPSED * flat[2] || flat[0].min(flat[1]) <= 0.0 {
+        return Err(fail(
+            format!("the points have no extent across {name}"),
+            "choose another plane with --plane, or leave it out",
+        ));
+    }
+    if flat[2] > flat[0].min(flat[1]) {
+        let (advice, other) =
+            ("choose the plane along which the texture goes on with --plane", ["x", "y", "z"][thinnest]);
+        let message = format!("the texture is higher across {name} than it is wide; it is thinnest across {other}");
+        if thinnest != axis {
+            return Err(fail(message, advice));
+        }
+        warnings.push(Warning::new(message, advice));
+    }
+    Ok(axes)
+}
+
+/// Checks that there are enough points and that they are numbers.
+pub(super) fn checked<'a>(points: &'a PointSet<3>, budget: &Budget) -> Result<&'a PointSet<3>> {
+    points.check("the texture")?;
+    if let Some(k) = points.positions.iter().position(|p| !p.is_finite()) {
+        return Err(fail(format!("point {} has a coordinate that is not a number", k + 1), "leave it out"));
+    }
+    if points.len() < LEAST {
+        return Err(fail(
+            format!("{} points are no texture", points.len()),
+            format!("give at least {LEAST}, a few thousand for most textures"),
+        ));
+    }
+    budget.within("points of the texture", points.len(), ("nodes", budget.limits().nodes))?;
+    budget.spend(points.len() as u64 * 50)?;
+    Ok(points)
+}

@@ -1,0 +1,325 @@
+//! The texture as it is understood: its points as a surface, the box of the texture proper, its field, and where patches may be taken from.
+
+use arabesque_core::{Bounds, Budget, Error, Held, PointSet, Result, Vector, Warning};
+use arabesque_surface::{OrientedPoints, spacing_of};
+use rayon::prelude::*;
+
+use crate::{
+    params::{ReliefParams, Search},
+    sample::Sample,
+    search::best::Searcher,
+    search::field::{Field, Lattice},
+    texture::{
+        axes::Axes,
+        gap::Gap,
+        pieces::Pieces,
+        reading::{axes, checked, contradictions, fail, oriented},
+        repetition::{Repetition, repetition},
+    },
+};
+
+/// Radius in which points count as one surface, in spacings.
+const RADIUS: f64 = 2.5;
+/// Side of a cell of the field, in spacings.
+const CELL: f64 = 1.3;
+/// Cells along the longer side of the field at most, where nobody says.
+const CELLS: f64 = 400.0;
+/// Rows of nodes above one another at most.
+const ROWS: f64 = 16.0;
+/// Cells of a field at most.
+const NODES: usize = 4_000_000;
+/// Places that are enough to choose from beside a gap.
+const ENOUGH: usize = 12;
+/// How far distances are told, in cells.
+const REACH: f64 = 5.0;
+
+/// The texture, understood.
+#[derive(Debug)]
+pub(crate) struct Texture {
+    pub(crate) axes: Axes,
+    pub(crate) points: OrientedPoints,
+    pub(crate) variations: Vec<f32>,
+    pub(crate) colours: Option<Vec<[f64; 3]>>,
+    pub(crate) radii: Option<Vec<f64>>,
+    pub(crate) groups: Option<Vec<i32>>,
+    pub(crate) spacing: f64,
+    pub(crate) radius: f64,
+    /// The box of the texture proper.
+    pub(crate) bounds: Bounds<3>,
+    pub(crate) lattice: Lattice,
+    /// Corner of the field.
+    pub(crate) origin: [f64; 2],
+    pub(crate) field: Field,
+    pub(crate) searcher: Option<Searcher>,
+    pub(crate) repetition: Repetition,
+    /// Cells along the side of a patch, of the overlap and of the border.
+    pub(crate) patch: usize,
+    pub(crate) overlap: usize,
+    pub(crate) border: usize,
+    /// Where patches may be taken from, row by row.
+    pub(crate) places: Vec<[u32; 2]>,
+    pub(crate) pieces: Pieces,
+    /// The gap, where there is one to be filled.
+    pub(crate) gap: Option<Gap>,
+    pub(crate) warnings: Vec<Warning>,
+    _held: Held,
+}
+
+impl Texture {
+    /// Understands a texture. `bounds` is the box of the texture proper, in the axes of the file, where it is known.
+    pub(crate) fn new(
+        points: &PointSet<3>,
+        (bounds, has_gap): (Option<Bounds<3>>, bool),
+        params: &ReliefParams,
+        budget: &Budget,
+    ) -> Result<Self> {
+        let mut warnings = Vec::new();
+        let scattered = checked(points, budget)?;
+        let axes = axes(scattered, params.plane, &mut warnings)?;
+        let set = oriented(scattered, budget, &mut warnings)?;
+        let held = budget.hold("the texture", set.len() * 160)?;
+        let positions: Vec<_> = set.positions.iter().map(|&p| axes.lie(p)).collect();
+        let normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.lie(n)).collect();
+        let spacing = spacing_of(&positions, budget)?;
+        if !(spacing.is_finite() && spacing > 0.0) {
+            return Err(fail("most points lie in one place", "give points that are spread over a surface"));
+        }
+        let radius = RADIUS * spacing;
+        let all = Bounds::around(positions.iter().copied());
+        let points = OrientedPoints::new(positions, normals, radius, budget)?;
+        if contradictions(&points, radius, budget)? > 0.1 {
+            return Err(fail(
+                "neighbouring normals face opposite ways",
+                "leave the normals out, so that they are estimated, or turn them to one side",
+            ));
+        }
+        let lattice = lattice(&all, spacing, params);
+        let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
+        if nodes.iter().product::<usize>().saturating_mul(lattice.heights.len()) > NODES {
+            let least = (all.size()[0] * all.size()[1] * lattice.heights.len() as f64 / NODES as f64).sqrt();
+            return Err(Error::parameter(
+                "cell",
+                lattice.cell,
+                format!("at least {least:.4}, so that the field has at most {NODES} nodes"),
+            ));
+        }
+        let origin = [0, 1].map(|k| all.min[k] + 0.5 * (all.size()[k] - nodes[k] as f64 * lattice.cell));
+        let field = Field::new(&points, &lattice, origin, (nodes[0], nodes[1]), budget)?;
+        let repetition = repetition(&field, budget)?;
+        budget.spend(points.len() as u64 * 900)?;
+        let variations: Vec<f32> = (0..points.len()).into_par_iter().map(|i| points.variation(i) as f32).collect();
+        let mut texture = Self {
+            axes,
+            points,
+            variations,
+            colours: set.colours,
+            radii: set.radii,
+            groups: set.groups,
+            spacing,
+            radius,
+            bounds: all,
+            lattice,
+            origin,
+            field,
+            searcher: None,
+            repetition,
+            patch: 0,
+            overlap: 0,
+            border: 0,
+            places: Vec::new(),
+            pieces: Pieces::default(),
+            gap: None,
+            warnings,
+            _held: held,
+        };
+        if has_gap {
+            texture.gap = Some(Gap::find(texture.points.positions(), &all, spacing, budget)?);
+        }
+        let given = bounds.map(|b| Bounds::around([axes.lie(b.min), axes.lie(b.max)]));
+        let mut shrink = 1.0;
+        loop {
+            texture.divide(&all, given, params, shrink)?;
+            if texture.beside_gap() {
+                break;
+            }
+            // Beside a gap there may be room for smaller patches only.
+            let side = texture.patch_side();
+            let is_least = params.patch.is_some() || 0.85 * side < 10.0 * texture.lattice.cell;
+            if is_least && texture.places.len() >= ENOUGH {
+                break;
+            }
+            if params.patch.is_some() || 0.85 * side < 6.0 * texture.lattice.cell {
+                return Err(fail(
+                    format!("beside the gap there is no room for patches of {side:.4}"),
+                    "give a smaller patch, or a larger scan",
+                ));
+            }
+            shrink *= 0.85;
+        }
+        texture.pieces = Pieces::find(&texture.points, spacing, texture.patch_side(), budget)?;
+        let (places, nodes) = (texture.places.len(), texture.patch * texture.overlap);
+        let wants = match params.search {
+            Search::Auto => Searcher::is_faster(&texture.field, places, nodes),
+            Search::Fft => true,
+            Search::Exhaustive => false,
+        };
+        texture.searcher = if wants { Some(Searcher::new(&texture.field, budget)?) } else { None };
+        Ok(texture)
+    }
+
+    /// Settles the patch, the box and the places that patches are taken from.
+    fn divide(&mut self, all: &Bounds<3>, given: Option<Bounds<3>>, params: &ReliefParams, shrink: f64) -> Result<()> {
+        let cell = self.lattice.cell;
+        let short = all.size()[0].min(all.size()[1]);
+        let room = given.map_or(short, |b| b.size()[0].min(b.size()[1]));
+        if let Some(given) = given {
+            let slack = 1e-6 * short;
+            if (0..2).any(|k| given.min[k] < all.min[k] - slack || given.max[k] > all.max[k] + slack) {
+                let shown = [0, 1].map(|k| format!("{:.4}..{:.4}", all.min[k], all.max[k]));
+                return Err(Error::parameter(
+                    "box",
+                    "",
+                    format!("a box within the points, which reach over {} and {} along the plane", shown[0], shown[1]),
+                ));
+            }
+        }
+        let chosen = params.patch.unwrap_or_else(|| shrink * self.usual_patch(room));
+        let patch = (chosen / cell).round().max(4.0);
+        if params.patch.is_some() && chosen > room {
+            return Err(Error::parameter(
+                "patch",
+                chosen,
+                format!("at most {:.4}, a good part of the box of the texture, which is {room:.4} wide", 0.6 * room),
+            ));
+        }
+        let border = (params.border * patch).ceil();
+        // Beside the border there is what a patch may move.
+        let margin = match given {
+            Some(_) => 0.0,
+            None => ((border + params.reach * patch) * cell).min(0.2 * short),
+        };
+        let inner = given.unwrap_or(Bounds::new(
+            Vector([all.min[0] + margin, all.min[1] + margin, all.min[2]]),
+            Vector([all.max[0] - margin, all.max[1] - margin, all.max[2]]),
+        ));
+        self.bounds = Bounds::new(
+            Vector([inner.min[0], inner.min[1], all.min[2]]),
+            Vector([inner.max[0], inner.max[1], all.max[2]]),
+        );
+        self.patch = patch as usize;
+        self.overlap = ((params.overlap * patch).round() as usize).clamp(2, self.patch / 2);
+        self.border = border as usize;
+        let limits = |k: usize| {
+            let low = ((self.bounds.min[k] - self.origin[k]) / cell - 1e-6).ceil().max(0.0);
+            let high = ((self.bounds.max[k] - self.origin[k]) / cell + 1e-6)
+                .floor()
+                .min([self.field.width, self.field.height][k] as f64)
+                - patch;
+            (low, high)
+        };
+        let ((x0, x1), (y0, y1)) = (limits(0), limits(1));
+        if x1 < x0 || y1 < y0 {
+            let side = self.bounds.size();
+            return Err(Error::parameter(
+                "patch",
+                format!("{:.4}", patch * cell),
+                format!(
+                    "a patch smaller than the box of the texture, which is {:.4} by {:.4}, or a larger texture",
+                    side[0], side[1]
+                ),
+            ));
+        }
+        let inside = self.count_in(&self.bounds.clone());
+        let each = inside as f64 * (patch * cell).powi(2) / (self.bounds.size()[0] * self.bounds.size()[1]);
+        if each < 20.0 {
+            return Err(fail(
+                format!("a patch of {:.4} holds {each:.0} points", patch * cell),
+                "give a texture with more points, or a larger patch",
+            ));
+        }
+        let (x0, x1, y0, y1) = (x0 as u32, x1 as u32, y0 as u32, y1 as u32);
+        self.places = (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| [x, y])).collect();
+        Ok(())
+    }
+
+    /// Leaves out the places whose patches meet the gap; whether enough are left.
+    fn beside_gap(&mut self) -> bool {
+        let Some(gap) = &self.gap else { return true };
+        let side = self.patch_side();
+        let is_whole = |place: &[u32; 2]| {
+            let corner = self.corner(*place);
+            !gap.meets([corner[0], corner[1]], [corner[0] + side, corner[1] + side])
+        };
+        let places: Vec<_> = self.places.iter().filter(|p| is_whole(p)).copied().collect();
+        self.places = places;
+        // There has to be a place for every way in which what repeats may meet the gap.
+        let repeats = self.repetition.length.map_or(0.0, |length| 1.5 * length * length);
+        self.places.len() >= ENOUGH.max(repeats as usize)
+    }
+
+    fn count_in(&self, bounds: &Bounds<3>) -> usize {
+        let mut count = 0;
+        self.points.inside(bounds, |_| count += 1);
+        count
+    }
+
+    /// The patch for what repeats, within reason.
+    fn usual_patch(&mut self, room: f64) -> f64 {
+        let (least, most) = (8.0 * self.lattice.cell, 0.45 * room);
+        let wanted = match self.repetition.length {
+            Some(length) => 1.35 * length * self.lattice.cell,
+            None => {
+                let message = "the texture does not repeat itself: patches are a good third of it";
+                let warning = Warning::new(message, "give the side of a patch with --patch, or a larger texture");
+                if !self.warnings.contains(&warning) {
+                    self.warnings.push(warning);
+                }
+                0.4 * room
+            }
+        };
+        wanted.max(0.4 * room).min(most).max(least)
+    }
+
+    /// Side of a patch.
+    pub(crate) fn patch_side(&self) -> f64 {
+        self.patch as f64 * self.lattice.cell
+    }
+
+    /// Point `i` where it is in the texture.
+    pub(crate) fn sample(&self, i: usize) -> Sample {
+        let (piece, from) = self.pieces.piece(i, self.points.positions()[i]);
+        Sample {
+            at: self.points.positions()[i],
+            normal: self.points.normals()[i],
+            colour: self.colours.as_ref().map_or([0.0; 3], |c| c[i].map(|v| v as f32)),
+            variation: self.variations[i],
+            source: i as u32,
+            is_at_seam: false,
+            piece,
+            from,
+        }
+    }
+
+    /// Corner of the patch at a place.
+    pub(crate) fn corner(&self, [x, y]: [u32; 2]) -> Vector<3> {
+        Vector([
+            self.origin[0] + f64::from(x) * self.lattice.cell,
+            self.origin[1] + f64::from(y) * self.lattice.cell,
+            0.0,
+        ])
+    }
+}
+
+/// Where the nodes of the field are.
+fn lattice(all: &Bounds<3>, spacing: f64, params: &ReliefParams) -> Lattice {
+    let size = all.size();
+    let cell = params.cell.unwrap_or_else(|| (CELL * spacing).max(size[0].max(size[1]) / CELLS));
+    let step = cell.max(size[2] / ROWS);
+    let rows = (size[2] / step).ceil().max(1.0);
+    let low = all.centre()[2] - 0.5 * (rows - 1.0) * step;
+    Lattice {
+        cell,
+        heights: (0..rows as usize).map(|k| low + k as f64 * step).collect(),
+        reach: REACH * cell.max(0.5 * step),
+    }
+}

@@ -21,9 +21,9 @@ use crate::{
     surface::SurfaceMade,
 };
 use made::{PlanePoints, SpacePoints};
+pub(crate) use place::directions;
 use scene::{SceneMade, beside};
 use shapes::{Shapes, exemplar};
-pub(crate) use place::directions;
 
 /// A structure, analysed.
 #[derive(Debug)]

@@ -6,13 +6,13 @@ use crate::svg::shape::{adjacency::Edge, extent::longer};
 
 /// How far a part may lie from the outline of the whole, as a share of its size.
 const NEAR: f64 = 0.02;
-/// Corners of a part that are looked at.
+/// Places along a part that are looked at.
 const LOOKED_AT: usize = 48;
-/// Work for a corner and an edge.
+/// Work for a place and an edge.
 pub(crate) const PAIR: u64 = 3;
 
 /// Whether the part, or the whole, of something that reaches a side of the frame lies along a whole thing that is moved there; with how
-/// many pairs of corners and edges were looked at.
+/// many pairs of places and edges were looked at.
 pub(crate) fn is_part_of(part: &[&Outline<2>], whole: &[&Outline<2>], frame: &Bounds<2>) -> (bool, u64) {
     let extent = |outlines: &[&Outline<2>]| outlines.iter().fold(Bounds::EMPTY, |all, o| all.union(&o.bounds()));
     let (there, here) = (extent(part), extent(whole));
@@ -22,8 +22,10 @@ pub(crate) fn is_part_of(part: &[&Outline<2>], whole: &[&Outline<2>], frame: &Bo
     }
     let edges: Vec<Edge> = whole.iter().flat_map(|outline| outline.edges()).collect();
     let is_seen = |p: &Vector<2>| frame.contains(*p);
-    let corners: Vec<Vector<2>> = part.iter().flat_map(|outline| outline.points()).filter(is_seen).collect();
-    let corners: Vec<Vector<2>> = corners.iter().step_by(corners.len().div_ceil(LOOKED_AT).max(1)).copied().collect();
+    let along = |(a, b): Edge| [0.2, 0.4, 0.6, 0.8].map(|t| a + (b - a) * t);
+    let places: Vec<Vector<2>> =
+        part.iter().flat_map(|outline| outline.edges()).flat_map(along).filter(is_seen).collect();
+    let places: Vec<Vector<2>> = places.iter().step_by(places.len().div_ceil(LOOKED_AT).max(1)).copied().collect();
     let mut looked = 0;
     // What is left of it ends where the whole does, at one end along each axis.
     let shift = |ends: [bool; 2]| {
@@ -32,13 +34,13 @@ pub(crate) fn is_part_of(part: &[&Outline<2>], whole: &[&Outline<2>], frame: &Bo
     };
     let found = [[false, false], [true, false], [false, true], [true, true]].into_iter().any(|ends| {
         let by = shift(ends);
-        corners.iter().all(|p| {
+        places.iter().all(|p| {
             looked += edges.len() as u64;
             let at_frame = (0..2).any(|k| (p[k] - frame.min[k]).min(frame.max[k] - p[k]) <= near);
             at_frame || edges.iter().any(|&e| segment::distance(e, *p - by) <= near)
         })
     });
-    (found && !corners.is_empty(), looked)
+    (found && !places.is_empty(), looked)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! What is wrong with the files of structures: exemplars, meshes and curves. Each is a clear error, or told and mended; nothing is half written.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 #[path = "../common/mod.rs"]
 mod common;
 

@@ -147,7 +147,7 @@ fn what_is_odd_about_meshes_and_curves_is_told() {
         .collect();
     folder.write("crossing.obj", cuboid("") + &second + FACES + &shifted);
     let screw: Vec<String> = (0..200)
-        .map(|k| f64::from(k))
+        .map(f64::from)
         .map(|k| format!("{} {} {}", k / 200.0, 0.05 * (0.3 * k).cos(), 0.05 * (0.3 * k).sin()))
         .collect();
     folder.write("screw.ply", ply("x y z", &screw));

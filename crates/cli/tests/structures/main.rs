@@ -1,5 +1,7 @@
 //! What is wrong with the files of structures: exemplars, meshes and curves. Each is a clear error, or told and mended; nothing is half written.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 #[path = "../common/mod.rs"]
 mod common;
 
@@ -145,7 +147,7 @@ fn what_is_odd_about_meshes_and_curves_is_told() {
         .collect();
     folder.write("crossing.obj", cuboid("") + &second + FACES + &shifted);
     let screw: Vec<String> = (0..200)
-        .map(|k| f64::from(k))
+        .map(f64::from)
         .map(|k| format!("{} {} {}", k / 200.0, 0.05 * (0.3 * k).cos(), 0.05 * (0.3 * k).sin()))
         .collect();
     folder.write("screw.ply", ply("x y z", &screw));

@@ -16,9 +16,11 @@ fn bumps(keeps: impl Fn(f64, f64) -> bool) -> String {
             (f64::from(k % 48) / 12.0 + 0.01 * f64::from(k % 3), f64::from(k / 48) / 12.0 + 0.01 * f64::from(k % 5));
         let (a, b) = (x * std::f64::consts::TAU, y * std::f64::consts::TAU);
         if keeps(x, y) {
-            let (dx, dy) = (0.15 * a.cos() * b.sin() * 6.283, 0.15 * a.sin() * b.cos() * 6.283);
+            let (dx, dy) =
+                (0.15 * a.cos() * b.sin() * std::f64::consts::TAU, 0.15 * a.sin() * b.cos() * std::f64::consts::TAU);
             let z = 0.15 * a.sin() * b.sin();
-            text += &format!("{x:.4},{y:.4},{z:.4},{:.4},{:.4},1\n", -dx, -dy);
+            let length = (dx * dx + dy * dy + 1.0_f64).sqrt();
+            text += &format!("{x:.4},{y:.4},{z:.4},{:.6},{:.6},{:.6}\n", -dx / length, -dy / length, 1.0 / length);
         }
     }
     text
@@ -114,7 +116,7 @@ fn scans_without_normals_and_meshes_are_textures_too() {
 fn what_cannot_be_is_refused_with_what_to_do() {
     let folder = folder();
     folder.write("few.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0.1\n");
-    let normals = bumps(|_, _| true).replacen(",1\n", ",nan\n", 1);
+    let normals = bumps(|_, _| true) + "1,1,0,0,0,nan\n";
     folder.write("nan.csv", normals);
     folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     folder.write("empty.obj", "v 0 0 0\nv 1 0 0\n");

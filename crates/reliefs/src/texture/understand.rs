@@ -178,7 +178,7 @@ impl Texture {
                 let shown = [0, 1].map(|k| format!("{:.4}..{:.4}", all.min[k], all.max[k]));
                 return Err(Error::parameter(
                     "box",
-                    "",
+                    format!("{:.4}..{:.4} and {:.4}..{:.4}", given.min[0], given.max[0], given.min[1], given.max[1]),
                     format!("a box within the points, which reach over {} and {} along the plane", shown[0], shown[1]),
                 ));
             }

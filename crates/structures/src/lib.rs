@@ -12,6 +12,7 @@
 //! | lay sites over the domain | `territory`, `layout` | [Roveri 2015 §4.3, §6.2] |
 //! | lay out the first points | `start` | [Roveri 2015 fig. 4] |
 //! | error and slopes | `energy` | [Roveri 2015 §4.2, §4.3, eqs 2 to 6] |
+//! | leave out what has settled | `solve::part`, `solve::round` | |
 //! | local step: match | `solve::matching` | [Roveri 2015 §5.1] |
 //! | global step: places, then attributes | `solve::merging`, `solve::newton`, `solve::attributes` | [Roveri 2015 §5.1] |
 //! | sampling control | `solve::sampling` | [Roveri 2015 §5.1, eq. 7] |
@@ -34,18 +35,22 @@
 //!
 //! - The window is a Gaussian along the directions in which the exemplar repeats and has no end across them, and sites lie on the base of
 //!   the output alone, a curve or a surface. So a match is a place on the base, and a structure never leaves its domain sideways.
-//! - Sites are half a first window apart, not σ. The error density of a match that goes on from site to site is as smooth as the window, and
-//!   windows of width δ at a distance of δ sum to a constant within 1e-4. Where the frames turn fast, window and step are smaller.
-//! - The sum over the exemplar is one look-up in its field (`energy::kernel`), and pairs of the output count as far as their points, not
-//!   their middles, lie in the windows (`energy::level`).
+//! - Sites are a window apart, not σ, farther for wider windows. The error density of a match that goes on from site to site is as smooth as
+//!   the window, and windows of width δ at a distance of δ sum to a constant within 1e-4. Where the frames turn fast, windows are smaller.
+//! - Pairs count as far as their points, not their middles, lie in the windows (`energy::kernel`): the sum over the exemplar is then one look-up
+//!   in its field, the same for all windows.
+//! - A round looks at what is in motion alone: sites around points that moved, came or went, and the points in their windows. All else stays
+//!   to the last bit (`solve::part`).
 //! - Beyond the border of the exemplar nothing is known: what a window sees there is left out, and the error divided by the rest.
 //! - Points move along Gauss-Newton directions with a step that is halved until T falls, instead of a fixed step down the slope.
-//! - A match has about as many points as the output has there, and points that nobody wants go only where there are too many: otherwise
-//!   empty places fit empty places best, and thin structures dissolve.
+//! - A match has about as many points as the output has there, is not much emptier than the one before it, and points that nobody wants go
+//!   only where there are too many: otherwise empty places fit empty places best, and thin structures dissolve.
 //! - Levels end with narrow Gaussians ([`StructureParams::fine`]): with σ as wide as the spacing T hardly tells how points lie along a line or
 //!   a surface.
-//! - By default the output is grown from a seed and then shaken as unevenly as the points of the exemplar lie, so that it is not the
-//!   exemplar to the point. Whole repetitions fill a closed curve where the exemplar repeats regularly.
+//! - By default the output is grown from a seed: each site goes on from its neighbours until the exemplar ends, and then elsewhere in it, where
+//!   what is there already fits and the exemplar goes on for long. Rigid elements fill the gaps that are left. Points are then shaken as
+//!   unevenly as those of the exemplar lie, so that the output is not the exemplar to the point. Whole repetitions fill a closed curve where the
+//!   exemplar repeats regularly.
 //!
 //! Not handled: a σ for each point, and a window for each kind of point.
 

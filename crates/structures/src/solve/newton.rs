@@ -22,13 +22,16 @@ const BLOCK: usize = 256;
 /// Share of its diagonal that is added to the matrix: the energy hardly tells how points lie along a line or a surface.
 const DAMPING: f64 = 0.02;
 
+/// What a pair adds to the matrix: its weight, and its offset in widths of the Gaussian.
+type Entry<const D: usize> = (f32, [f32; D]);
+
 /// The equations, and their right-hand side.
 pub(crate) struct System<const D: usize> {
     /// Slopes of `T` by the places of the points; zero for those that stay.
     pub(crate) slopes: Vec<Vector<D>>,
     diagonal: Vec<f64>,
-    /// For each pair in the order of the lists the weight, and the offset in widths of the Gaussian.
-    entries: Vec<(f32, [f32; D])>,
+    /// For each pair in the order of the lists.
+    entries: Vec<Entry<D>>,
 }
 
 impl<const D: usize> System<D> {
@@ -53,7 +56,7 @@ impl<const D: usize> System<D> {
             let slope = slope + here.cover_slope * own - here.wanted_slope * 2.0;
             (if output.is_kept(i) { Vector::ZERO } else { slope }, entries)
         };
-        let blocks: Vec<(Vec<Vector<D>>, Vec<(f32, [f32; D])>)> = (0..output.places.len().div_ceil(BLOCK))
+        let blocks: Vec<(Vec<Vector<D>>, Vec<Entry<D>>)> = (0..output.places.len().div_ceil(BLOCK))
             .into_par_iter()
             .map(|block| {
                 let (mut slopes, mut entries) = (Vec::with_capacity(BLOCK), Vec::new());

@@ -136,19 +136,38 @@ impl Texture {
             texture.gap = Some(Gap::find(texture.points.positions(), &all, spacing, budget)?);
         }
         let given = bounds.map(|b| Bounds::around([axes.lie(b.min), axes.lie(b.max)]));
+        texture.settle(&all, given, params)?;
+        texture.pieces = Pieces::find(&texture.points, spacing, texture.patch_side(), budget)?;
+        texture.searcher = texture.prepared_search(params.search, budget)?;
+        Ok(texture)
+    }
+
+    /// The field prepared for searches, where that pays.
+    fn prepared_search(&self, search: Search, budget: &Budget) -> Result<Option<Searcher>> {
+        let (places, nodes) = (self.places.len(), self.patch * self.overlap);
+        let wants = match search {
+            Search::Auto => Searcher::is_faster(&self.field, places, nodes),
+            Search::Fft => true,
+            Search::Exhaustive => false,
+        };
+        Ok(if wants { Some(Searcher::new(&self.field, budget)?) } else { None })
+    }
+
+    /// Settles the patch: the usual one, or a smaller one where there is a gap.
+    fn settle(&mut self, all: &Bounds<3>, given: Option<Bounds<3>>, params: &ReliefParams) -> Result<()> {
         let mut shrink = 1.0;
         loop {
-            texture.divide(&all, given, params, shrink)?;
-            if texture.beside_gap() {
+            self.divide(all, given, params, shrink)?;
+            if self.beside_gap() {
                 break;
             }
             // Beside a gap there may be room for smaller patches only.
-            let side = texture.patch_side();
-            let is_least = params.patch.is_some() || 0.85 * side < 10.0 * texture.lattice.cell;
-            if is_least && texture.places.len() >= ENOUGH {
+            let side = self.patch_side();
+            let is_least = params.patch.is_some() || 0.85 * side < 10.0 * self.lattice.cell;
+            if is_least && self.places.len() >= ENOUGH {
                 break;
             }
-            if params.patch.is_some() || 0.85 * side < 6.0 * texture.lattice.cell {
+            if params.patch.is_some() || 0.85 * side < 6.0 * self.lattice.cell {
                 return Err(fail(
                     format!("beside the gap there is no room for patches of {side:.4}"),
                     "give a smaller patch, or a larger scan",
@@ -156,15 +175,7 @@ impl Texture {
             }
             shrink *= 0.85;
         }
-        texture.pieces = Pieces::find(&texture.points, spacing, texture.patch_side(), budget)?;
-        let (places, nodes) = (texture.places.len(), texture.patch * texture.overlap);
-        let wants = match params.search {
-            Search::Auto => Searcher::is_faster(&texture.field, places, nodes),
-            Search::Fft => true,
-            Search::Exhaustive => false,
-        };
-        texture.searcher = if wants { Some(Searcher::new(&texture.field, budget)?) } else { None };
-        Ok(texture)
+        Ok(())
     }
 
     /// Settles the patch, the box and the places that patches are taken from.

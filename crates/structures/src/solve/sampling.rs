@@ -53,8 +53,7 @@ pub(crate) fn control<const D: usize>(
         *output = output.filtered(level.pattern, |i| !goes[i]);
     }
     let before = output.places.len();
-    let covers: Vec<f64> = pulls.iter().zip(&goes).filter(|(_, goes)| !**goes).map(|(p, _)| p.cover).collect();
-    add(level, output, &covers, matches, budget)?;
+    add(level, output, matches, budget)?;
     Ok(Changed { added: output.places[before..].to_vec(), removed })
 }
 
@@ -189,7 +188,6 @@ struct Offer<const D: usize> {
 fn add<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
-    covers: &[f64],
     matches: &Matches<D>,
     budget: &Budget,
 ) -> Result<()> {
@@ -199,7 +197,7 @@ fn add<const D: usize>(
         .into_par_iter()
         .with_min_len(8)
         .map(|q| {
-            let offers = offers(level, (output, covers), matches, &index, q);
+            let offers = offers(level, output, matches, &index, q);
             budget.spend(500)?;
             Ok(offers)
         })
@@ -271,7 +269,7 @@ fn members<const D: usize>(level: &Level<'_, D>, offer: &Offer<D>) -> Vec<(Vecto
 /// What site `q` would add near itself: points of the exemplar under its match that the output does not make up for.
 fn offers<const D: usize>(
     level: &Level<'_, D>,
-    (output, covers): (&Output<D>, &[f64]),
+    output: &Output<D>,
     matches: &Matches<D>,
     index: &GridIndex<D>,
     q: usize,
@@ -316,7 +314,7 @@ fn offers<const D: usize>(
             let (field, cover) = level.wanted(*place, &windows, matches);
             let mut rest = f64::from(inner(weights, &field));
             index.within(*place, level.tables.kernel.pairs() * site.scale, |i, r| {
-                let h = level.pair(r.norm2(), site.scale, site.scale) * 0.5 * (cover + covers[i]);
+                let h = level.pair(r.norm2(), site.scale, site.scale) * cover;
                 rest -= h * f64::from(inner(weights, &output.weights[i]));
             });
             // Pairs within an element.

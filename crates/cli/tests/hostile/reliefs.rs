@@ -55,7 +55,7 @@ pub(crate) fn cases() -> Vec<Case> {
         png_case("a height field of noise", heights(64, 64, |k| (k.wrapping_mul(2_654_435_761) >> 16) as u16), EITHER),
         png_case("a height field of one pixel", heights(1, 1, |_| 7), REFUSED),
         png_case("a height field of one row", heights(4000, 1, |k| k as u16), REFUSED),
-        png_case("half a height field", heights(64, 64, |k| k as u16)[..500].to_vec(), REFUSED),
+        png_case("half a height field", heights(64, 64, |k| k as u16)[..100].to_vec(), REFUSED),
     ];
     let good = sheet(40, up);
     for (options, codes) in [

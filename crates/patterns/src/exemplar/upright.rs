@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn what_stands_upright_or_upside_down_keeps_its_angle() {
         assert_eq!(found(&[0.0; 5]), [true; 5]);
-        assert_eq!(found(&[0.0, 3.1416, 0.0, 3.1416, 0.01, 0.0]), [true; 6]);
+        assert_eq!(found(&[0.0, std::f64::consts::PI, 0.0, std::f64::consts::PI, 0.01, 0.0]), [true; 6]);
     }
 
     #[test]

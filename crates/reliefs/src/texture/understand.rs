@@ -95,7 +95,7 @@ impl Texture {
         }
         let lattice = lattice(&all, spacing, params);
         let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
-        if nodes.iter().product::<usize>().saturating_mul(lattice.heights.len()) > NODES {
+        if nodes.iter().fold(lattice.heights.len(), |all, n| all.saturating_mul(*n)) > NODES {
             let least = (all.size()[0] * all.size()[1] * lattice.heights.len() as f64 / NODES as f64).sqrt();
             return Err(Error::parameter(
                 "cell",

@@ -124,10 +124,7 @@ impl Document<'_> {
         let background = background(&found, &mut definitions);
         let understood = understood(source, &items, &lines, found.left_out);
         let definitions = definitions.finish()?;
-        let mut page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
-        if unrolled.is_some() {
-            page.view = window;
-        }
+        let page = page_of(page, window, unrolled.is_some());
         let warnings = source.notes.warnings(source.name);
         Ok(Drawing {
             exemplar: Arc::new(exemplar),
@@ -144,6 +141,12 @@ impl Document<'_> {
             warnings,
         })
     }
+}
+
+/// The page of a drawing in this window, which is all that it shows of periods that are laid out.
+fn page_of(page: Option<Page>, window: Bounds<2>, is_unrolled: bool) -> Page {
+    let page = page.unwrap_or(Page { view: window, unit: Unit::Px, unit_per_user: 1.0 });
+    if is_unrolled { Page { view: window, ..page } } else { page }
 }
 
 impl Document<'_> {

@@ -22,7 +22,7 @@ use crate::svg::{
 };
 
 /// Widest gap in a thing, as a share of the median size of the parts.
-const WIDEST: f64 = 0.25;
+const WIDEST: f64 = 0.8;
 /// Share of all that lies together, within the frame, that is of a kind that recurs; so often at least.
 const SHARE: f64 = 0.85;
 const RECURS: usize = 3;

@@ -3,7 +3,7 @@
 
 use std::{rc::Rc, sync::Arc};
 
-use arabesque_core::{Area, Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role, Vector};
+use arabesque_core::{Area, Bounds, Contents, Element, Error, Exemplar, Outline, Result, Role, Vector, Warning};
 use kurbo::Affine;
 
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
             stacks::{Stacked, stacked},
             visible::keep_visible,
         },
-        options::{LargeFills, Method, ReadOptions},
+        options::{LargeFills, Method, Parts, ReadOptions},
         parse::{definitions::Definitions, guard, meta::Part, notes::Note, scene::Node, source::Source},
         read::{
             document::{Document, Opened, parts},
@@ -79,7 +79,9 @@ impl Document<'_> {
                 *root = without_idle_clips(&painter, root, context.parent, window)?;
             }
         }
-        let mut found = select(&painter, scope.frame, (self.options.method, self.options.parts), &scope.roots)?;
+        // Periods repeat, whatever is in them.
+        let parts = if unrolled.is_some() { Parts::Apart } else { self.options.parts };
+        let mut found = select(&painter, scope.frame, (self.options.method, parts), &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
         if unrolled.is_some() {
@@ -88,9 +90,6 @@ impl Document<'_> {
         }
         let window = settle(&painter, &mut found, (window, scope.window.is_some()), self.options)?;
         let job = job(&painter, &root)?;
-        if source.sheet.is_exhausted() {
-            source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
-        }
         let is_line = |item: &Item| matches!(item.kind, Kind::Curve | Kind::Area);
         let is_curve = |item: &Item| is_line(item) && self.options.method != Method::Elements;
         let is_line: Vec<bool> = found.items.iter().map(is_curve).collect();
@@ -125,7 +124,7 @@ impl Document<'_> {
         let understood = understood(source, &items, &lines, found.left_out);
         let definitions = definitions.finish()?;
         let page = page_of(page, window, unrolled.is_some());
-        let warnings = source.notes.warnings(source.name);
+        let warnings = warnings(source);
         Ok(Drawing {
             exemplar: Arc::new(exemplar),
             fragments,
@@ -133,7 +132,7 @@ impl Document<'_> {
             fills,
             layers,
             background,
-            parts: self.options.parts,
+            parts,
             definitions,
             page,
             job,
@@ -141,6 +140,14 @@ impl Document<'_> {
             warnings,
         })
     }
+}
+
+/// What was noticed while reading.
+fn warnings(source: &Source<'_>) -> Vec<Warning> {
+    if source.sheet.is_exhausted() {
+        source.notes.add(Note::Style, || "rules of an oversized style sheet".to_owned());
+    }
+    source.notes.warnings(source.name)
 }
 
 /// The page of a drawing in this window, which is all that it shows of periods that are laid out.

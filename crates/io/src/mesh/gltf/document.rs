@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use arabesque_core::{Budget, Error, Result};
 use serde::Deserialize;
+use serde_json::Value;
 
 /// Work for each byte of the document.
 const PER_BYTE: u64 = 20;
@@ -39,6 +40,7 @@ pub(super) struct Document {
 #[serde(default)]
 pub(super) struct SceneRecord {
     pub(super) nodes: Vec<usize>,
+    pub(super) extras: Value,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -6,12 +6,12 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Budget, Error, Result, Similarity, TriangleMesh, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Error, Result, Similarity, TriangleMesh, Vector, Warning};
 
 use super::{
     accessor::Binary,
     container::chunks,
-    document::read_document,
+    document::{Document, read_document},
     nodes::{Affine, Placed, placed},
     points::{append, in_place},
     primitives::Parts,
@@ -36,11 +36,21 @@ pub fn read_scene(name: &str, bytes: &[u8], budget: &Budget) -> Result<Scene> {
         reader.place(place)?;
     }
     reader.warn();
-    let scene = reader.scene;
+    let mut scene = reader.scene;
+    scene.frame = frame(&document);
     if scene.nodes.is_empty() && scene.points.is_empty() {
         return Err(Error::input(name, "no mesh and no points in its scene", "give a file with meshes or points"));
     }
     Ok(scene)
+}
+
+/// The box that the scene says its centres fill; anything else of that name is somebody else's.
+fn frame(document: &Document) -> Option<Bounds<3>> {
+    let record = document.scenes.get(document.scene.unwrap_or(0))?;
+    let [low, high]: [[f64; 3]; 2] = serde_json::from_value(record.extras.get("box")?.clone()).ok()?;
+    let sound = |v: [f64; 3]| v.iter().all(|c| c.is_finite() && c.abs() <= 1e12);
+    let is_box = sound(low) && sound(high) && (0..3).all(|k| low[k] < high[k]);
+    is_box.then(|| Bounds::new(Vector(low), Vector(high)))
 }
 
 struct Reader<'a> {

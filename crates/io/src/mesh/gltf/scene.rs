@@ -1,6 +1,6 @@
 //! What a GLB file holds: points, meshes, and where they stand.
 
-use arabesque_core::{PointSet, Similarity, TriangleMesh, Vector, Warning};
+use arabesque_core::{Bounds, PointSet, Similarity, TriangleMesh, Vector, Warning};
 
 use crate::geometry::{Cloud, Geometry, welded};
 
@@ -36,6 +36,8 @@ pub struct Scene {
     pub meshes: Vec<SceneMesh>,
     /// Where the meshes stand, in the order of the file.
     pub nodes: Vec<SceneNode>,
+    /// The part of space that the scene is a piece of: the box that its centres fill, where the file says so.
+    pub frame: Option<Bounds<3>>,
     /// What was left out.
     pub warnings: Vec<Warning>,
 }

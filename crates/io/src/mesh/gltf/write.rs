@@ -1,6 +1,6 @@
 //! GLB out: points and meshes, each mesh once however many nodes show it.
 
-use arabesque_core::{Budget, Decimals, Error, Matrix, PointSet, Result, TriangleMesh};
+use arabesque_core::{Bounds, Budget, Decimals, Error, Matrix, PointSet, Result, TriangleMesh};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -78,7 +78,7 @@ pub fn write_scene(scene: &Scene, recipe: Option<&str>, budget: &Budget) -> Resu
     let document = Document {
         asset: asset(recipe),
         scene: 0,
-        scenes: [json!({ "nodes": (0..nodes.len()).collect::<Vec<_>>() })],
+        scenes: [scene_record(nodes.len(), scene.frame)],
         nodes,
         meshes,
         // Without a material things are of metal.
@@ -90,6 +90,14 @@ pub fn write_scene(scene: &Scene, recipe: Option<&str>, budget: &Budget) -> Resu
         buffers: [json!({ "byteLength": buffer.bytes.len() })],
     };
     container(&document, &buffer.bytes, "write PLY instead, or fewer points")
+}
+
+fn scene_record(nodes: usize, frame: Option<Bounds<3>>) -> Value {
+    let mut record = json!({ "nodes": (0..nodes).collect::<Vec<_>>() });
+    if let Some(frame) = frame {
+        record["extras"] = json!({ "box": [frame.min.0, frame.max.0] });
+    }
+    record
 }
 
 fn triangles_of(mesh: &TriangleMesh, buffer: &mut Buffer, budget: &Budget) -> Result<Value> {

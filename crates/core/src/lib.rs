@@ -36,7 +36,7 @@ pub use curve::{
 };
 pub use error::{Error, Result};
 pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, Role, View};
-pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, ScalarField};
+pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, Rotations, ScalarField};
 pub use geometry::{MeshPart, PointSet, TriangleMesh};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};

@@ -194,7 +194,7 @@ impl Intent {
     /// The box of what lies in space.
     pub(super) fn cuboid(&self) -> Option<Bounds<3>> {
         match &self.job {
-            Some(Job::Space(space)) => Some(space.cuboid.bounds()),
+            Some(Job::Space(space)) => space.cuboid.map(|cuboid| cuboid.bounds()),
             _ => None,
         }
     }

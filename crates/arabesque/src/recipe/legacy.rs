@@ -283,12 +283,13 @@ impl FlatRecipe {
         self.refuse(&["size", "tile", "domain", "keep", "redo", "from and to", "orient", "avoid"], "box")?;
         let Some(cuboid) = self.cuboid.take() else { return Ok(self.fill()) };
         Ok(Job::Space(Space {
-            cuboid,
+            cuboid: Some(cuboid),
             border: self.border.take(),
             method: self.method,
             scale: self.scale.take(),
             density: self.density.take(),
             params: self.params(),
+            ..Space::default()
         }))
     }
 

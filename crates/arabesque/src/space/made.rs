@@ -3,12 +3,22 @@
 use std::sync::Arc;
 
 use arabesque_core::{Bounds, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
-use arabesque_io::{json, mesh::obj, table::csv};
+use arabesque_io::{
+    json,
+    mesh::{
+        gltf::{Scene, write_scene},
+        obj,
+    },
+    render::Item,
+    table::csv,
+};
 
 use crate::{
     artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
     plane::{snapshot, unfinished},
     recipe::Format,
+    solid::write::{Said, encode_mesh, picture},
+    space::scene::Bodies,
     spacing::spacing,
 };
 
@@ -19,6 +29,8 @@ const CHORD: f64 = 0.005;
 #[derive(Debug)]
 pub(crate) struct VolumeMade {
     pub(crate) exemplar: Arc<Exemplar<3>>,
+    /// The meshes of its elements, where it is a scene.
+    pub(crate) bodies: Option<Arc<Bodies>>,
     /// The box.
     pub(crate) frame: Bounds<3>,
     pub(crate) outcome: Outcome<3>,
@@ -26,14 +38,44 @@ pub(crate) struct VolumeMade {
 
 impl VolumeMade {
     /// What a run has so far.
-    pub(crate) fn of_snapshot(exemplar: &Arc<Exemplar<3>>, frame: Bounds<3>, snapshot: Snapshot<3>) -> Self {
-        Self { exemplar: Arc::clone(exemplar), frame, outcome: unfinished(snapshot) }
+    pub(crate) fn of_snapshot(
+        (exemplar, bodies): (&Arc<Exemplar<3>>, &Option<Arc<Bodies>>),
+        frame: Bounds<3>,
+        snapshot: Snapshot<3>,
+    ) -> Self {
+        Self { exemplar: Arc::clone(exemplar), bodies: bodies.clone(), frame, outcome: unfinished(snapshot) }
+    }
+
+    /// Meshes in their places.
+    fn encode_scene(&self, bodies: &Bodies, sheet: &Sheet<'_>) -> Result<Encoded> {
+        let scene = bodies.placed(&self.outcome.placements, Some(self.frame));
+        let budget = sheet.budget;
+        match sheet.format {
+            Format::Glb => Ok(Encoded { bytes: write_scene(&scene, sheet.recipe, budget)?, warnings: Vec::new() }),
+            Format::Png => {
+                let places: Vec<_> = (0..scene.meshes.len()).map(|m| scene.places(m)).collect();
+                let shown = scene.meshes.iter().zip(&places).filter(|(_, places)| !places.is_empty());
+                let items: Vec<_> = shown.map(|(m, places)| Item::Placed(&m.mesh, places)).collect();
+                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new() })
+            }
+            _ => {
+                budget.within("triangles in all places", scene.triangles(), ("nodes", budget.limits().nodes))?;
+                let mesh = Scene { warnings: Vec::new(), ..scene }.into_geometry("").into_mesh("")?;
+                let said = Said { warnings: &self.outcome.warnings, stopped: self.outcome.stopped };
+                encode_mesh(&mesh, sheet, said)
+            }
+        }
     }
 }
 
 impl Made for VolumeMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
         let (exemplar, outcome, frame) = (&*self.exemplar, &self.outcome, self.frame);
+        if let Some(bodies) = &self.bodies
+            && !matches!(sheet.format, Format::Csv | Format::Json)
+        {
+            return self.encode_scene(bodies, sheet);
+        }
         let (points, curves) = (outcome.placements.len(), outcome.curves.len());
         let (text, warnings) = match sheet.format {
             Format::Obj => {

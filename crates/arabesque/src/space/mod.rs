@@ -1,26 +1,33 @@
-//! Boxes in space: networks of curves and clouds of points.
+//! Parts of space: scenes of meshes, networks of curves and clouds of points.
 
 mod made;
+mod place;
+mod scene;
 
 use std::sync::Arc;
 
-use arabesque_core::{Border, Bounds, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, Watch};
+use arabesque_core::{Border, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, Watch};
+use arabesque_io::geometry::{Kind, kind_of};
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
     artwork::Artwork,
     exemplar::{LoadedExemplar, understood},
     method::{Preparation, Ready, RunContext, Show},
-    plane::{constant_factor, in_exemplar},
+    plane::in_exemplar,
     recipe::{Job, Space},
     spacing::spacing,
 };
 use made::VolumeMade;
+use place::place;
+use scene::Bodies;
 
 /// An exemplar in space, analysed.
 #[derive(Debug)]
 pub(crate) struct Volume {
     exemplar: Arc<Exemplar<3>>,
+    /// The meshes of its elements, where it is a scene.
+    bodies: Option<Arc<Bodies>>,
     engine: Engine<3>,
 }
 
@@ -29,6 +36,15 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let params = space.params.engine_params()?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
     let budget = preparation.files.budget();
+    if kind_of(preparation.exemplar.name(), &bytes) == Some(Kind::Glb) {
+        let (bodies, warnings) = Bodies::read(preparation.exemplar.name(), &bytes, budget)?;
+        preparation.warnings.extend(warnings);
+        preparation.exemplar = preparation.exemplar.embedding(&bytes);
+        let exemplar = Arc::clone(&bodies.exemplar);
+        let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
+            .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
+        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), engine });
+    }
     let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, budget)? {
         LoadedExemplar::Space(exemplar, warnings) => {
             preparation.warnings.extend(warnings);
@@ -46,24 +62,29 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let exemplar = Arc::new(exemplar);
     let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
         .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
-    Ok(Volume { exemplar, engine })
+    Ok(Volume { exemplar, bodies: None, engine })
 }
 
 impl Volume {
-    fn resolve(&self, context: &RunContext<'_>) -> Result<EngineRequest<3>> {
-        let Job::Space(space) = &context.job else {
-            return Err(Error::parameter("request", context.job.name(), "a request for a box in space"));
+    fn resolve(&self, context: &mut RunContext<'_>) -> Result<EngineRequest<3>> {
+        let Job::Space(mut space) = context.job.clone() else {
+            return Err(Error::parameter("request", context.job.name(), "a request for a part of space"));
         };
         if space.border == Some(Border::Turn) {
             let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
             return Err(Error::parameter("border", "turn", expected));
         }
-        let bounds = space.cuboid.bounds();
-        check_volume(&self.exemplar, &bounds, context.budget())?;
-        let mut request = EngineRequest::new(Domain::Box(bounds));
-        request.border = space.border.unwrap_or(Border::Clip);
-        request.fields.scale = constant_factor("scale", space.scale.as_ref())?;
-        request.fields.density = constant_factor("density", space.density.as_ref())?;
+        let place = place(&mut space, &self.exemplar, context)?;
+        check_volume(&self.exemplar, place.domain.measure(), context.budget())?;
+        let usual = match (&self.bodies, &place.domain) {
+            (None, _) => Border::Clip,
+            (Some(_), Domain::Region(_)) => Border::Inside,
+            (Some(_), _) => Border::Cross,
+        };
+        let mut request = EngineRequest::new(place.domain);
+        request.border = space.border.unwrap_or(usual);
+        request.fields = place.fields;
+        context.job = Job::Space(space);
         request.seed = context.seed;
         request.budget = context.budget().clone();
         Ok(request)
@@ -75,21 +96,25 @@ impl Ready for Volume {
         understood(&self.exemplar)
     }
 
-    fn run(self: Arc<Self>, context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
-        let request = self.resolve(&context)?;
+    fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
+        let request = self.resolve(&mut context)?;
         let frame = request.domain.bounds();
         let origin = context.origin();
-        let make = |snapshot| VolumeMade::of_snapshot(&self.exemplar, frame, snapshot);
+        let kind = (&self.exemplar, &self.bodies);
+        let make = |snapshot| VolumeMade::of_snapshot(kind, frame, snapshot);
         let mut outcome = self.engine.run(&request, &mut Show { watch, origin: &origin, make })?;
         outcome.warnings.splice(0..0, context.warnings);
-        Ok(Artwork::new(origin, VolumeMade { exemplar: Arc::clone(&self.exemplar), frame, outcome }))
+        Ok(Artwork::new(
+            origin,
+            VolumeMade { exemplar: Arc::clone(&self.exemplar), bodies: self.bodies.clone(), frame, outcome },
+        ))
     }
 }
 
 /// Refuses a box that is too large or too small for the pattern.
-fn check_volume(exemplar: &Exemplar<3>, bounds: &Bounds<3>, budget: &Budget) -> Result<()> {
+fn check_volume(exemplar: &Exemplar<3>, volume: f64, budget: &Budget) -> Result<()> {
     let spacing = spacing(exemplar);
-    let expected = bounds.measure() / spacing.powi(3);
+    let expected = volume / spacing.powi(3);
     if expected.is_nan() || expected > budget.limits().output_elements as f64 {
         return Err(Error::Limit {
             what: "size of the box".into(),
@@ -142,7 +167,7 @@ mod tests {
         let bytes = artwork.encode(&output).unwrap().bytes;
         assert!(bytes.starts_with(b"x,y,z,class\n"));
         let again = recipe_in("salt-out.csv", &bytes).unwrap();
-        assert!(matches!(&again.job, Job::Space(space) if space.cuboid.to_string() == "6x6x6"));
+        assert!(matches!(&again.job, Job::Space(space) if space.cuboid.unwrap().to_string() == "6x6x6"));
         assert_eq!(again.seed, 3);
         assert_eq!(run(&again).unwrap().encode(&output).unwrap().bytes, bytes);
     }
@@ -157,8 +182,8 @@ mod tests {
         assert!(with(|s| s.scale = Some(FieldSource::Constant(-1.0))).contains("a factor between"));
         assert!(with(|s| s.density = Some(FieldSource::parse("a.png").unwrap())).contains("from a picture, in space"));
         assert!(with(|s| s.border = Some(Border::Turn)).contains("no line along the border"));
-        assert!(with(|s| s.cuboid = "1e8x1e8x1e8".parse().unwrap()).contains("over the limit"));
-        assert!(with(|s| s.cuboid = "0.1x0.1x0.1".parse().unwrap()).contains("no room"));
+        assert!(with(|s| s.cuboid = Some("1e8x1e8x1e8".parse().unwrap())).contains("over the limit"));
+        assert!(with(|s| s.cuboid = Some("0.1x0.1x0.1".parse().unwrap())).contains("no room"));
         let flat = run(&recipe("flat.csv", "x,y\n0,0\n1,0\n0,1\n", "6x6x6")).unwrap_err();
         assert!(flat.to_string().contains("of the plane"));
     }

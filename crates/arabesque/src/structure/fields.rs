@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Bounds, Budget, Domain, Error, Fields, Grid, Matrix, OrientationField, Result, ScalarField, Vector,
+    Bounds, Budget, Domain, Error, Fields, Grid, Matrix, OrientationField, Result, Rotations, ScalarField, Vector,
 };
 use arabesque_io::{
     file,
@@ -64,6 +64,22 @@ pub(super) fn over(bounds: &Bounds<2>, job: &mut Structures, context: &RunContex
     Ok(Fields { orientation, scale, ..Fields::default() })
 }
 
+/// Rotations of the plane over a sheet in space.
+#[derive(Debug)]
+struct Raised(Arc<dyn Rotations<2>>);
+
+impl Rotations<3> for Raised {
+    fn at(&self, p: Vector<3>) -> Matrix<3> {
+        about_z(self.0.at(Vector::xy(p[0], p[1])))
+    }
+}
+
+/// A rotation of the plane as one about z.
+fn about_z(m: Matrix<2>) -> Matrix<3> {
+    let [[a, b], [c, d]] = m.0;
+    Matrix([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, 1.0]])
+}
+
 /// Fields of the plane over a sheet in space: turned about z, and the same at any height.
 pub(super) fn raised(fields: Fields<2>) -> Fields<3> {
     fn grid<T, U>(grid: Grid<2, T>, value: impl Fn(T) -> U) -> Grid<3, U> {
@@ -74,13 +90,10 @@ pub(super) fn raised(fields: Fields<2>) -> Fields<3> {
             values: grid.values.into_iter().map(value).collect(),
         }
     }
-    let turned = |m: Matrix<2>| {
-        let [[a, b], [c, d]] = m.0;
-        Matrix([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, 1.0]])
-    };
     let orientation = fields.orientation.map(|field| match field {
-        OrientationField::Constant(m) => OrientationField::Constant(turned(m)),
-        OrientationField::Grid(g) => OrientationField::Grid(grid(g, turned)),
+        OrientationField::Constant(m) => OrientationField::Constant(about_z(m)),
+        OrientationField::Grid(g) => OrientationField::Grid(grid(g, about_z)),
+        OrientationField::Of(rotations) => OrientationField::Of(Arc::new(Raised(rotations))),
     });
     let scale = match fields.scale {
         ScalarField::Constant(v) => ScalarField::Constant(v),

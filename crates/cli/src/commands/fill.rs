@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
-    Border, Cuboid, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters,
-    Recipe, Redo, Region, Space, Structures,
+    Border, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo,
+    Region, Space, Structures,
     core::options::{Choice, help_list, preset_list},
     patterns::Params,
     structures::StructureParams,
@@ -69,6 +69,9 @@ struct Place {
     /// Structures: fill a closed mesh
     #[arg(long, value_name = "MESH", group = "where")]
     inside: Option<String>,
+    /// Scenes of meshes: what lies on the floor in the exemplar (its lowest place) lies on the floor of the result
+    #[arg(long)]
+    floor: bool,
     /// Keep these shapes free; structures also what is dark in a PNG picture; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
@@ -208,6 +211,9 @@ impl Fill {
         };
         let job = if is_structure {
             structures(self.place, self.fields, self.engine, &writing)?
+        } else if is_scene(&self.exemplar) {
+            not_for_scenes(&self.place, &self.fields, &writing)?;
+            job(self.place, self.fields, self.engine)?
         } else {
             not_for_structures(&self.place, &self.fields, &writing)?;
             job(self.place, self.fields, self.engine)?
@@ -219,6 +225,29 @@ impl Fill {
         recipe.output.pixels_per_unit = writing.pixels_per_unit;
         recipe.output.view = writing.view;
         produce(recipe, None, &path, &run)
+    }
+}
+
+/// Whether a file holds a scene of meshes, by its ending.
+fn is_scene(exemplar: &str) -> bool {
+    exemplar.to_ascii_lowercase().ends_with(".glb")
+}
+
+/// Refuses what scenes of meshes do not have.
+fn not_for_scenes(place: &Place, fields: &Fields, writing: &Writing) -> Result<(), Error> {
+    let given = [
+        ("along", place.along.is_some()),
+        ("taper", fields.taper.is_some()),
+        ("twist", fields.twist.is_some()),
+        ("tube", fields.tube.is_some()),
+        ("mesh", writing.mesh),
+    ];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        None => Ok(()),
+        Some((name, _)) => Err(Error::Unsupported {
+            what: format!("{name} for a scene of meshes"),
+            advice: "leave it out, or use --method structures".into(),
+        }),
     }
 }
 
@@ -313,17 +342,26 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
             advice: advice.into(),
         });
     }
-    let Fields { orient, scale, density, .. } = fields;
-    if let Some(cuboid) = place.cuboid {
-        let plane_only =
-            [("keep", place.keep.is_some()), ("orient", orient.is_some()), ("avoid", !place.avoid.is_empty())];
-        if let Some((name, _)) = plane_only.into_iter().find(|(_, is_given)| *is_given) {
-            let advice = "leave it out, or leave the box out";
-            return Err(Error::Unsupported { what: format!("{name} together with box"), advice: advice.into() });
+    let Fields { orient, scale, density, direction, .. } = fields;
+    if place.cuboid.is_some() || place.inside.is_some() || place.on.is_some() {
+        if !place.avoid.is_empty() {
+            let advice = "leave it out, or fill a page, a shape or a tile";
+            return Err(Error::Unsupported { what: "avoid for a part of space".into(), advice: advice.into() });
         }
-        let params = engine.parameters();
-        let cuboid: Cuboid = cuboid.parse()?;
-        return Ok(Job::from(Space { method, border, scale, density, params, ..Space::new(cuboid) }));
+        return Ok(Job::from(Space {
+            cuboid: place.cuboid.map(|text| text.parse()).transpose()?,
+            inside: place.inside.map(Input::file),
+            on: place.on.map(Input::file),
+            keep: place.keep.map(Input::file),
+            direction: direction.as_deref().map(Direction::parse),
+            floor: place.floor,
+            method,
+            border,
+            orient,
+            scale,
+            density,
+            params: engine.parameters(),
+        }));
     }
     if let Some(region) = place.redo.or(place.to) {
         if place.keep.is_some() {

@@ -31,7 +31,7 @@ pub struct Element<const D: usize> {
     pub centre: Vector<D>,
     /// From the coordinates of the first element of the class to those of this one, as well as a similarity can.
     pub pose: Similarity<D>,
-    /// The ink.
+    /// The ink. In space points spread over the surface, in one ring, in no order.
     pub outline: Outline<D>,
     /// Mean colour of the ink, sRGB in [0, 1].
     pub colour: [f64; 3],
@@ -193,6 +193,16 @@ impl<const D: usize> Exemplar<D> {
         });
         let classes = names.iter().map(|name| Class { name: name.clone() }).collect();
         Self::new(place, elements.collect(), classes, window_around(points))
+    }
+
+    /// An exemplar of elements whose frame nobody tells: the window is the bounding box of the centres, grown until its density is that
+    /// of the interior.
+    ///
+    /// # Errors
+    /// As [`Exemplar::new`].
+    pub fn unframed(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>) -> Result<Self> {
+        let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
+        Self::new(place, elements, classes, window_around(&centres))
     }
 
     /// What it shows.

@@ -6,6 +6,8 @@ mod strokes;
 pub use grid::Grid;
 pub use strokes::FlowStroke;
 
+use std::sync::Arc;
+
 use crate::space::{Matrix, Vector};
 
 /// A positive number at every point: scale or density.
@@ -41,13 +43,21 @@ impl<const D: usize> ScalarField<D> {
     }
 }
 
+/// Rotations that somebody works out for any place.
+pub trait Rotations<const D: usize>: Send + Sync + std::fmt::Debug {
+    /// The rotation at `p`: the same each time.
+    fn at(&self, p: Vector<D>) -> Matrix<D>;
+}
+
 /// A rotation at every point: how the pattern is turned there.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum OrientationField<const D: usize> {
     /// The same everywhere.
     Constant(Matrix<D>),
     /// Blended between grid nodes and made a rotation again.
     Grid(Grid<D, Matrix<D>>),
+    /// As somebody else says: along a surface, say.
+    Of(Arc<dyn Rotations<D>>),
 }
 
 impl<const D: usize> OrientationField<D> {
@@ -55,6 +65,7 @@ impl<const D: usize> OrientationField<D> {
     pub fn at(&self, p: Vector<D>) -> Matrix<D> {
         match self {
             Self::Constant(r) => *r,
+            Self::Of(rotations) => rotations.at(p),
             Self::Grid(grid) => {
                 let mut sum = Matrix::zero();
                 grid.interpolate(p, |w, r| {

@@ -61,7 +61,7 @@ fn constant(fields: &Fields<2>) -> Option<(Matrix<2>, f64, f64)> {
     let turn = match &fields.orientation {
         None => Matrix::identity(),
         Some(OrientationField::Constant(turn)) => *turn,
-        Some(OrientationField::Grid(_)) => return None,
+        Some(OrientationField::Grid(_) | OrientationField::Of(_)) => return None,
     };
     let ScalarField::Constant(scale) = fields.scale else { return None };
     let ScalarField::Constant(density) = fields.density else { return None };

@@ -33,6 +33,12 @@ impl Job {
                 wanted.extend(avoided(&job.avoid));
             }
             Self::Space(job) => {
+                wanted.extend(job.inside.iter().map(|input| ("--inside", input)));
+                wanted.extend(job.on.iter().map(|input| ("--on", input)));
+                wanted.extend(job.keep.iter().map(|input| ("--keep", input)));
+                if let Some(Direction::Strokes(input)) = &job.direction {
+                    wanted.push(("--direction", input));
+                }
                 wanted.extend(field("--scale", job.scale.as_ref()));
                 wanted.extend(field("--density", job.density.as_ref()));
             }

@@ -1,0 +1,163 @@
+//! Where elements in space go: boxes, solids, layers on meshes.
+
+use std::sync::Arc;
+
+use arabesque_core::{
+    Bounds, Domain, Error, Exemplar, Fields, Matrix, OrientationField, Region, Result, Rotations, Vector,
+};
+use arabesque_surface::{DirectionField, MeshIndex, MeshReport};
+
+use crate::{
+    method::RunContext,
+    plane::constant_factor,
+    recipe::{FieldSource, Space},
+    solid::read::indexed_mesh,
+    structure::directions,
+};
+
+/// A place in space, with its fields.
+pub(super) struct Place {
+    pub(super) domain: Domain<3>,
+    pub(super) fields: Fields<3>,
+}
+
+/// The place that `job` asks for, whose files are embedded.
+pub(super) fn place(job: &mut Space, exemplar: &Exemplar<3>, context: &mut RunContext<'_>) -> Result<Place> {
+    let place = job.place()?;
+    if job.direction.is_some() && place != "on" {
+        let what = "direction for a place other than a mesh (--on)".into();
+        return Err(Error::Unsupported { what, advice: "leave it out".into() });
+    }
+    let turned = degrees(job)?;
+    let scale = constant_factor("scale", job.scale.as_ref())?;
+    let density = constant_factor("density", job.density.as_ref())?;
+    let largest = scale.range().1;
+    let fields = |orientation| Fields { orientation, scale, density };
+    let about_y = about(Vector([0.0, 1.0, 0.0]), turned);
+    let constant = (turned != 0.0).then_some(OrientationField::Constant(about_y));
+    match &mut *job {
+        Space { cuboid: Some(cuboid), .. } => {
+            Ok(Place { domain: Domain::Box(cuboid.bounds()), fields: fields(constant) })
+        }
+        Space { inside: Some(input), .. } => {
+            let (index, warnings) = indexed_mesh(input, context.files)?;
+            context.warnings.extend(warnings);
+            let report = MeshReport::new(&index, context.budget())?;
+            context.warnings.extend(report.volume_of(input.name())?);
+            let solid = Solid { index, volume: report.volume.abs() };
+            Ok(Place { domain: Domain::Region(Arc::new(solid)), fields: fields(constant) })
+        }
+        Space { on: Some(input), direction, .. } => {
+            let (index, warnings) = indexed_mesh(input, context.files)?;
+            context.warnings.extend(warnings);
+            let report = MeshReport::new(&index, context.budget())?;
+            context.warnings.extend(report.surface_of(input.name())?);
+            let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
+            context.warnings.extend(field.warnings().iter().cloned());
+            let heights = [exemplar.window.min[1], exemplar.window.max[1]].map(|y| y * largest);
+            let layer = Arc::new(Layer { index, field, turned: turned.to_radians(), heights });
+            let rotations: Arc<dyn Rotations<3>> = layer.clone();
+            Ok(Place { domain: Domain::Region(layer), fields: fields(Some(OrientationField::Of(rotations))) })
+        }
+        Space { .. } => Err(Error::parameter("place", "none", "one of box, inside and on")),
+    }
+}
+
+fn degrees(job: &Space) -> Result<f64> {
+    match &job.orient {
+        None => Ok(0.0),
+        Some(FieldSource::Constant(v)) if v.is_finite() => Ok(*v),
+        Some(FieldSource::Constant(v)) => Err(Error::parameter("orient", v, "degrees")),
+        Some(FieldSource::File(_)) => {
+            Err(Error::Unsupported { what: "orient from a file, in space".into(), advice: "give degrees".into() })
+        }
+    }
+}
+
+/// The rotation by `degrees` about an axis of length 1.
+fn about(axis: Vector<3>, degrees: f64) -> Matrix<3> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let turned = |v: Vector<3>| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
+    let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| turned(Vector(v)));
+    Matrix(std::array::from_fn(|r| columns.map(|c| c[r])))
+}
+
+/// The inside of a closed mesh.
+#[derive(Debug)]
+struct Solid {
+    index: MeshIndex,
+    volume: f64,
+}
+
+impl Region<3> for Solid {
+    fn bounds(&self) -> Bounds<3> {
+        self.index.bounds()
+    }
+
+    fn measure(&self) -> f64 {
+        self.volume
+    }
+
+    fn signed_distance(&self, p: Vector<3>) -> f64 {
+        self.index.signed_distance(p)
+    }
+
+    fn nearest_boundary(&self, p: Vector<3>) -> Vector<3> {
+        self.index.closest(p).point
+    }
+}
+
+/// A layer on a mesh: what lies between two heights over it.
+#[derive(Debug)]
+struct Layer {
+    index: MeshIndex,
+    field: DirectionField,
+    /// Radians by which the pattern is turned about the normal.
+    turned: f64,
+    heights: [f64; 2],
+}
+
+impl Layer {
+    /// The height over the mesh, and the distance to where the layer ends sideways, at the edge of an open mesh.
+    fn height(&self, p: Vector<3>) -> (f64, arabesque_surface::Closest) {
+        let foot = self.index.closest(p);
+        (self.index.height(&foot, p), foot)
+    }
+}
+
+impl Region<3> for Layer {
+    fn bounds(&self) -> Bounds<3> {
+        self.index.bounds().grown(self.heights[0].abs().max(self.heights[1].abs()))
+    }
+
+    fn measure(&self) -> f64 {
+        self.index.area() * (self.heights[1] - self.heights[0])
+    }
+
+    fn signed_distance(&self, p: Vector<3>) -> f64 {
+        let (height, foot) = self.height(p);
+        // Beyond the edge of an open mesh the way to the foot leaves the normal.
+        let away = p - foot.point;
+        let beside = (away.norm2() - height * height).max(0.0).sqrt();
+        let within = (height - self.heights[0]).min(self.heights[1] - height);
+        if beside > 1e-6 * (1.0 + away.norm()) { within.min(-beside) } else { within }
+    }
+
+    fn nearest_boundary(&self, p: Vector<3>) -> Vector<3> {
+        let (height, foot) = self.height(p);
+        let [low, high] = self.heights;
+        let to = if height - low < high - height { low } else { high };
+        foot.point + foot.normal * to
+    }
+}
+
+impl Rotations<3> for Layer {
+    fn at(&self, p: Vector<3>) -> Matrix<3> {
+        let frame = self.field.frame(&self.index, &self.index.closest(p));
+        let (sin, cos) = self.turned.sin_cos();
+        let normal = frame.normal;
+        let tangent = frame.tangent * cos + frame.bitangent() * sin;
+        let across = tangent.cross(normal);
+        Matrix(std::array::from_fn(|r| [tangent[r], normal[r], across[r]]))
+    }
+}

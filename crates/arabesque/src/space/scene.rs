@@ -1,0 +1,163 @@
+//! Scenes of meshes as exemplars: each node is an element, nodes of one name are a class.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use arabesque_core::{
+    Bounds, Budget, Class, Element, Error, Exemplar, Outline, Result, Role, TriangleMesh, Vector, Warning,
+};
+use arabesque_io::mesh::gltf::{Scene, SceneMesh, read_scene};
+use arabesque_surface::{MeshIndex, scatter};
+
+/// Points that are scattered over a mesh, and corners that are added to them, at most.
+const SCATTERED: f64 = 40.0;
+const CORNERS: usize = 24;
+/// Points are scattered so that so many are in a square of their spacing.
+const PACKED: f64 = 0.7;
+
+/// A scene as an exemplar: element `n` is what node `n` shows.
+#[derive(Clone, Debug)]
+pub(crate) struct Bodies {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) exemplar: Arc<Exemplar<3>>,
+}
+
+/// What a mesh is to the engine, in its own coordinates.
+struct Body {
+    /// Centre of its volume.
+    centre: Vector<3>,
+    /// Points all over it.
+    points: Vec<Vector<3>>,
+    /// Mean colour.
+    colour: [f64; 3],
+}
+
+impl Bodies {
+    /// Reads a scene.
+    ///
+    /// # Errors
+    /// As [`read_scene`]; [`Error::Input`] for a scene without meshes and for a mesh without area.
+    pub(crate) fn read(name: &str, bytes: &[u8], budget: &Budget) -> Result<(Self, Vec<Warning>)> {
+        let mut scene = read_scene(name, bytes, budget)?;
+        let mut warnings = std::mem::take(&mut scene.warnings);
+        if scene.nodes.is_empty() {
+            let advice = "give a scene of meshes, or use --method structures for points";
+            return Err(Error::input(name, "no mesh in its scene", advice));
+        }
+        if !scene.points.is_empty() {
+            let message = format!("{name}: {} points beside the meshes are left out", scene.points.len());
+            warnings.push(Warning::new(message, "use --method structures, which continues both"));
+            scene.points = arabesque_core::PointSet::default();
+        }
+        let bodies = bodies(name, &scene.meshes, budget)?;
+        let mut classes: Vec<Class> = Vec::new();
+        let mut number_of = BTreeMap::new();
+        let mut elements = Vec::with_capacity(scene.nodes.len());
+        for node in &scene.nodes {
+            budget.spend(1000)?;
+            let called = class_name(if node.name.is_empty() { &scene.meshes[node.mesh].name } else { &node.name });
+            let class = *number_of.entry(called.to_owned()).or_insert_with(|| {
+                classes.push(Class { name: called.to_owned() });
+                classes.len() - 1
+            });
+            let body = &bodies[node.mesh];
+            elements.push(Element {
+                class,
+                centre: node.transform.apply(body.centre),
+                pose: node.transform,
+                outline: Outline { rings: vec![body.points.iter().map(|p| node.transform.apply(*p)).collect()] },
+                colour: body.colour,
+                lean: [Vector::ZERO; 3],
+                role: Role::Source,
+            });
+        }
+        let exemplar = match scene.frame {
+            Some(frame) => Exemplar::new(name, elements, classes, frame)?,
+            None => Exemplar::unframed(name, elements, classes)?,
+        };
+        Ok((Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar) }, warnings))
+    }
+
+    /// The scene of these elements in other places.
+    pub(crate) fn placed(&self, placements: &[arabesque_core::Placement<3>], frame: Option<Bounds<3>>) -> Scene {
+        let node = |placement: &arabesque_core::Placement<3>| {
+            let source = &self.scene.nodes[placement.source];
+            let name = self.exemplar.classes[self.exemplar.elements[placement.source].class].name.clone();
+            arabesque_io::mesh::gltf::SceneNode {
+                name,
+                mesh: source.mesh,
+                transform: placement.transform.after(&source.transform),
+            }
+        };
+        Scene { nodes: placements.iter().map(node).collect(), frame, ..(*self.scene).clone() }
+    }
+}
+
+/// The name of a class: that of a node without the number at its end.
+fn class_name(name: &str) -> &str {
+    let short = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let short = if short.len() < name.len() { short.trim_end_matches(['.', '_', '-', ' ']) } else { name };
+    if short.is_empty() { name } else { short }
+}
+
+fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>> {
+    let one = |(number, shape): (usize, &SceneMesh)| {
+        let called = format!("{name}: mesh {number} {}", shape.name);
+        let index = MeshIndex::new(&shape.mesh, called.trim_end(), budget)?;
+        let area = index.area();
+        if !(area > 0.0 && area.is_finite()) {
+            return Err(Error::input(called.trim_end(), "a mesh without area", "leave it out"));
+        }
+        let found = scatter(&index, (area * PACKED / SCATTERED).sqrt(), 0, budget)?;
+        let mut points: Vec<_> = found.iter().map(|c| c.point).collect();
+        points.extend(corners(&shape.mesh));
+        Ok(Body { centre: centre(&shape.mesh, &points), points, colour: colour(&shape.mesh) })
+    };
+    meshes.iter().enumerate().map(one).collect()
+}
+
+/// Corners far from one another, those that stick out first.
+fn corners(mesh: &TriangleMesh) -> Vec<Vector<3>> {
+    let middle = mesh.bounds().centre();
+    let mut room: Vec<f64> = mesh.positions.iter().map(|p| (*p - middle).norm2()).collect();
+    let mut chosen: Vec<Vector<3>> = Vec::new();
+    while chosen.len() < CORNERS.min(mesh.positions.len()) {
+        let Some((next, most)) = room.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) else { break };
+        if *most <= 0.0 {
+            break;
+        }
+        let p = mesh.positions[next];
+        chosen.push(p);
+        let is_first = chosen.len() == 1;
+        for (room, q) in room.iter_mut().zip(&mesh.positions) {
+            let far = (*q - p).norm2();
+            *room = if is_first { far } else { room.min(far) };
+        }
+    }
+    chosen
+}
+
+/// Centre of the volume; of the points where a mesh encloses nothing.
+fn centre(mesh: &TriangleMesh, points: &[Vector<3>]) -> Vector<3> {
+    let middle = mesh.bounds().centre();
+    let mut sum = (Vector::ZERO, 0.0, 0.0);
+    for t in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(t).map(|p| p - middle);
+        let volume = a.dot(b.cross(c));
+        sum = (sum.0 + (a + b + c) * (0.25 * volume), sum.1 + volume, sum.2 + volume.abs());
+    }
+    let (moment, volume, total) = sum;
+    let size = mesh.bounds().size().norm();
+    if volume.abs() > 1e-9 * size.powi(3) && volume.abs() > 0.2 * total {
+        return middle + moment * (1.0 / volume);
+    }
+    points.iter().fold(Vector::ZERO, |sum, p| sum + *p) * (1.0 / points.len().max(1) as f64)
+}
+
+fn colour(mesh: &TriangleMesh) -> [f64; 3] {
+    match mesh.colours.as_deref() {
+        None | Some([]) => [1.0; 3],
+        Some(list) => {
+            std::array::from_fn(|k| (list.iter().map(|c| c[k]).sum::<f64>() / list.len() as f64).clamp(0.0, 1.0))
+        }
+    }
+}

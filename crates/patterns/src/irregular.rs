@@ -16,9 +16,9 @@ use crate::{
         graph::{crowding, skeleton::Skeleton},
         level_exemplar::{LevelExemplar, expected_nodes, level_exemplars, shortest},
     },
-    finish::{clearance::ExemplarClearance, placements},
+    finish::{clearance::ExemplarClearance, placements, solids},
     optimise::{search, targets::class_targets},
-    params::{Deform, Params, Switch},
+    params::{Clearance, Deform, Params, Switch},
     run::{LevelContext, Made, Run},
 };
 
@@ -152,6 +152,10 @@ where
                 found.placements.retain(|p| p.frozen.is_some() || last.keeps_rule(p));
                 cut_short = cut_short.or(Some(error));
             }
+        }
+        if cut_short.is_none() && self.params.clearance == Clearance::Repaired {
+            let (sampled, targets) = (&self.levels[used[used.len() - 1]], &targets[targets.len() - 1]);
+            cut_short = solids::mend(&mut found.placements, &self.exemplar, &sampled.library, last, targets).err();
         }
         if found.placements.is_empty() && found.curves.is_empty() {
             if let Some(error) = cut_short {

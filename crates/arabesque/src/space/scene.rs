@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{
-    Bounds, Budget, Class, Element, Error, Exemplar, Outline, Result, Role, TriangleMesh, Vector, Warning,
+    Bounds, Budget, Class, Element, Error, Exemplar, Grid, Outline, Result, Role, Solid, TriangleMesh, Vector, Warning,
 };
 use arabesque_io::mesh::gltf::{Scene, SceneMesh, read_scene};
 use arabesque_surface::{MeshIndex, scatter};
@@ -11,6 +11,14 @@ use arabesque_surface::{MeshIndex, scatter};
 /// Points that are scattered over a mesh, and corners that are added to them, at most.
 const SCATTERED: f64 = 40.0;
 const CORNERS: usize = 24;
+/// Cells of the grid of distances across the thinnest and along the longest side of a mesh, cells around it, and how much thinner than
+/// long a mesh may be to the grid.
+const ACROSS: f64 = 8.0;
+const ALONG: f64 = 64.0;
+const MARGIN: f64 = 3.0;
+const THINNEST: f64 = 12.0;
+/// A frame is made wider by no more than this factor.
+const WIDEST: f64 = 1.6;
 /// Points are scattered so that so many are in a square of their spacing.
 const PACKED: f64 = 0.7;
 
@@ -29,6 +37,7 @@ struct Body {
     points: Vec<Vector<3>>,
     /// Mean colour.
     colour: [f64; 3],
+    solid: Arc<Solid<3>>,
 }
 
 impl Bodies {
@@ -70,10 +79,8 @@ impl Bodies {
                 role: Role::Source,
             });
         }
-        let exemplar = match scene.frame {
-            Some(frame) => Exemplar::new(name, elements, classes, frame)?,
-            None => Exemplar::unframed(name, elements, classes)?,
-        };
+        let mut exemplar = framed(name, elements, classes, scene.frame)?;
+        exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[node.mesh].solid)).collect();
         Ok((Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar) }, warnings))
     }
 
@@ -90,6 +97,22 @@ impl Bodies {
         };
         Scene { nodes: placements.iter().map(node).collect(), frame, ..(*self.scene).clone() }
     }
+}
+
+/// The exemplar in its frame, if the file has one. A box that centres fill is tight around a lattice: it shows more elements than there are
+/// elsewhere, so that the frame must be as much wider.
+fn framed(name: &str, elements: Vec<Element<3>>, classes: Vec<Class>, frame: Option<Bounds<3>>) -> Result<Exemplar<3>> {
+    let Some(frame) = frame else { return Exemplar::unframed(name, elements, classes) };
+    let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
+    let tight = Exemplar::new(name, elements, classes, frame)?;
+    let Some(cell) = arabesque_core::lattice_cell(&centres) else { return Ok(tight) };
+    let factor = cell * centres.len() as f64 / frame.measure();
+    if !(1.0..=WIDEST).contains(&factor) {
+        return Ok(tight);
+    }
+    let grow = frame.size() * (0.5 * (factor.cbrt() - 1.0));
+    let window = Bounds::new(frame.min - grow, frame.max + grow);
+    Ok(Exemplar { window, ..tight })
 }
 
 /// The name of a class: that of a node without the number at its end.
@@ -110,9 +133,27 @@ fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>
         let found = scatter(&index, (area * PACKED / SCATTERED).sqrt(), 0, budget)?;
         let mut points: Vec<_> = found.iter().map(|c| c.point).collect();
         points.extend(corners(&shape.mesh));
-        Ok(Body { centre: centre(&shape.mesh, &points), points, colour: colour(&shape.mesh) })
+        let centre = centre(&shape.mesh, &points);
+        let solid = Arc::new(solid(&index, &points, centre, budget)?);
+        Ok(Body { centre, points, colour: colour(&shape.mesh), solid })
     };
     meshes.iter().enumerate().map(one).collect()
+}
+
+/// The volume of a mesh: its distances on a grid around it.
+fn solid(index: &MeshIndex, points: &[Vector<3>], centre: Vector<3>, budget: &Budget) -> Result<Solid<3>> {
+    let size = index.bounds().size();
+    let longest = size.0.into_iter().fold(0.0, f64::max);
+    let thinnest = size.0.into_iter().fold(f64::INFINITY, f64::min).max(longest / THINNEST);
+    let step = (thinnest / ACROSS).max(longest / ALONG);
+    let bounds = index.bounds().grown(MARGIN * step);
+    let nodes = bounds.size().0.map(|side| (side / step).ceil() as usize + 1);
+    let mut grid = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
+    let places: Vec<_> = (0..grid.values.len()).map(|n| grid.node(n)).collect();
+    grid.values = index.signed_distances(&places, budget)?;
+    let inside = grid.values.iter().filter(|v| **v > 0.0).count();
+    let cell = bounds.measure() / nodes.iter().map(|n| n - 1).product::<usize>().max(1) as f64;
+    Ok(Solid { distance: grid, points: points.to_vec(), centre, measure: cell * inside as f64 })
 }
 
 /// Corners far from one another, those that stick out first.

@@ -1,9 +1,14 @@
 //! The small example, already simplified.
 
+mod solid;
 mod view;
 mod window;
 
+pub use solid::Solid;
 pub use view::View;
+pub use window::lattice_cell;
+
+use std::sync::Arc;
 
 use crate::{
     curve::Path,
@@ -96,6 +101,8 @@ pub struct Exemplar<const D: usize> {
     /// Where the exemplar is known to repeat exactly: two vectors by which all of it can be moved onto itself, as far as it is shown.
     /// `None` where the file does not say so; it may repeat all the same.
     pub period: Option<[Vector<D>; 2]>,
+    /// The volumes of the elements, one for each, in the coordinates from which its pose leads; empty where they have none.
+    pub solids: Vec<Arc<Solid<D>>>,
 }
 
 /// What an exemplar holds, not yet checked.
@@ -162,7 +169,7 @@ impl<const D: usize> Exemplar<D> {
         if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
             return fail("the frame has no area", "give the exemplar a width and a height");
         }
-        Ok(Self { elements, classes, curves, areas, styles, window, hole: None, period: None })
+        Ok(Self { elements, classes, curves, areas, styles, window, hole: None, period: None, solids: Vec::new() })
     }
 
     /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.
@@ -210,11 +217,14 @@ impl<const D: usize> Exemplar<D> {
         View { window: self.window, hole: self.hole }
     }
 
-    /// Mean distance scale: (measure of what is shown / number of elements in it)^(1/D).
+    /// Mean distance scale: (measure of what is shown / number of elements in it)^(1/D); in space, where that is a single layer, (area of
+    /// the layer / number)^(1/2).
     pub fn spacing(&self) -> f64 {
         let view = self.view();
         let inside = self.elements.iter().filter(|e| view.contains(e.centre)).count().max(1);
-        (view.measure() / inside as f64).powf(1.0 / D as f64)
+        let spacing = (view.measure() / inside as f64).powf(1.0 / D as f64);
+        let thinnest = self.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+        if D == 3 && thinnest < spacing { (view.measure() / thinnest / inside as f64).sqrt() } else { spacing }
     }
 }
 

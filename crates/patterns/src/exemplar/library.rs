@@ -194,8 +194,12 @@ impl<const D: usize> Library<D> {
 
     /// Radius of the ball that holds `count` elements on average.
     pub(crate) fn radius_for(&self, count: f64) -> f64 {
-        let unit = if D == 3 { 4.0 / 3.0 * std::f64::consts::PI } else { std::f64::consts::PI };
-        self.spacing * (count / unit).powf(1.0 / D as f64)
+        let disc = self.spacing * (count / std::f64::consts::PI).sqrt();
+        let thinnest = self.view.window.size().0.into_iter().fold(f64::INFINITY, f64::min);
+        if D == 2 || thinnest < self.spacing {
+            return disc;
+        }
+        self.spacing * (count / (4.0 / 3.0 * std::f64::consts::PI)).cbrt()
     }
 }
 

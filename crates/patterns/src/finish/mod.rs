@@ -4,3 +4,4 @@
 pub(crate) mod clearance;
 pub(crate) mod order;
 pub(crate) mod placements;
+pub(crate) mod solids;

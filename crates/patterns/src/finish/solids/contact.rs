@@ -1,0 +1,148 @@
+//! Where two elements meet, and how deep they may.
+
+use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Result, Similarity, Solid, Vector};
+
+use crate::exemplar::library::Library;
+
+/// Work for each place of a surface that is looked up.
+const LOOK: u64 = 16;
+/// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
+const QUANTILE: f64 = 0.9;
+/// Overlaps below this share of the inner radius are none.
+const TOUCH: f64 = 0.02;
+
+/// A solid in its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body<'a, const D: usize> {
+    pub(super) solid: &'a Solid<D>,
+    /// From the coordinates of the solid to those of the output.
+    pub(super) pose: Similarity<D>,
+    pub(super) centre: Vector<D>,
+    pub(super) radius: f64,
+}
+
+/// The deepest place of two solids in one another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact<const D: usize> {
+    pub(super) depth: f64,
+    /// Where it is.
+    pub(super) at: Vector<D>,
+    /// Which way the first one has to go, of length 1.
+    pub(super) way: Vector<D>,
+}
+
+impl<'a, const D: usize> Body<'a, D> {
+    pub(super) fn new(solid: &'a Solid<D>, pose: Similarity<D>) -> Self {
+        Self { solid, pose, centre: pose.apply(solid.centre), radius: solid.radius() * pose.scale }
+    }
+
+    /// How deep a place lies in it.
+    pub(super) fn depth(&self, p: Vector<D>) -> f64 {
+        self.solid.depth(self.pose.inverse().apply(p)) * self.pose.scale
+    }
+
+    /// The deepest place of the surface of `other` in this one, with the way out of it.
+    fn deepest(&self, other: &Self, shift: Vector<D>) -> Option<Contact<D>> {
+        let to_own = self.pose.inverse();
+        // Long bodies side by side mostly miss one another's box.
+        let middle = to_own.apply(other.centre + shift);
+        let room = self.solid.distance.bounds.clamp(middle) - middle;
+        if room.norm() * self.pose.scale > other.radius {
+            return None;
+        }
+        let both = to_own.after(&other.pose);
+        let moved = to_own.rotation.apply(shift) * to_own.scale;
+        let mut best: Option<(f64, Vector<D>)> = None;
+        for &point in &other.solid.points {
+            let own = both.apply(point) + moved;
+            let depth = self.solid.depth(own) * self.pose.scale;
+            if depth > 0.0 && best.is_none_or(|(most, _)| depth > most) {
+                best = Some((depth, own));
+            }
+        }
+        let (depth, own) = best?;
+        let way = self.pose.rotation.apply(self.solid.outwards(own));
+        Some(Contact { depth, at: self.pose.apply(own), way })
+    }
+}
+
+/// How two bodies overlap; `offset` is the way between their centres, around the back on a torus.
+pub(super) fn contact<const D: usize>(a: &Body<'_, D>, b: &Body<'_, D>, offset: Vector<D>) -> Option<Contact<D>> {
+    if offset.norm() >= a.radius + b.radius {
+        return None;
+    }
+    let shift = a.centre + offset - b.centre;
+    let of_b = a.deepest(b, shift).map(|c| Contact { way: -c.way, ..c });
+    let back = -shift;
+    let of_a = b.deepest(a, back).map(|c| Contact { at: c.at + shift, ..c });
+    match (of_a, of_b) {
+        (Some(x), Some(y)) => Some(if x.depth >= y.depth { x } else { y }),
+        (one, other) => one.or(other),
+    }
+}
+
+/// How deep elements of two classes may lie in one another.
+#[derive(Debug)]
+pub(super) struct Allowed {
+    classes: usize,
+    depth: Vec<f64>,
+}
+
+impl Allowed {
+    /// What the exemplar shows.
+    pub(super) fn measure<const D: usize>(
+        exemplar: &Exemplar<D>,
+        library: &Library<D>,
+        budget: &Budget,
+    ) -> Result<Self> {
+        let classes = library.classes();
+        let bodies: Vec<_> =
+            exemplar.elements.iter().zip(&exemplar.solids).map(|(e, s)| Body::new(s, e.pose)).collect();
+        let centres: Vec<_> = bodies.iter().map(|b| b.centre).collect();
+        let widest = bodies.iter().map(|b| b.radius).fold(0.0, f64::max);
+        let index = GridIndex::new(&centres, widest.max(1e-9), &Domain::Box(exemplar.window));
+        let mut found = vec![Vec::new(); classes * classes];
+        let mut meter = budget.meter();
+        for (i, a) in bodies.iter().enumerate() {
+            let mut near = Vec::new();
+            index.within(a.centre, a.radius + widest, |j, offset| near.push((j, offset)));
+            for (j, offset) in near.into_iter().filter(|(j, _)| *j > i) {
+                meter.spend(LOOK * (a.solid.points.len() + bodies[j].solid.points.len()) as u64)?;
+                if let Some(contact) = contact(a, &bodies[j], offset) {
+                    let (a, b) = (library.class[i as u32] as usize, library.class[j as u32] as usize);
+                    found[a.min(b) * classes + a.max(b)].push(contact.depth);
+                }
+            }
+        }
+        let inner: Vec<f64> = (0..classes as u32)
+            .map(|c| library.members(c).iter().map(|&e| inner(exemplar, e)).fold(f64::INFINITY, f64::min))
+            .collect();
+        let mut depth = vec![0.0; classes * classes];
+        for a in 0..classes {
+            for b in a..classes {
+                let list = &mut found[a * classes + b];
+                list.sort_by(f64::total_cmp);
+                let shown = list.get((QUANTILE * list.len() as f64) as usize).copied().unwrap_or(0.0);
+                let least = TOUCH * inner[a].min(inner[b]);
+                depth[a * classes + b] = shown.max(least);
+                depth[b * classes + a] = shown.max(least);
+            }
+        }
+        Ok(Self { classes, depth })
+    }
+
+    /// For elements of these classes.
+    pub(super) fn of(&self, a: u32, b: u32) -> f64 {
+        self.depth[a as usize * self.classes + b as usize]
+    }
+}
+
+fn inner<const D: usize>(exemplar: &Exemplar<D>, element: u32) -> f64 {
+    let e = element as usize;
+    exemplar.solids[e].inradius() * exemplar.elements[e].pose.scale
+}
+
+/// What looking for the contact of two bodies costs.
+pub(super) fn price<const D: usize>(a: &Body<'_, D>, b: &Body<'_, D>) -> u64 {
+    LOOK * (a.solid.points.len() + b.solid.points.len()) as u64
+}

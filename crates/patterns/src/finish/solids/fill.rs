@@ -1,0 +1,127 @@
+//! What is missing goes where there is room.
+
+use arabesque_core::{Budget, Matrix, Numbered, Placement, Result, Stage, Stream, Vector};
+
+use super::{
+    contact::{Body, contact, price},
+    things::Things,
+};
+
+const PLACES: Stage = Stage::new(437);
+
+/// Candidate places for each missing element, and sources tried at each.
+const TRIES: usize = 40;
+const SOURCES: usize = 6;
+/// Steps by which a candidate moves to where it fits.
+const STEPS: usize = 8;
+/// A candidate fits where it lies too deep by no more than this share of its inner radius.
+const FITS: f64 = 0.08;
+
+impl<const D: usize> Things<'_, D> {
+    /// Puts elements of the classes that are short where there is most room.
+    pub(super) fn fill(&mut self, targets: &Numbered<f64>, slack: f64, round: u64, budget: &Budget) -> Result<()> {
+        let mut count = Numbered::filled(0.0, targets.len());
+        (0..self.bodies.len()).for_each(|i| count[self.class(i)] += 1.0);
+        let short: Vec<f64> = targets.iter().zip(&count).map(|(t, c)| t * (1.0 - slack) - c).collect();
+        let missing = short.iter().map(|s| s.max(0.0).ceil()).sum::<f64>() as usize;
+        if missing == 0 {
+            return Ok(());
+        }
+        let mut random = Stream::new(self.extent.request().seed, PLACES, round);
+        let mut roomy = self.roomy(TRIES * missing, &mut random, budget)?;
+        roomy.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut short = short;
+        for (_, place) in roomy {
+            let Some(class) = (0..short.len()).max_by(|&a, &b| short[a].total_cmp(&short[b])) else { break };
+            if short[class] <= 0.0 {
+                break;
+            }
+            if let Some(placement) = self.fitting(class as u32, place, &mut random, budget)? {
+                self.bodies.push(self.body(placement.source, &placement.transform));
+                self.placements.push(placement);
+                self.moved.push(true);
+                short[class] -= 1.0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Random places outside of all bodies, with the distance to the nearest centre.
+    fn roomy(&self, tries: usize, random: &mut Stream, budget: &Budget) -> Result<Vec<(f64, Vector<D>)>> {
+        let domain = &self.extent.request().domain;
+        let bounds = domain.bounds();
+        let index = self.index();
+        let mut meter = budget.meter();
+        let mut found = Vec::new();
+        for _ in 0..tries {
+            let p = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
+            meter.spend(3000)?;
+            if !domain.contains(p) {
+                continue;
+            }
+            let mut deepest = -2.0 * self.widest;
+            index.within(p, self.widest, |j, offset| {
+                let body = &self.bodies[j];
+                let shifted = body.centre - offset;
+                deepest = deepest.max(body.depth(shifted).max(body.radius - 3.0 * self.widest));
+            });
+            if deepest < 0.0 {
+                found.push((-deepest, p));
+            }
+        }
+        Ok(found)
+    }
+
+    /// An element of a class that fits at a place, moved a little where that helps.
+    fn fitting(
+        &self,
+        class: u32,
+        place: Vector<D>,
+        random: &mut Stream,
+        budget: &Budget,
+    ) -> Result<Option<Placement<D>>> {
+        let members = self.library.members(class);
+        let index = self.index();
+        let mut meter = budget.meter();
+        for _ in 0..SOURCES {
+            let source = members[random.below(members.len())];
+            if !self.library.copyable[source] {
+                continue;
+            }
+            let mut at = place;
+            for _ in 0..STEPS {
+                let transform = self.extent.turned(source, at, &Matrix::identity());
+                let body = self.body(source as usize, &transform);
+                let (push, over, cost) = self.wish(&body, class, &index);
+                meter.spend(cost)?;
+                let inner = body.solid.inradius() * body.pose.scale;
+                if over <= FITS * inner && self.extent.admits(source, at) {
+                    let placement = Placement { source: source as usize, transform, control: Vec::new(), frozen: None };
+                    return Ok(Some(placement));
+                }
+                at = self.extent.request().domain.wrap(at + push);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Where a body would go, how deep it lies too deep, and the cost of knowing.
+    fn wish(&self, body: &Body<'_, D>, class: u32, index: &arabesque_core::GridIndex<D>) -> (Vector<D>, f64, u64) {
+        let (mut push, mut worst, mut cost) = (Vector::ZERO, 0.0_f64, 500);
+        for (j, offset) in self.around_of(index, body) {
+            cost += price(body, &self.bodies[j]);
+            let Some(found) = contact(body, &self.bodies[j], offset) else { continue };
+            let over = found.depth - self.allowed.of(class, self.class(j));
+            if over > 0.0 {
+                worst = worst.max(over);
+                push = push + found.way * over;
+            }
+        }
+        (push, worst, cost)
+    }
+
+    fn around_of(&self, index: &arabesque_core::GridIndex<D>, body: &Body<'_, D>) -> Vec<(usize, Vector<D>)> {
+        // Those that were put in since the index was made come after it.
+        self.around(index, body, usize::MAX)
+    }
+}

@@ -1,0 +1,47 @@
+//! Elements with a volume: apart as far as in the exemplar, as many as there should be.
+//!
+//! Samples make the pattern, but only volumes say whether two elements touch [Ma 2011 §5, figs. 14 and 15]. Overlaps deeper than the
+//! exemplar's are taken apart by moving and turning both as little as possible; what stays too deep is taken out, and what is missing goes
+//! where there is room for it.
+
+mod contact;
+mod fill;
+mod relax;
+mod things;
+
+use arabesque_core::{Exemplar, Numbered, Placement, Result};
+
+use crate::{border::Extent, exemplar::library::Library};
+use contact::Allowed;
+use things::Things;
+
+/// Elements may differ from the number that there should be by this share.
+const SLACK: f64 = 0.015;
+/// Rounds of taking out, putting in and moving.
+const ROUNDS: usize = 4;
+
+/// Mends overlaps and numbers of elements with a volume; anything else stays as it is.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop; then the elements are as far as that has come.
+pub(crate) fn mend<const D: usize>(
+    placements: &mut Vec<Placement<D>>,
+    exemplar: &Exemplar<D>,
+    library: &Library<D>,
+    extent: &Extent<'_, D>,
+    targets: &Numbered<f64>,
+) -> Result<()> {
+    if exemplar.solids.is_empty() {
+        return Ok(());
+    }
+    let budget = extent.request().budget.stage("taking elements apart");
+    let allowed = Allowed::measure(exemplar, library, &budget)?;
+    let mut things = Things::new(placements, exemplar, library, extent, &allowed);
+    let mended = (0..ROUNDS).try_for_each(|round| {
+        things.relax(&budget)?;
+        things.thin(targets, SLACK, &budget)?;
+        if round + 1 < ROUNDS { things.fill(targets, SLACK, round as u64, &budget) } else { Ok(()) }
+    });
+    *placements = things.into_placements();
+    mended
+}

@@ -1,0 +1,182 @@
+//! Taking solids apart, each moved and turned as little as possible.
+
+use arabesque_core::{Border, Budget, Matrix, Result, Similarity, Vector};
+use rayon::prelude::*;
+
+use super::{
+    contact::{Contact, contact, price},
+    things::Things,
+};
+
+/// Steps at most.
+const STEPS: usize = 40;
+/// Overlaps beyond what is allowed by less than this share of the spacing are left.
+const ENOUGH: f64 = 0.008;
+/// A body that moves by less than this share of the spacing is at rest.
+const STILL: f64 = 0.001;
+/// Share of a correction that is made in a step.
+const RATE: f64 = 0.9;
+/// How far a body may go from where it was, in spacings.
+const FAR: f64 = 0.6;
+/// Radius of gyration relative to the radius.
+const GYRATION: f64 = 0.5;
+
+/// How a body moves in a step: the sum of what its contacts want, and how many they are.
+#[derive(Clone, Copy)]
+struct Push<const D: usize> {
+    shift: Vector<D>,
+    turn: [f64; 3],
+    count: f64,
+}
+
+impl<const D: usize> Things<'_, D> {
+    /// Moves and turns bodies until none lies too deep in another, or for so many steps.
+    pub(super) fn relax(&mut self, budget: &Budget) -> Result<()> {
+        let spacing = self.library.spacing * self.extent.smallest_spacing_scale;
+        let starts: Vec<_> = self.bodies.iter().map(|b| b.centre).collect();
+        for _ in 0..STEPS {
+            budget.check()?;
+            let index = self.index();
+            let pushes: Vec<(Push<D>, u64, f64)> =
+                (0..self.bodies.len()).into_par_iter().map(|i| self.push(i, &index)).collect();
+            budget.spend(pushes.iter().map(|p| p.1).sum())?;
+            let worst = pushes.iter().map(|p| p.2).fold(0.0, f64::max);
+            for (i, (push, _, _)) in pushes.iter().enumerate() {
+                self.moved[i] = self.apply(i, push, starts[i], FAR * spacing) > STILL * spacing;
+            }
+            if worst < ENOUGH * spacing {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the contacts and the border want of a body; what it cost, and the worst of it.
+    fn push(&self, i: usize, index: &arabesque_core::GridIndex<D>) -> (Push<D>, u64, f64) {
+        let body = &self.bodies[i];
+        let mut push = Push { shift: Vector::ZERO, turn: [0.0; 3], count: 0.0 };
+        let (mut cost, mut worst) = (100, 0.0_f64);
+        if self.placements[i].frozen.is_some() {
+            return (push, cost, worst);
+        }
+        let around = self.around(index, body, i);
+        if !self.moved[i] && around.iter().all(|(j, _)| !self.moved[*j]) {
+            return (push, cost, worst);
+        }
+        for (j, offset) in around {
+            let other = &self.bodies[j];
+            cost += price(body, other);
+            let Some(found) = contact(body, other, offset) else { continue };
+            let over = found.depth - self.allowed.of(self.class(i), self.class(j));
+            if over > 0.0 {
+                let share = if self.placements[j].frozen.is_some() { 1.0 } else { 0.5 };
+                worst = worst.max(over);
+                self.add(&mut push, i, &found, share * over);
+            }
+        }
+        let (at_border, looked) = self.beyond(i);
+        cost += looked;
+        if let Some(found) = at_border {
+            worst = worst.max(found.depth);
+            self.add(&mut push, i, &found, found.depth);
+        }
+        (push, cost, worst)
+    }
+
+    /// The place of a body that lies farthest outside, where the border keeps it inside.
+    fn beyond(&self, i: usize) -> (Option<Contact<D>>, u64) {
+        let (body, request) = (&self.bodies[i], self.extent.request());
+        let domain = &request.domain;
+        let depth = domain.signed_distance(body.centre);
+        let inside = matches!(request.border, Border::Inside | Border::Turn);
+        if depth >= if inside { body.radius } else { 0.0 } {
+            return (None, 2000);
+        }
+        let back = |p: Vector<D>, depth: f64| {
+            let way = domain.nearest_inside(p) - p;
+            (way.norm() > 0.0).then(|| Contact { depth: -depth, at: p, way: way.unit_or_zero() })
+        };
+        if !inside {
+            return (back(body.centre, depth), 4000);
+        }
+        let mut worst = (0.0, body.centre);
+        for point in &body.solid.points {
+            let p = body.pose.apply(*point);
+            let out = domain.signed_distance(p);
+            if out < worst.0 {
+                worst = (out, p);
+            }
+        }
+        (if worst.0 < 0.0 { back(worst.1, worst.0) } else { None }, 2000 * body.solid.points.len() as u64)
+    }
+
+    /// Adds what a contact wants: a shift and a turn that take it apart by `amount`.
+    fn add(&self, push: &mut Push<D>, i: usize, found: &Contact<D>, amount: f64) {
+        let body = &self.bodies[i];
+        let arm = found.at - body.centre;
+        let gyration2 = (GYRATION * body.radius).powi(2).max(1e-18);
+        let lever =
+            if self.library.upright[self.placements[i].source as u32] { [0.0; 3] } else { cross(arm, found.way) };
+        let turned: f64 = lever.iter().map(|v| v * v).sum::<f64>() / gyration2;
+        let strength = amount / (1.0 + turned);
+        push.shift = push.shift + found.way * strength;
+        for (sum, v) in push.turn.iter_mut().zip(lever) {
+            *sum += v * strength / gyration2;
+        }
+        push.count += 1.0;
+    }
+
+    /// Moves a body; how far its places went at most.
+    fn apply(&mut self, i: usize, push: &Push<D>, start: Vector<D>, far: f64) -> f64 {
+        if push.count <= 0.0 {
+            return 0.0;
+        }
+        let weight = RATE / push.count.sqrt();
+        let domain = &self.extent.request().domain;
+        let body = self.bodies[i];
+        let mut to = body.centre + push.shift * weight;
+        let gone = domain.offset(start, to);
+        if gone.norm() > far {
+            to = start + gone * (far / gone.norm());
+        }
+        let rotation = rotation::<D>(push.turn.map(|v| v * weight));
+        let step = Similarity::about(body.centre, domain.wrap(to), rotation, 1.0);
+        let placement = &mut self.placements[i];
+        placement.transform = step.after(&placement.transform);
+        let (source, transform) = (placement.source, placement.transform);
+        self.bodies[i] = self.body(source, &transform);
+        let turned = push.turn.iter().map(|v| v * v).sum::<f64>().sqrt() * weight;
+        push.shift.norm() * weight + turned * body.radius
+    }
+}
+
+/// The turning of a push along `b` at `a`: about three axes in space, about one in the plane.
+fn cross<const D: usize>(a: Vector<D>, b: Vector<D>) -> [f64; 3] {
+    let at = |v: &Vector<D>, k: usize| if k < D { v[k] } else { 0.0 };
+    let part = |k: usize, l: usize| at(&a, k) * at(&b, l) - at(&a, l) * at(&b, k);
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+/// The rotation about a vector by its length in radians, at most a quarter of a radian.
+fn rotation<const D: usize>(turn: [f64; 3]) -> Matrix<D> {
+    let angle = turn.iter().map(|v| v * v).sum::<f64>().sqrt();
+    if angle <= 1e-12 {
+        return Matrix::identity();
+    }
+    let axis = turn.map(|v| v / angle);
+    let (sin, cos) = angle.min(0.25).sin_cos();
+    let entry = |r: usize, c: usize| {
+        let skew = match (r, c) {
+            (0, 1) => -axis[2],
+            (1, 0) => axis[2],
+            (0, 2) => axis[1],
+            (2, 0) => -axis[1],
+            (1, 2) => -axis[0],
+            (2, 1) => axis[0],
+            _ => 0.0,
+        };
+        let same = if r == c { cos } else { 0.0 };
+        same + sin * skew + (1.0 - cos) * axis[r] * axis[c]
+    };
+    Matrix(std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c))))
+}

@@ -1,0 +1,157 @@
+//! The elements of the output as solids.
+
+use arabesque_core::{Budget, Exemplar, GridIndex, Numbered, Placement, Result, Similarity, Vector};
+
+use super::contact::{Allowed, Body, contact, price};
+use crate::{border::Extent, exemplar::library::Library};
+
+/// An overlap deeper than allowed by this share of the inner radius is too deep to stay.
+const TOO_DEEP: f64 = 0.2;
+
+/// One that is deeper by this share is the first to go where there are too many.
+const WORSE: f64 = 0.06;
+
+/// The output while it is mended.
+pub(super) struct Things<'a, const D: usize> {
+    pub(super) exemplar: &'a Exemplar<D>,
+    pub(super) library: &'a Library<D>,
+    pub(super) extent: &'a Extent<'a, D>,
+    pub(super) allowed: &'a Allowed,
+    pub(super) placements: Vec<Placement<D>>,
+    pub(super) bodies: Vec<Body<'a, D>>,
+    /// Whether each has moved since those around it looked.
+    pub(super) moved: Vec<bool>,
+    /// Largest radius of a body of the exemplar at the largest scale.
+    pub(super) widest: f64,
+}
+
+impl<'a, const D: usize> Things<'a, D> {
+    pub(super) fn new(
+        placements: &[Placement<D>],
+        exemplar: &'a Exemplar<D>,
+        library: &'a Library<D>,
+        extent: &'a Extent<'a, D>,
+        allowed: &'a Allowed,
+    ) -> Self {
+        let mut things = Self {
+            exemplar,
+            library,
+            extent,
+            allowed,
+            placements: placements.to_vec(),
+            bodies: Vec::new(),
+            moved: vec![true; placements.len()],
+            widest: 0.0,
+        };
+        let bodies: Vec<_> = placements.iter().map(|p| things.body(p.source, &p.transform)).collect();
+        let own = exemplar.elements.iter().zip(&exemplar.solids).map(|(e, s)| s.radius() * e.pose.scale);
+        let scale = extent.request().fields.scale.range().1;
+        things.widest = own.fold(0.0, f64::max) * scale;
+        things.bodies = bodies;
+        things
+    }
+
+    pub(super) fn into_placements(self) -> Vec<Placement<D>> {
+        self.placements
+    }
+
+    /// An element of the exemplar as it lies after `transform`.
+    pub(super) fn body(&self, source: usize, transform: &Similarity<D>) -> Body<'a, D> {
+        Body::new(&self.exemplar.solids[source], transform.after(&self.exemplar.elements[source].pose))
+    }
+
+    pub(super) fn class(&self, i: usize) -> u32 {
+        self.library.class[self.placements[i].source as u32]
+    }
+
+    pub(super) fn index(&self) -> GridIndex<D> {
+        let centres: Vec<_> = self.bodies.iter().map(|b| b.centre).collect();
+        GridIndex::new(&centres, self.widest.max(1e-9), &self.extent.request().domain)
+    }
+
+    /// The bodies that may touch one, with the way to each.
+    pub(super) fn around(&self, index: &GridIndex<D>, body: &Body<'_, D>, except: usize) -> Vec<(usize, Vector<D>)> {
+        let mut near = Vec::new();
+        index.within(body.centre, body.radius + self.widest, |j, offset| {
+            if j != except && offset.norm() < body.radius + self.bodies[j].radius {
+                near.push((j, offset));
+            }
+        });
+        near.sort_by_key(|(j, _)| *j);
+        near
+    }
+
+    /// By how much each element lies too deep in others, in sum.
+    pub(super) fn excess(&self, budget: &Budget) -> Result<Vec<f64>> {
+        let index = self.index();
+        let mut sums = vec![0.0; self.bodies.len()];
+        let mut meter = budget.meter();
+        for i in 0..self.bodies.len() {
+            let a = &self.bodies[i];
+            for (j, offset) in self.around(&index, a, i).into_iter().filter(|(j, _)| *j > i) {
+                meter.spend(price(a, &self.bodies[j]))?;
+                let Some(found) = contact(a, &self.bodies[j], offset) else { continue };
+                let over = found.depth - self.allowed.of(self.class(i), self.class(j));
+                if over > 0.0 {
+                    sums[i] += over;
+                    sums[j] += over;
+                }
+            }
+        }
+        Ok(sums)
+    }
+
+    /// Takes out what lies too deep in others, worst first, and what is too much of its class.
+    pub(super) fn thin(&mut self, targets: &Numbered<f64>, slack: f64, budget: &Budget) -> Result<()> {
+        let excess = self.excess(budget)?;
+        let mut left = Numbered::filled(0.0, targets.len());
+        (0..self.bodies.len()).for_each(|i| left[self.class(i)] += 1.0);
+        let mut order: Vec<usize> = (0..self.bodies.len()).collect();
+        order.sort_by(|&a, &b| excess[b].total_cmp(&excess[a]).then(a.cmp(&b)));
+        let mut gone = vec![false; self.bodies.len()];
+        let index = self.index();
+        let mut meter = budget.meter();
+        for i in order {
+            let class = self.class(i);
+            if self.placements[i].frozen.is_some() {
+                continue;
+            }
+            let body = &self.bodies[i];
+            let inner = body.solid.inradius() * body.pose.scale;
+            // What was taken out already is in nobody's way.
+            let mut now = 0.0;
+            for (j, offset) in self.around(&index, body, i).into_iter().filter(|(j, _)| !gone[*j]) {
+                meter.spend(price(body, &self.bodies[j]))?;
+                if let Some(found) = contact(body, &self.bodies[j], offset) {
+                    now += (found.depth - self.allowed.of(class, self.class(j))).max(0.0);
+                }
+            }
+            let too_many = left[class] > targets[class] * (1.0 + slack) && now > WORSE * inner;
+            if now > TOO_DEEP * inner || too_many {
+                gone[i] = true;
+                left[class] -= 1.0;
+            }
+        }
+        // Of those in nobody's way the outermost go.
+        let domain = &self.extent.request().domain;
+        let mut order: Vec<(f64, usize)> =
+            self.bodies.iter().enumerate().map(|(i, b)| (domain.signed_distance(b.centre), i)).collect();
+        meter.spend(2000 * order.len() as u64)?;
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (_, i) in order {
+            let class = self.class(i);
+            let is_free = !gone[i] && self.placements[i].frozen.is_none();
+            if is_free && left[class] > (targets[class] * (1.0 + slack)).max(targets[class] + 0.5) {
+                gone[i] = true;
+                left[class] -= 1.0;
+            }
+        }
+        let mut keep = gone.iter().map(|g| !g);
+        self.placements.retain(|_| keep.next().unwrap_or(true));
+        let mut keep = gone.iter().map(|g| !g);
+        self.bodies.retain(|_| keep.next().unwrap_or(true));
+        let mut keep = gone.iter().map(|g| !g);
+        self.moved.retain(|_| keep.next().unwrap_or(true));
+        Ok(())
+    }
+}

@@ -97,3 +97,4 @@ pub use recipe::{
     Surface, Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;
+pub use space::is_scene_of_meshes;

@@ -46,7 +46,7 @@ pub use numerics::{
 };
 pub use random::{Stage, Stream};
 pub use region::{
-    Domain, FillRule, Fit, Outline, Region, Ring, Shape, Signature, ring,
+    Domain, FillRule, Fit, Ground, Outline, Region, Ring, Shape, Signature, ring,
     segment::{self, Segment},
 };
 pub use run::{

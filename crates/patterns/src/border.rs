@@ -3,11 +3,14 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Bounds, Budget, Domain, Exemplar, FillRule, GridIndex, Matrix, Measured, Numbered, Outline, Placement,
-    Region, Request, Result, ScalarField, Similarity, Vector,
+    Border, Bounds, Budget, Domain, Exemplar, FillRule, GridIndex, Ground, Matrix, Measured, Numbered, Outline,
+    Placement, Region, Request, Result, ScalarField, Similarity, Vector,
 };
 
 use crate::{dimension::Dimension, exemplar::library::Library, obstacles::obstacles};
+
+/// An element that stands on the ground may be moved there from a place that is off by this share of its reach.
+const OFF_GROUND: f64 = 0.5;
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
@@ -60,6 +63,11 @@ impl<'a, const D: usize> Extent<'a, D> {
             largest_spacing_scale: Self::largest_spacing_scale(request),
             smallest_spacing_scale,
         })
+    }
+
+    /// What is continued.
+    pub(crate) fn exemplar(&self) -> &'a Exemplar<D> {
+        self.exemplar
     }
 
     /// What is asked for.
@@ -132,6 +140,11 @@ impl<'a, const D: usize> Extent<'a, D> {
         if self.is_blocked(p, 0.7 * reach) {
             return false;
         }
+        if let Some((height, ground)) = self.stands(i, p)
+            && (ground.height(p) - height).abs() > OFF_GROUND * reach
+        {
+            return false;
+        }
         match self.border(i) {
             Border::Cross => distance >= 0.0,
             Border::Clip if distance >= 0.0 => true,
@@ -146,6 +159,18 @@ impl<'a, const D: usize> Extent<'a, D> {
                 distance >= 0.0 && self.outline_at(i, p).points().all(|q| self.request.domain.contains(q))
             }
         }
+    }
+
+    /// The height at which element `i` stands, where it stands on the ground and there is one.
+    fn stands(&self, i: u32, p: Vector<D>) -> Option<(f64, &dyn Ground<D>)> {
+        let ground = self.request.ground.as_deref()?;
+        let height = self.exemplar.heights.get(i as usize).copied().flatten()?;
+        Some((height * self.request.fields.scale.at(p), ground))
+    }
+
+    /// Where element `i` is when it is put at `p`: on the ground if it stands there.
+    pub(crate) fn grounded(&self, i: u32, p: Vector<D>) -> Vector<D> {
+        self.stands(i, p).map_or(p, |(height, ground)| ground.at_height(p, height))
     }
 
     /// Whether everything at a place outside the domain stays as it is.

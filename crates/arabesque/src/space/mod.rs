@@ -1,5 +1,6 @@
 //! Parts of space: scenes of meshes, networks of curves and clouds of points.
 
+mod layer;
 mod made;
 mod place;
 mod scene;
@@ -7,7 +8,10 @@ mod scene;
 use std::sync::Arc;
 
 use arabesque_core::{Border, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, Watch};
-use arabesque_io::geometry::{Kind, kind_of};
+use arabesque_io::{
+    geometry::{Kind, kind_of},
+    mesh::gltf::read_scene,
+};
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
@@ -15,9 +19,11 @@ use crate::{
     exemplar::{LoadedExemplar, understood},
     method::{Preparation, Ready, RunContext, Show},
     plane::in_exemplar,
-    recipe::{Job, Space},
+    recipe::{Input, Job, Recipe, Space},
+    resources::{Files, Resources},
     spacing::spacing,
 };
+use layer::{Layer, layer};
 use made::VolumeMade;
 use place::place;
 use scene::Bodies;
@@ -28,6 +34,8 @@ pub(crate) struct Volume {
     exemplar: Arc<Exemplar<3>>,
     /// The meshes of its elements, where it is a scene.
     bodies: Option<Arc<Bodies>>,
+    /// The same as a drawing, where it is a single layer.
+    layer: Option<Arc<Layer>>,
     engine: Engine<3>,
 }
 
@@ -39,11 +47,13 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     if kind_of(preparation.exemplar.name(), &bytes) == Some(Kind::Glb) {
         let (bodies, warnings) = Bodies::read(preparation.exemplar.name(), &bytes, budget)?;
         preparation.warnings.extend(warnings);
+        let bodies = if space.floor || space.on.is_some() { bodies.on_floor() } else { bodies };
         preparation.exemplar = preparation.exemplar.embedding(&bytes);
         let exemplar = Arc::clone(&bodies.exemplar);
         let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
-        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), engine });
+        let layer = layer(&exemplar, &params, budget)?;
+        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), layer, engine });
     }
     let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, budget)? {
         LoadedExemplar::Space(exemplar, warnings) => {
@@ -62,7 +72,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let exemplar = Arc::new(exemplar);
     let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
         .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
-    Ok(Volume { exemplar, bodies: None, engine })
+    Ok(Volume { exemplar, bodies: None, layer: None, engine })
 }
 
 impl Volume {
@@ -74,7 +84,8 @@ impl Volume {
             let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
             return Err(Error::parameter("border", "turn", expected));
         }
-        let place = place(&mut space, &self.exemplar, context)?;
+        let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
+        let place = place(&mut space, (&self.exemplar, floor), context)?;
         check_volume(&self.exemplar, place.domain.measure(), context.budget())?;
         let usual = match (&self.bodies, &place.domain) {
             (None, _) => Border::Clip,
@@ -84,6 +95,7 @@ impl Volume {
         let mut request = EngineRequest::new(place.domain);
         request.border = space.border.unwrap_or(usual);
         request.fields = place.fields;
+        request.ground = place.ground;
         context.job = Job::Space(space);
         request.seed = context.seed;
         request.budget = context.budget().clone();
@@ -102,13 +114,36 @@ impl Ready for Volume {
         let origin = context.origin();
         let kind = (&self.exemplar, &self.bodies);
         let make = |snapshot| VolumeMade::of_snapshot(kind, frame, snapshot);
-        let mut outcome = self.engine.run(&request, &mut Show { watch, origin: &origin, make })?;
+        let mut show = Show { watch, origin: &origin, make };
+        let flat = match &self.layer {
+            Some(layer) => layer.run(&request, &mut show)?,
+            None => None,
+        };
+        let mut outcome = match flat {
+            Some(outcome) => outcome,
+            None => self.engine.run(&request, &mut show)?,
+        };
         outcome.warnings.splice(0..0, context.warnings);
         Ok(Artwork::new(
             origin,
             VolumeMade { exemplar: Arc::clone(&self.exemplar), bodies: self.bodies.clone(), frame, outcome },
         ))
     }
+}
+
+/// Whether a file is a scene of meshes and nothing else, which are elements; points beside them make it a structure.
+///
+/// # Errors
+/// As [`Recipe::prepare`] for a file that cannot be read.
+pub fn is_scene_of_meshes(exemplar: &Input, resources: &Resources) -> Result<bool> {
+    let recipe = Recipe::new(exemplar.clone(), Space::default());
+    let files = Files::new(resources.clone(), &recipe);
+    let bytes = files.read(exemplar)?;
+    if kind_of(exemplar.name(), &bytes) != Some(Kind::Glb) {
+        return Ok(false);
+    }
+    let scene = read_scene(exemplar.name(), &bytes, files.budget())?;
+    Ok(scene.points.is_empty() && !scene.nodes.is_empty())
 }
 
 /// Refuses a box that is too large or too small for the pattern.
@@ -137,7 +172,7 @@ mod tests {
     use arabesque_core::Unobserved;
 
     use super::*;
-    use crate::{FieldSource, Format, Input, OutputOptions, Recipe, Resources, recipe_in};
+    use crate::{FieldSource, Format, OutputOptions, recipe_in};
 
     /// A cubic lattice of points of two classes.
     fn lattice() -> String {

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Bounds, Domain, Error, Exemplar, Fields, Matrix, OrientationField, Region, Result, Rotations, Vector,
+    Bounds, Budget, Domain, Error, Exemplar, Fields, Grid, Ground, Matrix, OrientationField, Region, Result, Rotations,
+    Vector,
 };
 use arabesque_surface::{DirectionField, MeshIndex, MeshReport};
 
@@ -12,6 +13,7 @@ use crate::{
     plane::constant_factor,
     recipe::{FieldSource, Space},
     solid::read::indexed_mesh,
+    space::scene::UP,
     structure::directions,
 };
 
@@ -19,10 +21,16 @@ use crate::{
 pub(super) struct Place {
     pub(super) domain: Domain<3>,
     pub(super) fields: Fields<3>,
+    /// What those stand on that stand on the floor of the exemplar.
+    pub(super) ground: Option<Arc<dyn Ground<3>>>,
 }
 
 /// The place that `job` asks for, whose files are embedded.
-pub(super) fn place(job: &mut Space, exemplar: &Exemplar<3>, context: &mut RunContext<'_>) -> Result<Place> {
+pub(super) fn place(
+    job: &mut Space,
+    (exemplar, floor): (&Exemplar<3>, Option<f64>),
+    context: &mut RunContext<'_>,
+) -> Result<Place> {
     let place = job.place()?;
     if job.direction.is_some() && place != "on" {
         let what = "direction for a place other than a mesh (--on)".into();
@@ -37,15 +45,19 @@ pub(super) fn place(job: &mut Space, exemplar: &Exemplar<3>, context: &mut RunCo
     let constant = (turned != 0.0).then_some(OrientationField::Constant(about_y));
     match &mut *job {
         Space { cuboid: Some(cuboid), .. } => {
-            Ok(Place { domain: Domain::Box(cuboid.bounds()), fields: fields(constant) })
+            let bounds = cuboid.bounds();
+            let ground = floor.map(|_| Arc::new(Floor(bounds.min[UP])) as Arc<dyn Ground<3>>);
+            Ok(Place { domain: Domain::Box(bounds), fields: fields(constant), ground })
         }
         Space { inside: Some(input), .. } => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
             context.warnings.extend(warnings);
             let report = MeshReport::new(&index, context.budget())?;
             context.warnings.extend(report.volume_of(input.name())?);
-            let solid = Solid { index, volume: report.volume.abs() };
-            Ok(Place { domain: Domain::Region(Arc::new(solid)), fields: fields(constant) })
+            let bounds = index.bounds();
+            let solid = Inside::new(index, &report, context.budget())?;
+            let ground = floor.map(|_| Arc::new(Floor(bounds.min[UP])) as Arc<dyn Ground<3>>);
+            Ok(Place { domain: Domain::Region(Arc::new(solid)), fields: fields(constant), ground })
         }
         Space { on: Some(input), direction, .. } => {
             let (index, warnings) = indexed_mesh(input, context.files)?;
@@ -54,10 +66,13 @@ pub(super) fn place(job: &mut Space, exemplar: &Exemplar<3>, context: &mut RunCo
             context.warnings.extend(report.surface_of(input.name())?);
             let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
             context.warnings.extend(field.warnings().iter().cloned());
-            let heights = [exemplar.window.min[1], exemplar.window.max[1]].map(|y| y * largest);
+            let under = floor.unwrap_or_default();
+            let heights = [exemplar.window.min[UP], exemplar.window.max[UP]].map(|y| (y - under) * largest);
             let layer = Arc::new(Layer { index, field, turned: turned.to_radians(), heights });
             let rotations: Arc<dyn Rotations<3>> = layer.clone();
-            Ok(Place { domain: Domain::Region(layer), fields: fields(Some(OrientationField::Of(rotations))) })
+            let ground: Arc<dyn Ground<3>> = layer.clone();
+            let orientation = Some(OrientationField::Of(rotations));
+            Ok(Place { domain: Domain::Region(layer), fields: fields(orientation), ground: Some(ground) })
         }
         Space { .. } => Err(Error::parameter("place", "none", "one of box, inside and on")),
     }
@@ -82,14 +97,53 @@ fn about(axis: Vector<3>, degrees: f64) -> Matrix<3> {
     Matrix(std::array::from_fn(|r| columns.map(|c| c[r])))
 }
 
-/// The inside of a closed mesh.
+/// A floor at this height.
 #[derive(Debug)]
-struct Solid {
-    index: MeshIndex,
-    volume: f64,
+struct Floor(f64);
+
+impl Ground<3> for Floor {
+    fn height(&self, p: Vector<3>) -> f64 {
+        p[UP] - self.0
+    }
+
+    fn at_height(&self, p: Vector<3>, height: f64) -> Vector<3> {
+        Vector(std::array::from_fn(|k| if k == UP { self.0 + height } else { p[k] }))
+    }
 }
 
-impl Region<3> for Solid {
+/// Nodes of the grid of distances along the longest side of a mesh.
+const NODES: f64 = 48.0;
+/// Nearer to the surface than so many cells the distance is worked out exactly.
+const EXACT: f64 = 1.0;
+
+/// The inside of a closed mesh.
+#[derive(Debug)]
+struct Inside {
+    index: MeshIndex,
+    volume: f64,
+    /// 1 where normals lead out, -1 where they lead in; `None` where they do not tell.
+    sense: Option<f64>,
+    /// Distances on a grid, positive inside.
+    distances: Grid<3, f64>,
+    cell: f64,
+}
+
+impl Inside {
+    fn new(index: MeshIndex, report: &MeshReport, budget: &Budget) -> Result<Self> {
+        let size = index.bounds().size();
+        let cell = size.0.into_iter().fold(0.0, f64::max) / NODES;
+        let bounds = index.bounds().grown(2.0 * cell);
+        let nodes = bounds.size().0.map(|side| (side / cell).ceil() as usize + 1);
+        let mut distances = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
+        let places: Vec<_> = (0..distances.values.len()).map(|n| distances.node(n)).collect();
+        distances.values = index.signed_distances(&places, budget)?;
+        let is_sound = report.is_closed() && report.crossings_counted && !report.crossings.any();
+        let sense = is_sound.then_some(if report.is_inverted() { -1.0 } else { 1.0 });
+        Ok(Self { index, volume: report.volume.abs(), sense, distances, cell })
+    }
+}
+
+impl Region<3> for Inside {
     fn bounds(&self) -> Bounds<3> {
         self.index.bounds()
     }
@@ -99,7 +153,17 @@ impl Region<3> for Solid {
     }
 
     fn signed_distance(&self, p: Vector<3>) -> f64 {
-        self.index.signed_distance(p)
+        if self.distances.bounds.contains(p) {
+            let mut distance = 0.0;
+            self.distances.interpolate(p, |weight, value| distance += weight * value);
+            if distance.abs() > EXACT * self.cell {
+                return distance;
+            }
+        }
+        match self.sense {
+            Some(sense) => -sense * self.index.height(&self.index.closest(p), p),
+            None => self.index.signed_distance(p),
+        }
     }
 
     fn nearest_boundary(&self, p: Vector<3>) -> Vector<3> {
@@ -119,7 +183,7 @@ struct Layer {
 
 impl Layer {
     /// The height over the mesh, and the distance to where the layer ends sideways, at the edge of an open mesh.
-    fn height(&self, p: Vector<3>) -> (f64, arabesque_surface::Closest) {
+    fn foot(&self, p: Vector<3>) -> (f64, arabesque_surface::Closest) {
         let foot = self.index.closest(p);
         (self.index.height(&foot, p), foot)
     }
@@ -135,7 +199,7 @@ impl Region<3> for Layer {
     }
 
     fn signed_distance(&self, p: Vector<3>) -> f64 {
-        let (height, foot) = self.height(p);
+        let (height, foot) = self.foot(p);
         // Beyond the edge of an open mesh the way to the foot leaves the normal.
         let away = p - foot.point;
         let beside = (away.norm2() - height * height).max(0.0).sqrt();
@@ -144,10 +208,21 @@ impl Region<3> for Layer {
     }
 
     fn nearest_boundary(&self, p: Vector<3>) -> Vector<3> {
-        let (height, foot) = self.height(p);
+        let (height, foot) = self.foot(p);
         let [low, high] = self.heights;
         let to = if height - low < high - height { low } else { high };
         foot.point + foot.normal * to
+    }
+}
+
+impl Ground<3> for Layer {
+    fn height(&self, p: Vector<3>) -> f64 {
+        Self::foot(self, p).0
+    }
+
+    fn at_height(&self, p: Vector<3>, height: f64) -> Vector<3> {
+        let foot = self.index.closest(p);
+        foot.point + foot.normal * height
     }
 }
 

@@ -17,6 +17,10 @@ const ACROSS: f64 = 8.0;
 const ALONG: f64 = 64.0;
 const MARGIN: f64 = 3.0;
 const THINNEST: f64 = 12.0;
+/// The axis that is up.
+pub(super) const UP: usize = 1;
+/// What is nearer to the floor than this share of its size stands on it.
+const NEAR: f64 = 0.12;
 /// A frame is made wider by no more than this factor.
 const WIDEST: f64 = 1.6;
 /// Points are scattered so that so many are in a square of their spacing.
@@ -27,6 +31,8 @@ const PACKED: f64 = 0.7;
 pub(crate) struct Bodies {
     pub(crate) scene: Arc<Scene>,
     pub(crate) exemplar: Arc<Exemplar<3>>,
+    /// Height of the floor, where there is one.
+    pub(crate) floor: Option<f64>,
 }
 
 /// What a mesh is to the engine, in its own coordinates.
@@ -81,7 +87,30 @@ impl Bodies {
         }
         let mut exemplar = framed(name, elements, classes, scene.frame)?;
         exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[node.mesh].solid)).collect();
-        Ok((Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar) }, warnings))
+        Ok((Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar), floor: None }, warnings))
+    }
+
+    /// The same with a floor at its lowest place: what stands on it is a class of its own.
+    pub(crate) fn on_floor(&self) -> Self {
+        let mut exemplar = (*self.exemplar).clone();
+        let lowest = |e: &Element<3>| e.outline.points().map(|p| p[UP]).fold(f64::INFINITY, f64::min);
+        let floor = exemplar.elements.iter().map(lowest).fold(f64::INFINITY, f64::min);
+        let mut number_of = BTreeMap::new();
+        let (mut heights, mut classes) = (Vec::new(), exemplar.classes.clone());
+        for element in &mut exemplar.elements {
+            let size = 2.0 * element.outline.radius(element.centre);
+            let stands = lowest(element) - floor <= NEAR * size;
+            heights.push(stands.then_some(element.centre[UP] - floor));
+            if stands {
+                let old = element.class;
+                element.class = *number_of.entry(old).or_insert_with(|| {
+                    classes.push(classes[old].clone());
+                    classes.len() - 1
+                });
+            }
+        }
+        (exemplar.heights, exemplar.classes) = (heights, classes);
+        Self { scene: Arc::clone(&self.scene), exemplar: Arc::new(exemplar), floor: Some(floor) }
     }
 
     /// The scene of these elements in other places.

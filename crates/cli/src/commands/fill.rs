@@ -206,7 +206,7 @@ impl Fill {
         let writing = self.writing;
         let is_structure = match self.engine.method {
             Method::Structures => true,
-            Method::Auto => is_structure(&self.exemplar),
+            Method::Auto => is_structure(&self.exemplar) && !is_scene_of_elements(&exemplar)?,
             Method::Elements | Method::Curves => false,
         };
         let job = if is_structure {
@@ -226,6 +226,11 @@ impl Fill {
         recipe.output.view = writing.view;
         produce(recipe, None, &path, &run)
     }
+}
+
+/// Whether a file holds a scene of meshes alone: elements, unless somebody says otherwise.
+fn is_scene_of_elements(exemplar: &Input) -> Result<bool, Error> {
+    if is_scene(exemplar.name()) { is_scene_of_meshes(exemplar, &Resources::default()) } else { Ok(false) }
 }
 
 /// Whether a file holds a scene of meshes, by its ending.

@@ -103,6 +103,9 @@ pub struct Exemplar<const D: usize> {
     pub period: Option<[Vector<D>; 2]>,
     /// The volumes of the elements, one for each, in the coordinates from which its pose leads; empty where they have none.
     pub solids: Vec<Arc<Solid<D>>>,
+    /// For each element that stands on the ground, the height of its centre over it, which it keeps; such elements are classes of their
+    /// own. Empty where there is no ground.
+    pub heights: Vec<Option<f64>>,
 }
 
 /// What an exemplar holds, not yet checked.
@@ -169,7 +172,18 @@ impl<const D: usize> Exemplar<D> {
         if window.measure() <= 0.0 || !window.min.is_finite() || !window.max.is_finite() {
             return fail("the frame has no area", "give the exemplar a width and a height");
         }
-        Ok(Self { elements, classes, curves, areas, styles, window, hole: None, period: None, solids: Vec::new() })
+        Ok(Self {
+            elements,
+            classes,
+            curves,
+            areas,
+            styles,
+            window,
+            hole: None,
+            period: None,
+            solids: Vec::new(),
+            heights: Vec::new(),
+        })
     }
 
     /// An exemplar of points: `class_of[i]` is the class of `points[i]`, named by `names`.

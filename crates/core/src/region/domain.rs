@@ -23,6 +23,14 @@ pub trait Region<const D: usize>: Send + Sync + std::fmt::Debug {
     }
 }
 
+/// What elements stand on: a floor, or a mesh.
+pub trait Ground<const D: usize>: Send + Sync + std::fmt::Debug {
+    /// Height of a place over it.
+    fn height(&self, p: Vector<D>) -> f64;
+    /// The place over or under `p` at this height.
+    fn at_height(&self, p: Vector<D>, height: f64) -> Vector<D>;
+}
+
 /// Where the output may lie.
 #[derive(Clone, Debug)]
 pub enum Domain<const D: usize> {

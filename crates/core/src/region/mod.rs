@@ -12,7 +12,7 @@ pub mod segment;
 mod shape;
 mod signature;
 
-pub use domain::{Domain, Region};
+pub use domain::{Domain, Ground, Region};
 pub use outline::{FillRule, Outline, Ring};
 pub use shape::Shape;
 pub use signature::{Fit, Signature};

@@ -1,10 +1,12 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
+use std::sync::Arc;
+
 use crate::{
     budget::Budget,
     choices,
     field::Fields,
-    region::{Domain, Outline},
+    region::{Domain, Ground, Outline},
     run::{Drawn, Placement},
     space::Bounds,
 };
@@ -41,6 +43,8 @@ pub struct Request<const D: usize> {
     pub domain: Domain<D>,
     /// What happens at its border. Default: [`Border::Clip`].
     pub border: Border,
+    /// What the elements of the exemplar that stand on the ground stand on here; without it they may be anywhere. Default none.
+    pub ground: Option<Arc<dyn Ground<D>>>,
     /// How the pattern is turned, scaled and thinned.
     pub fields: Fields<D>,
     /// Elements that stay exactly where they are; the rest is fitted around them. Their `frozen` entry is ignored on input.
@@ -63,6 +67,7 @@ impl<const D: usize> Request<D> {
         Self {
             domain,
             border: Border::default(),
+            ground: None,
             fields: Fields::default(),
             frozen: Vec::new(),
             frozen_curves: Vec::new(),

@@ -1,8 +1,11 @@
 //! How many elements of each class the output should have.
 
-use arabesque_core::{Border, Numbered, Request, Result};
+use arabesque_core::{Border, Exemplar, Numbered, Request, Result};
 
 use crate::{border::Extent, exemplar::library::Library};
+
+/// The axis along which heights of the exemplar are.
+const UP: usize = 1;
 
 /// Cells along the longest side of the grid that measures the output.
 const CELLS: f64 = 96.0;
@@ -30,6 +33,7 @@ pub(crate) fn class_targets<const D: usize>(
     let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).max(1));
     let count: usize = cells.iter().product();
     let cell_measure = bounds.measure() / count as f64;
+    let slab = slab(extent.exemplar(), library);
     let mut usable = vec![0.0; library.classes()];
     for c in 0..count {
         let p = bounds.cell_centre(c, &cells);
@@ -39,14 +43,51 @@ pub(crate) fn class_targets<const D: usize>(
         if extent.is_blocked(p, 0.0) {
             continue;
         }
-        for (sum, reach) in usable.iter_mut().zip(&reach) {
+        let low = match (&slab, &request.ground) {
+            (Some(slab), Some(ground)) => Some(ground.height(p) <= slab.thickness * frame.element_scale),
+            _ => None,
+        };
+        for (c, (sum, reach)) in usable.iter_mut().zip(&reach).enumerate() {
+            if low.is_some_and(|low| slab.as_ref().is_some_and(|slab| slab.stands[c] != low)) {
+                continue;
+            }
             if distance >= reach * frame.element_scale {
                 *sum += cell_measure / frame.spacing_scale.powi(D as i32);
             }
         }
     }
-    let intensity = intensities(library);
+    let mut intensity = intensities(library);
+    if let (Some(slab), Some(_)) = (&slab, &request.ground) {
+        let share = slab.share;
+        for (value, stands) in intensity.iter_mut().zip(&slab.stands) {
+            *value /= if *stands { share } else { (1.0 - share).max(0.05) };
+        }
+    }
     Ok(usable.iter().zip(intensity).map(|(area, per)| area * per).collect())
+}
+
+/// The part of the exemplar near the ground, where those that stand on it are and nothing else is.
+struct Slab {
+    /// Up to which height it is.
+    thickness: f64,
+    /// Its share of the exemplar's window.
+    share: f64,
+    /// Whether each class stands on the ground.
+    stands: Vec<bool>,
+}
+
+fn slab<const D: usize>(exemplar: &Exemplar<D>, library: &Library<D>) -> Option<Slab> {
+    let standing: Vec<f64> = exemplar.heights.iter().flatten().copied().collect();
+    if standing.is_empty() {
+        return None;
+    }
+    let mean = standing.iter().sum::<f64>() / standing.len() as f64;
+    let whole = exemplar.window.size()[UP];
+    let everything = exemplar.heights.iter().all(Option::is_some);
+    let thickness = if everything { f64::INFINITY } else { 2.0 * mean };
+    let is_standing = |c: u32| library.members(c).iter().any(|&e| exemplar.heights[e as usize].is_some());
+    let stands = (0..library.classes() as u32).map(is_standing).collect();
+    Some(Slab { thickness, share: if everything { 1.0 } else { (thickness / whole).clamp(0.02, 0.98) }, stands })
 }
 
 /// How far inside the border the centres of each class lie; negative outside.

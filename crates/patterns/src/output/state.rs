@@ -136,7 +136,8 @@ impl<'a, const D: usize> State<'a, D> {
         let parts = &self.level.parts[item.source];
         let first_key = self.level.key[self.level.first[item.source]];
         let first = self.samples.len() as u32;
-        let item = Item { position: self.request.domain.wrap(item.position), ..item };
+        let position = self.extent.grounded(item.source, item.position);
+        let item = Item { position: self.request.domain.wrap(position), ..item };
         let number = self.items.push(LiveItem { item, turn, alive: true, first, count: parts.len() as u32 });
         for part in 0..parts.len() as u32 {
             let position = self.part_position(number, part);
@@ -328,7 +329,8 @@ impl<'a, const D: usize> State<'a, D> {
             let fallback = frame.rotation.compose(&live.turn);
             let keeps_angle = self.library.upright[live.item.source];
             let pose = pose_of(parts, &position[range.clone()], frame.element_scale, (fallback, keeps_angle));
-            let centre = self.request.domain.wrap(pose.apply(Vector::ZERO));
+            let centre = self.extent.grounded(live.item.source, pose.apply(Vector::ZERO));
+            let centre = self.request.domain.wrap(centre);
             let item = &mut self.items[i];
             item.item.position = centre;
             item.turn = frame.rotation.transpose().compose(&pose.rotation);
@@ -343,6 +345,7 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// Puts item `i` elsewhere, turned as it is from the local frame.
     pub(crate) fn move_item(&mut self, i: u32, position: Vector<D>) {
+        let position = self.extent.grounded(self.items[i].item.source, position);
         self.items[i].item.position = self.request.domain.wrap(position);
         let live = self.items[i];
         for s in live.first..live.first + live.count {

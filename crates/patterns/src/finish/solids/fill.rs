@@ -88,7 +88,7 @@ impl<const D: usize> Things<'_, D> {
             if !self.library.copyable[source] {
                 continue;
             }
-            let mut at = place;
+            let mut at = self.extent.grounded(source, place);
             for _ in 0..STEPS {
                 let transform = self.extent.turned(source, at, &Matrix::identity());
                 let body = self.body(source as usize, &transform);
@@ -99,7 +99,7 @@ impl<const D: usize> Things<'_, D> {
                     let placement = Placement { source: source as usize, transform, control: Vec::new(), frozen: None };
                     return Ok(Some(placement));
                 }
-                at = self.extent.request().domain.wrap(at + push);
+                at = self.extent.grounded(source, self.extent.request().domain.wrap(at + push));
             }
         }
         Ok(None)

@@ -115,8 +115,9 @@ impl<const D: usize> Things<'_, D> {
         let body = &self.bodies[i];
         let arm = found.at - body.centre;
         let gyration2 = (GYRATION * body.radius).powi(2).max(1e-18);
-        let lever =
-            if self.library.upright[self.placements[i].source as u32] { [0.0; 3] } else { cross(arm, found.way) };
+        let source = self.placements[i].source;
+        let stands = self.exemplar.heights.get(source).is_some_and(Option::is_some);
+        let lever = if stands || self.library.upright[source as u32] { [0.0; 3] } else { cross(arm, found.way) };
         let turned: f64 = lever.iter().map(|v| v * v).sum::<f64>() / gyration2;
         let strength = amount / (1.0 + turned);
         push.shift = push.shift + found.way * strength;
@@ -139,6 +140,8 @@ impl<const D: usize> Things<'_, D> {
         if gone.norm() > far {
             to = start + gone * (far / gone.norm());
         }
+        let source = self.placements[i].source as u32;
+        let to = self.extent.grounded(source, to);
         let rotation = rotation::<D>(push.turn.map(|v| v * weight));
         let step = Similarity::about(body.centre, domain.wrap(to), rotation, 1.0);
         let placement = &mut self.placements[i];

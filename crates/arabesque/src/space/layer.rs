@@ -1,0 +1,194 @@
+//! A single layer of things: bricks of a wall, tiles of a floor. Seen across the layer it is a drawing, and is continued as one: what
+//! repeats goes on exactly, and outlines keep their distances.
+
+use std::sync::Arc;
+
+use arabesque_core::{
+    Bounds, Budget, Domain, Element, Exemplar, Matrix, OrientationField, Outcome, Outline, Placement,
+    Request as EngineRequest, Result, Similarity, Snapshot, Vector, Watch,
+};
+use arabesque_patterns::{Params, Prepared as Engine};
+
+/// Centres of a layer differ by less than this share of what its elements measure across it.
+const SINGLE: f64 = 0.5;
+
+/// A layer as a drawing.
+#[derive(Clone, Debug)]
+pub(super) struct Layer {
+    /// The axes of the drawing, and the one across it.
+    axes: [usize; 2],
+    across: usize,
+    engine: Engine<2>,
+    /// Height of the middle of the exemplar's window across.
+    middle: f64,
+    centres: Vec<Vector<3>>,
+}
+
+impl Layer {
+    /// The exemplar as a drawing, if it is a single layer.
+    ///
+    /// # Errors
+    /// As [`Engine::new`].
+    pub(super) fn of(exemplar: &Exemplar<3>, params: &Params, budget: &Budget) -> Result<Option<Self>> {
+        let Some(across) = (0..3).find(|&axis| is_single(exemplar, axis)) else { return Ok(None) };
+        let axes = [[1, 2], [0, 2], [0, 1]][across];
+        let flat = |p: Vector<3>| Vector(axes.map(|axis| p[axis]));
+        let mut first: Vec<Option<Similarity<3>>> = vec![None; exemplar.classes.len()];
+        let mut elements = Vec::with_capacity(exemplar.elements.len());
+        for element in &exemplar.elements {
+            let own = *first[element.class].get_or_insert(element.pose);
+            let turned = element.pose.rotation.compose(&own.rotation.transpose());
+            let rotation = Matrix(axes.map(|r| axes.map(|c| turned.0[r][c]))).nearest_rotation();
+            let ring = hull(element.outline.points().map(flat).collect());
+            budget.spend(2000 + 100 * ring.len() as u64)?;
+            let outline = Outline { rings: vec![ring] };
+            let centre = outline.centroid().unwrap_or_else(|| flat(element.centre));
+            elements.push(Element {
+                class: element.class,
+                centre,
+                pose: Similarity::about(flat(own.translation), flat(element.pose.translation), rotation, 1.0),
+                outline,
+                colour: element.colour,
+                lean: [Vector::ZERO; 3],
+                role: element.role,
+            });
+        }
+        let window = Bounds::new(flat(exemplar.window.min), flat(exemplar.window.max));
+        let drawing = Exemplar::new("exemplar", elements, exemplar.classes.clone(), window)?;
+        let engine = Engine::new(drawing, params, budget)?;
+        let middle = exemplar.window.centre()[across];
+        let centres = exemplar.elements.iter().map(|e| e.centre).collect();
+        Ok(Some(Self { axes, across, engine, middle, centres }))
+    }
+
+    /// Fills a box, in the middle of which the layer lies; `None` where that turns it about another axis.
+    ///
+    /// # Errors
+    /// As [`Engine::run`].
+    pub(super) fn run(
+        &self,
+        request: &EngineRequest<3>,
+        watch: &mut dyn Watch<Snapshot<3>>,
+    ) -> Result<Option<Outcome<3>>> {
+        let Domain::Box(bounds) = &request.domain else { return Ok(None) };
+        if request.fields.orientation.is_some() && self.across != 1 || !request.frozen.is_empty() {
+            return Ok(None);
+        }
+        let flat = |p: Vector<3>| Vector(self.axes.map(|axis| p[axis]));
+        let around = Bounds::new(flat(bounds.min), flat(bounds.max));
+        let mut own = EngineRequest::new(Domain::Box(around));
+        own.border = request.border;
+        own.fields.scale = arabesque_core::ScalarField::Constant(request.fields.scale.range().0);
+        own.fields.density = arabesque_core::ScalarField::Constant(request.fields.density.range().0);
+        own.fields.orientation = match &request.fields.orientation {
+            Some(OrientationField::Constant(m)) => {
+                Some(OrientationField::Constant(Matrix(self.axes.map(|r| self.axes.map(|c| m.0[r][c])))))
+            }
+            _ => None,
+        };
+        (own.seed, own.budget) = (request.seed, request.budget.clone());
+        let to = if request.ground.is_some() {
+            self.middle * own.fields.scale.range().0
+        } else {
+            bounds.centre()[self.across]
+        };
+        let mut raised = Raised { watch, layer: self, to };
+        let outcome = self.engine.run(&own, &mut raised)?;
+        Ok(Some(Outcome {
+            placements: outcome.placements.iter().map(|p| self.raised(p, to)).collect(),
+            sequence: Vec::new(),
+            curves: Vec::new(),
+            areas: Vec::new(),
+            energy: outcome.energy,
+            warnings: outcome.warnings,
+            stopped: outcome.stopped,
+        }))
+    }
+
+    /// A place in the drawing as one in space, where the middle of the layer comes to the height `to`.
+    fn raised(&self, placement: &Placement<2>, to: f64) -> Placement<3> {
+        let own = &placement.transform;
+        let mut rotation = Matrix::<3>::identity();
+        for (r, &row) in self.axes.iter().enumerate() {
+            for (c, &column) in self.axes.iter().enumerate() {
+                rotation.0[row][column] = own.rotation.0[r][c];
+            }
+        }
+        let centre = self.centres[placement.source];
+        let flat = own.apply(Vector(self.axes.map(|axis| centre[axis])));
+        let mut place = Vector([0.0; 3]);
+        (place[self.axes[0]], place[self.axes[1]]) = (flat[0], flat[1]);
+        place[self.across] = to + (centre[self.across] - self.middle) * own.scale;
+        Placement {
+            source: placement.source,
+            transform: Similarity::about(centre, place, rotation, own.scale),
+            control: Vec::new(),
+            frozen: placement.frozen,
+        }
+    }
+}
+
+/// Whether the elements lie side by side across an axis.
+fn is_single(exemplar: &Exemplar<3>, axis: usize) -> bool {
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        high - low
+    };
+    let spread = range(&mut exemplar.elements.iter().map(|e| e.centre[axis]));
+    let mut sizes: Vec<f64> =
+        exemplar.elements.iter().map(|e| range(&mut e.outline.points().map(|p| p[axis]))).collect();
+    sizes.sort_by(f64::total_cmp);
+    spread < SINGLE * sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The convex hull of points of the plane, counter-clockwise.
+fn hull(mut points: Vec<Vector<2>>) -> Vec<Vector<2>> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let half = |points: &mut dyn Iterator<Item = Vector<2>>| {
+        let mut chain: Vec<Vector<2>> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain.as_slice()
+                && (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut ring = half(&mut points.iter().copied());
+    ring.extend(half(&mut points.iter().rev().copied()));
+    ring
+}
+
+/// Shows what the drawing has so far as it is in space.
+struct Raised<'a> {
+    watch: &'a mut dyn Watch<Snapshot<3>>,
+    layer: &'a Layer,
+    to: f64,
+}
+
+impl Watch<Snapshot<2>> for Raised<'_> {
+    fn foreseen(&mut self, forecast: &arabesque_core::Forecast) {
+        self.watch.foreseen(forecast);
+    }
+
+    fn step(
+        &mut self,
+        progress: &arabesque_core::Progress,
+        preview: &dyn Fn() -> Snapshot<2>,
+    ) -> std::ops::ControlFlow<()> {
+        let (layer, to) = (self.layer, self.to);
+        self.watch.step(progress, &|| {
+            let flat = preview();
+            let placements = flat.placements.iter().map(|p| layer.raised(p, to)).collect();
+            Snapshot { placements, ..Snapshot::default() }
+        })
+    }
+}
+
+/// A layer that can be shared.
+pub(super) fn layer(exemplar: &Exemplar<3>, params: &Params, budget: &Budget) -> Result<Option<Arc<Layer>>> {
+    Ok(Layer::of(exemplar, params, budget)?.map(Arc::new))
+}

@@ -57,8 +57,7 @@ impl Scene {
         self.points.positions.iter_mut().for_each(|p| *p = change.apply(*p));
         self.points.normals.iter_mut().flatten().for_each(|n| *n = change.rotation.apply(*n));
         self.points.radii.iter_mut().flatten().for_each(|r| *r *= change.scale);
-        self.frame =
-            self.frame.map(|frame| Bounds::around([frame.min, frame.max].map(|corner| change.apply(corner))));
+        self.frame = self.frame.map(|frame| Bounds::around([frame.min, frame.max].map(|corner| change.apply(corner))));
         self
     }
 }

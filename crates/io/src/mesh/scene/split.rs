@@ -131,7 +131,8 @@ fn part_of(whole: &SceneMesh, triangles: &[usize]) -> SceneMesh {
 
 /// What a primitive is in a part of its mesh; `None` for one that has no triangle there.
 fn primitive_of(whole: &Primitive, triangles: &[usize], part: &TriangleMesh, used: &[usize]) -> Option<Primitive> {
-    let run = triangles.partition_point(|k| *k < whole.triangles.start)..triangles.partition_point(|k| *k < whole.triangles.end);
+    let run = triangles.partition_point(|k| *k < whole.triangles.start)
+        ..triangles.partition_point(|k| *k < whole.triangles.end);
     let corners = || part.triangles[run.clone()].iter().flatten().map(|v| *v as usize);
     let vertices = corners().min()?..corners().max()? + 1;
     let own: Vec<Option<usize>> = used[vertices.clone()]

@@ -1,6 +1,6 @@
 //! One mesh as a scene of its parts, and a scene as one mesh.
 
-use arabesque_core::{Bounds, PointSet, Similarity, TriangleMesh, Vector, Warning};
+use arabesque_core::{PointSet, Similarity, TriangleMesh, Vector, Warning};
 
 use super::{
     look::Slot,

@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Vector};
 use serde_json::{Value, value::RawValue};
 
-use crate::mesh::scene::{SceneExtras, SceneNode};
+use crate::mesh::scene::{Scene, SceneNode};
 
 /// Bytes of text that are looked at: more of them are something else than what is looked for.
 const LONGEST: usize = 1 << 16;
@@ -14,19 +14,17 @@ pub(super) fn value_of(raw: &RawValue) -> Option<Value> {
 }
 
 /// What a scene says of itself: `box` as two corners, and `deformable` as names of classes.
-pub(super) fn of_scene(raw: Option<&RawValue>, most: f64) -> SceneExtras {
-    let Some(value) = raw.and_then(value_of) else { return SceneExtras::default() };
+pub(super) fn to_scene(raw: Option<&RawValue>, most: f64, scene: &mut Scene) {
+    let Some(value) = raw.and_then(value_of) else { return };
     let corner = |k: usize| {
         let list = value.get("box")?.get(k)?.as_array().filter(|list| list.len() == 3)?;
         let fits = |v: &Value| v.as_f64().filter(|v| v.abs() <= most);
         Some(Vector([fits(&list[0])?, fits(&list[1])?, fits(&list[2])?]))
     };
-    let frame = corner(0).zip(corner(1)).filter(|(a, b)| (0..3).all(|k| a[k] <= b[k]));
+    let corners = corner(0).zip(corner(1)).filter(|(a, b)| (0..3).all(|k| a[k] < b[k]));
+    scene.frame = corners.map(|(min, max)| Bounds::new(min, max));
     let names = value.get("deformable").and_then(Value::as_array).into_iter().flatten();
-    SceneExtras {
-        frame: frame.map(|(min, max)| Bounds::new(min, max)),
-        deformable: names.filter_map(|name| name.as_str().map(str::to_owned)).collect(),
-    }
+    scene.deformable = names.filter_map(|name| name.as_str().map(str::to_owned)).collect();
 }
 
 /// Adds what a node says of itself: `class`, `id` and `source`.
@@ -47,10 +45,14 @@ mod tests {
 
     #[test]
     fn what_is_understood_is_taken_and_the_rest_passed_over() {
-        let extras =
-            of_scene(Some(&raw(r#"{"box": [[0, 0, 0], [1, 2.5, 3]], "deformable": ["bag", 7], "x": []}"#)), 1e9);
-        assert_eq!(extras.frame, Some(Bounds::new(Vector::ZERO, Vector([1.0, 2.5, 3.0]))));
-        assert_eq!(extras.deformable, ["bag"]);
+        let of_scene = |text: &str| {
+            let mut scene = Scene::default();
+            to_scene(Some(&raw(text)), 1e9, &mut scene);
+            scene
+        };
+        let scene = of_scene(r#"{"box": [[0, 0, 0], [1, 2.5, 3]], "deformable": ["bag", 7], "x": []}"#);
+        assert_eq!(scene.frame, Some(Bounds::new(Vector::ZERO, Vector([1.0, 2.5, 3.0]))));
+        assert_eq!(scene.deformable, ["bag"]);
         for text in [
             "7",
             "[1]",
@@ -58,7 +60,7 @@ mod tests {
             r#"{"box": [[0, 0], [1, 1]]}"#,
             r#"{"box": [[0, 0, 0], [1, 1, 1e10]]}"#,
         ] {
-            assert_eq!(of_scene(Some(&raw(text)), 1e9), SceneExtras::default(), "{text}");
+            assert_eq!(of_scene(text), Scene::default(), "{text}");
         }
         let mut node = SceneNode::default();
         to_node(Some(&raw(r#"{"class": "plum", "id": 7, "source": -1}"#)), &mut node);

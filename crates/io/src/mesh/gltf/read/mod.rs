@@ -72,7 +72,7 @@ pub fn read_scene_beside(name: &str, bytes: &[u8], beside: &dyn Beside, budget: 
     reader.warn();
     let mut scene = reader.scene;
     let shown = document.scenes.get(document.scene.unwrap_or(0));
-    scene.extras = extras::of_scene(shown.and_then(|s| s.extras.as_deref()), budget.limits().coordinate);
+    extras::to_scene(shown.and_then(|s| s.extras.as_deref()), budget.limits().coordinate, &mut scene);
     let (looks, warnings) = materials::looks(&binary, &mut sources)?;
     scene.looks = looks;
     scene.warnings.extend(warnings);

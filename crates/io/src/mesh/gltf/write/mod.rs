@@ -16,7 +16,7 @@ use self::{
     primitives::{points_of, primitives_of},
 };
 use super::container::{asset, container};
-use crate::mesh::scene::{Scene, SceneExtras};
+use crate::mesh::scene::Scene;
 
 /// Bytes of one vertex, of one triangle and of one node.
 const VERTEX_BYTES: usize = 120;
@@ -101,7 +101,7 @@ pub fn write_scene_with(scene: &Scene, options: &GltfOptions<'_>, budget: &Budge
         extensions_used: instanced.iter().chain(&looks.extensions).cloned().collect(),
         extensions_required: instanced.iter().chain(&looks.required).cloned().collect(),
         scene: 0,
-        scenes: [scene_record(nodes.len(), &scene.extras)],
+        scenes: [scene_record(nodes.len(), scene)],
         nodes,
         meshes,
         materials: looks.materials,
@@ -126,17 +126,17 @@ fn size_of_file(scene: &Scene) -> usize {
     bytes.iter().fold(0, |sum, (n, each)| sum.saturating_add(n.saturating_mul(*each)))
 }
 
-fn scene_record(nodes: usize, extras: &SceneExtras) -> Value {
+fn scene_record(nodes: usize, scene: &Scene) -> Value {
     let mut record = json!({});
     // An empty list is not allowed.
     if nodes > 0 {
         record["nodes"] = (0..nodes).collect::<Vec<_>>().into();
     }
-    if let Some(frame) = extras.frame.filter(|f| f.min.is_finite() && f.max.is_finite()) {
+    if let Some(frame) = scene.frame.filter(|f| f.min.is_finite() && f.max.is_finite()) {
         record["extras"]["box"] = json!([frame.min.0, frame.max.0]);
     }
-    if !extras.deformable.is_empty() {
-        record["extras"]["deformable"] = extras.deformable.clone().into();
+    if !scene.deformable.is_empty() {
+        record["extras"]["deformable"] = scene.deformable.clone().into();
     }
     record
 }

@@ -7,3 +7,4 @@ pub mod ply;
 pub mod scene;
 pub mod stl;
 pub mod strip;
+pub mod usd;

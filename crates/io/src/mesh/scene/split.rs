@@ -66,6 +66,30 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// The same scene with one mesh for those of one shape, as [`Scene::split_components`] finds them, none of them split. Meshes whose
+    /// vertices are not in the order of their first use are compared as if they were.
+    ///
+    /// # Errors
+    /// Those of the budget.
+    pub fn share_shapes(self, budget: &Budget) -> Result<Self> {
+        let budget = budget.stage("comparing meshes");
+        let mut sharing = Sharing::new(&self.looks, &budget);
+        let mut places = Vec::with_capacity(self.meshes.len());
+        for mesh in &self.meshes {
+            let all: Vec<usize> = (0..mesh.mesh.triangles.len()).collect();
+            let (centre, part) = centred(part_of(mesh, &all));
+            let found = sharing.add(part)?;
+            places.push((found.mesh, Similarity::shift(centre).after(&found.place)));
+        }
+        let nodes = self.nodes.iter().filter_map(|node| {
+            let (mesh, place) = places.get(node.mesh)?;
+            Some(SceneNode { mesh: *mesh, transform: node.transform.after(place), ..node.clone() })
+        });
+        Ok(Self { nodes: nodes.collect(), meshes: sharing.meshes(), ..self })
+    }
+}
+
 /// A component: which mesh it is, of which kind, and where it stands in the mesh that it was a part of.
 struct Piece {
     mesh: usize,

@@ -164,7 +164,7 @@ pub fn read_placements(name: &str, text: &str, shapes: &Scene, budget: &Budget) 
         let scale = placement.scale.unwrap_or(1.0);
         let rotation = placement.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         let fits = placement.translation.iter().all(|c| c.abs() <= most) && rotation.iter().all(|c| c.is_finite());
-        if !fits || !(scale > 0.0 && scale <= most) {
+        if !(fits && scale > 0.0 && scale <= most) {
             return fail("a place that is not finite, or beyond the limits, or a scale of 0 or less".into());
         }
         let mesh = placement.mesh.unwrap_or(meshes[index]);

@@ -102,7 +102,7 @@ fn centre_of(mesh: &TriangleMesh) -> Vector<3> {
     for k in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(k);
         let own = mesh.double_area(k).norm();
-        sum = sum + (a + b + c) * (own / 3.0);
+        sum += (a + b + c) * (own / 3.0);
         area += own;
     }
     let middle = sum * (1.0 / area);

@@ -181,7 +181,7 @@ fn primitive_of(whole: &Primitive, triangles: &[usize], part: &TriangleMesh, use
 /// A mesh around the origin, and where its middle was.
 fn centred(mut mesh: SceneMesh) -> (Vector<3>, SceneMesh) {
     let centre = mesh.mesh.bounds().centre();
-    mesh.mesh.positions.iter_mut().for_each(|p| *p = *p - centre);
+    mesh.mesh.positions.iter_mut().for_each(|p| *p -= centre);
     (centre, mesh)
 }
 

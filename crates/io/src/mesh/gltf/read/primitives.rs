@@ -293,7 +293,7 @@ fn mend(mesh: &mut TriangleMesh) {
     if is_zero.contains(&true) {
         for (k, corners) in mesh.triangles.iter().enumerate() {
             for v in corners.map(|v| v as usize).into_iter().filter(|v| is_zero[*v]) {
-                normals[v] = normals[v] + mesh.double_area(k);
+                normals[v] += mesh.double_area(k);
             }
         }
         let up = Vector([0.0, 1.0, 0.0]);

@@ -150,7 +150,7 @@ fn material_record(material: &Material, extensions: &mut BTreeSet<String>) -> Va
     }
     let mut record = json!({});
     name(&mut record, &material.name);
-    let mut used = |slot: Slot, strength: &str| texture_info(material.texture(slot)?, strength, extensions).into();
+    let mut used = |slot: Slot, strength: &str| Some(texture_info(material.texture(slot)?, strength, extensions));
     let textures = [
         ("baseColorTexture", used(Slot::BaseColour, "")),
         ("metallicRoughnessTexture", used(Slot::MetallicRoughness, "")),
@@ -189,7 +189,7 @@ fn material_record(material: &Material, extensions: &mut BTreeSet<String>) -> Va
 }
 
 /// A texture as a material uses it; `strength` is what the format calls how strong it is.
-fn texture_info(used: &TextureUse, strength: &str, extensions: &mut BTreeSet<String>) -> Option<Value> {
+fn texture_info(used: &TextureUse, strength: &str, extensions: &mut BTreeSet<String>) -> Value {
     let mut info = json!({ "index": used.texture });
     if used.uv != 0 {
         info["texCoord"] = used.uv.into();
@@ -201,7 +201,7 @@ fn texture_info(used: &TextureUse, strength: &str, extensions: &mut BTreeSet<Str
         info["extensions"] = json!({ TRANSFORM: transform });
         extensions.insert(TRANSFORM.into());
     }
-    Some(info)
+    info
 }
 
 /// Whether something has a key somewhere below.

@@ -5,7 +5,7 @@ use arabesque_io::{
     file, json,
     mesh::{
         gltf,
-        obj::{self, solid, strips},
+        obj::{self, SCENE_TITLE, solid, strips},
         ply,
     },
     raster::png,
@@ -99,7 +99,9 @@ pub fn is_result(bytes: &[u8]) -> bool {
 
 /// Whether an OBJ file begins as those of arabesque do.
 fn is_of_curves(start: &[u8]) -> bool {
-    ["# curves as polylines", strips::TITLE, solid::TITLE].iter().any(|title| start.starts_with(title.as_bytes()))
+    ["# curves as polylines", strips::TITLE, solid::TITLE, SCENE_TITLE]
+        .iter()
+        .any(|title| start.starts_with(title.as_bytes()))
 }
 
 /// Bytes at the beginning of a file in which the marks of its kind stand.

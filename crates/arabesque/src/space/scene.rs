@@ -122,6 +122,8 @@ impl Bodies {
                 name,
                 mesh: source.mesh,
                 transform: placement.transform.after(&source.transform),
+                source: Some(placement.source as u64),
+                ..source.clone()
             }
         };
         Scene { nodes: placements.iter().map(node).collect(), frame, ..(*self.scene).clone() }

@@ -43,11 +43,12 @@ impl SceneMade {
         points: PointSet<3>,
         surface: Option<&TriangleMesh>,
     ) -> Self {
-        let mut scene = Scene { meshes: shapes.meshes.clone(), ..Scene::of_points(points) };
+        let looks = shapes.looks.clone();
+        let mut scene = Scene { meshes: shapes.meshes.clone(), looks, ..Scene::of_points(points) };
         for element in &outcome.elements {
             let Some(node) = shapes.nodes.get(element.element as usize) else { continue };
             let transform = element.pose.after(&node.transform);
-            scene.nodes.push(SceneNode { name: node.name.clone(), mesh: node.mesh, transform });
+            scene.nodes.push(SceneNode { transform, ..node.clone() });
         }
         if let Some(surface) = surface.filter(|s| !s.triangles.is_empty()) {
             scene.points = PointSet::default();
@@ -157,19 +158,14 @@ mod tests {
             let turned = stream.range(-0.4, 0.4);
             let (sin, cos) = turned.sin_cos();
             let rotation = Matrix([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]);
-            SceneNode {
-                name: format!("gem {k}"),
-                mesh: 0,
-                transform: Similarity::about(Vector::ZERO, at, rotation, 1.0),
-            }
+            SceneNode::new(format!("gem {k}"), 0, Similarity::about(Vector::ZERO, at, rotation, 1.0))
         };
         let nodes = (0..count).map(&mut node).collect();
         let sheet = (0..400).map(|k| Vector([(f64::from(k % 20) + 0.5) / 20.0, (f64::from(k / 20) + 0.5) / 20.0, 0.0]));
         let positions: Vec<_> = sheet.filter(|_| is_set).collect();
         let normals = is_set.then(|| vec![Vector([0.0, 0.0, 1.0]); positions.len()]);
         let points = PointSet { normals, ..PointSet::at(positions) };
-        let scene =
-            Scene { meshes: vec![SceneMesh { name: "gem".into(), mesh: gem() }], nodes, ..Scene::of_points(points) };
+        let scene = Scene { meshes: vec![SceneMesh::new("gem", gem())], nodes, ..Scene::of_points(points) };
         write_scene(&scene, None, &Budget::default()).unwrap()
     }
 

@@ -6,7 +6,10 @@
 use arabesque_core::{Error, PointSet, Result, Vector, Warning};
 use arabesque_io::{
     geometry::{Cloud, Kind, kind_of},
-    mesh::gltf::{Scene, SceneMesh, SceneNode, read_scene},
+    mesh::{
+        gltf::{Scene, SceneMesh, SceneNode, read_scene},
+        scene::Looks,
+    },
 };
 use arabesque_structures::spacing;
 use arabesque_surface::{MeshIndex, scatter};
@@ -27,6 +30,8 @@ const WHITE: [f64; 3] = [1.0; 3];
 pub(crate) struct Shapes {
     pub(super) meshes: Vec<SceneMesh>,
     pub(super) nodes: Vec<SceneNode>,
+    /// What the meshes are made of.
+    pub(super) looks: Looks,
 }
 
 /// The points of an exemplar, the meshes that some of them stand for, and what is to be told.
@@ -42,7 +47,7 @@ pub(super) fn exemplar(name: &str, bytes: &[u8], files: &Files) -> Result<(Cloud
         let message = format!("{name}: {} normals have no length: none of them is used", scene.zero_normals);
         warnings.push(Warning::new(message, "write the points again with all their normals, or without"));
     }
-    let Scene { points, meshes, nodes, .. } = scene;
+    let Scene { points, meshes, nodes, looks, .. } = scene;
     if nodes.is_empty() {
         return Ok((Cloud::Space(points), Shapes::default(), warnings));
     }
@@ -53,7 +58,7 @@ pub(super) fn exemplar(name: &str, bytes: &[u8], files: &Files) -> Result<(Cloud
             format!("give at least {FEWEST} together, so that something can repeat: every node is one rigid element");
         return Err(Error::input(name, problem, advice));
     }
-    let shapes = Shapes { meshes, nodes };
+    let shapes = Shapes { meshes, nodes, looks };
     let samples = shapes.samples(name, &points, files)?;
     Ok((Cloud::Space(shapes.with(points, &samples)), shapes, warnings))
 }

@@ -3,6 +3,7 @@
 //! What is read has to be a regular file, or comes from a descriptor that the caller opened, as standard input does. What is
 //! written lies in a file of a random name beside its target until it is complete, and is renamed then.
 
+mod beside;
 mod copy;
 mod identity;
 mod part;
@@ -12,6 +13,7 @@ mod system;
 mod target;
 mod text;
 
+pub use beside::{Beside, Folder, NothingBeside, name_beside};
 pub use identity::Identity;
 pub use part::abandon_writing;
 pub use read::read_bytes;

@@ -17,7 +17,7 @@ pub enum Kind {
     Ply,
     /// Triangles, as text or bytes.
     Stl,
-    /// Scenes of meshes and points.
+    /// Scenes of meshes and points: GLB, or glTF as text.
     Glb,
     /// Meshes, points and polylines, as text.
     Obj,
@@ -28,10 +28,11 @@ pub enum Kind {
 }
 
 /// Endings of file names, in lower case.
-const ENDINGS: [(&str, Kind); 12] = [
+const ENDINGS: [(&str, Kind); 13] = [
     ("ply", Kind::Ply),
     ("stl", Kind::Stl),
     ("glb", Kind::Glb),
+    ("gltf", Kind::Glb),
     ("obj", Kind::Obj),
     ("csv", Kind::Csv),
     ("tsv", Kind::Csv),
@@ -51,7 +52,7 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> Option<Kind> {
     if ply::is_ply(bytes) {
         return Some(Kind::Ply);
     }
-    if gltf::is_glb(bytes) {
+    if gltf::is_gltf(bytes) {
         return Some(Kind::Glb);
     }
     if stl::is_stl(bytes) {
@@ -87,10 +88,6 @@ fn kind_of_text(head: &str) -> Option<Kind> {
 pub fn read_geometry(name: &str, bytes: &[u8], budget: &Budget) -> Result<Geometry> {
     let text = || decode_text(name, bytes, budget);
     match kind_of(name, bytes) {
-        _ if name.to_ascii_lowercase().ends_with(".gltf") => {
-            let what = format!("{name}: glTF as text, with its data beside it,");
-            Err(Error::Unsupported { what, advice: "save it as GLB, with everything inside".into() })
-        }
         Some(Kind::Ply) => ply::read_ply(name, bytes, budget),
         Some(Kind::Stl) => stl::read_stl(name, bytes, budget),
         Some(Kind::Glb) => Ok(gltf::read_scene(name, bytes, budget)?.into_geometry(name)),
@@ -157,7 +154,7 @@ mod tests {
             let geometry = read("-", text).unwrap();
             assert_eq!((geometry.points.len(), geometry.is_mesh()), (1, false), "{text}");
         }
-        assert!(read("a.gltf", "{}").unwrap_err().to_string().contains("save it as GLB"));
+        assert!(read("a.gltf", "{}").unwrap_err().to_string().contains("no mesh and no points"));
         assert!(read("a.svg", "<svg/>").unwrap_err().to_string().contains("neither points nor a mesh"));
         assert!(recipe_of(b"x,y\n1,2\n# arabesque recipe:\n# seed = 1\n").is_some());
         assert!(recipe_of(&[0xFF, 0xFE]).is_none());

@@ -1,5 +1,6 @@
 //! Tables: points with classes or with attributes.
 
+pub mod centres;
 pub mod csv;
 pub mod points;
 pub(crate) mod records;

@@ -46,6 +46,18 @@ pub(super) fn container(document: &impl Serialize, binary: &[u8], advice: &str) 
     Ok(bytes)
 }
 
+/// Whether the bytes are a glTF file, as GLB or as text.
+pub fn is_gltf(bytes: &[u8]) -> bool {
+    const HEAD: usize = 1 << 16;
+    let head = &bytes[..bytes.len().min(HEAD)];
+    let is_text = || {
+        let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
+        let names = |word: &[u8]| head.windows(word.len()).any(|part| part == word);
+        text.starts_with(b"{") && names(b"\"asset\"") && (names(b"\"nodes\"") || names(b"\"meshes\""))
+    };
+    is_glb(bytes) || is_text()
+}
+
 /// Whether the bytes start as a GLB file does.
 pub fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)

@@ -1,22 +1,15 @@
-//! GLB: points, meshes and their instances in and out, and textured strips with their pictures out.
+//! glTF and GLB: points, meshes and their instances in and out, and textured strips with their pictures out.
 
-mod accessor;
-mod buffer;
-mod colour;
 mod container;
-mod document;
-mod nodes;
-mod points;
-mod primitives;
 mod read;
-mod scene;
 mod strips;
 #[cfg(test)]
 mod tests;
 mod write;
 
-pub use container::{is_glb, recipe_of};
-pub use read::read_scene;
-pub use scene::{Scene, SceneMesh, SceneNode};
+pub use container::{is_glb, is_gltf, recipe_of};
+pub use read::{read_scene, read_scene_beside};
 pub use strips::write_glb;
-pub use write::write_scene;
+pub use write::{GltfOptions, write_scene, write_scene_with};
+
+pub use crate::mesh::scene::{Scene, SceneMesh, SceneNode};

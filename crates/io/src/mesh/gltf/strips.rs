@@ -4,8 +4,8 @@ use arabesque_core::{Budget, Result};
 use serde_json::{Value, json};
 
 use super::{
-    buffer::Buffer,
     container::{asset, container},
+    write::Buffer,
 };
 use crate::mesh::strip::Part;
 

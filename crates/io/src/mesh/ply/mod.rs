@@ -10,5 +10,6 @@ mod tests;
 mod write;
 
 pub use read::read_ply;
+pub(crate) use recipe::recipe_comments;
 pub use recipe::{is_ply, recipe_of};
 pub use write::{Encoding, PlyFile, write_ply};

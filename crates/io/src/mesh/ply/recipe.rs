@@ -40,7 +40,7 @@ pub fn recipe_of(bytes: &[u8]) -> Option<String> {
 }
 
 /// Comment lines that hold a recipe.
-pub(super) fn recipe_comments(recipe: &str) -> String {
+pub(crate) fn recipe_comments(recipe: &str) -> String {
     let mut out = format!("comment {BEGIN}\n");
     for line in recipe.lines() {
         let escaped = escaped(line);

@@ -1,46 +1,12 @@
-//! What a GLB file holds: points, meshes, and where they stand.
+//! One mesh as a scene of its parts, and a scene as one mesh.
 
-use arabesque_core::{Bounds, PointSet, Similarity, TriangleMesh, Vector, Warning};
+use arabesque_core::{PointSet, Similarity, TriangleMesh, Vector, Warning};
 
+use super::{
+    look::Slot,
+    model::{Scene, SceneMesh, SceneNode},
+};
 use crate::geometry::{Cloud, Geometry, welded};
-
-/// A mesh that may stand in several places.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneMesh {
-    /// What the file calls it.
-    pub name: String,
-    /// The mesh, in coordinates of its own.
-    pub mesh: TriangleMesh,
-}
-
-/// A place of a mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneNode {
-    /// What the file calls it.
-    pub name: String,
-    /// Index into [`Scene::meshes`].
-    pub mesh: usize,
-    /// From the coordinates of the mesh to those of the scene.
-    pub transform: Similarity<3>,
-}
-
-/// Points and meshes in their places. Coordinates are those of the file: where y is up in it, y is up here.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Scene {
-    /// The points of all nodes, in coordinates of the scene.
-    pub points: PointSet<3>,
-    /// How many points have a normal without a length.
-    pub zero_normals: usize,
-    /// Every mesh once. Where a node turns a mesh inside out, or stretches it more along one direction than along another, the mesh
-    /// is one of its own, so that nodes need nothing but similarities.
-    pub meshes: Vec<SceneMesh>,
-    /// Where the meshes stand, in the order of the file.
-    pub nodes: Vec<SceneNode>,
-    /// The part of space that the scene is a piece of: the box that its centres fill, where the file says so.
-    pub frame: Option<Bounds<3>>,
-    /// What was left out.
-    pub warnings: Vec<Warning>,
-}
 
 impl Scene {
     /// Points alone.
@@ -52,9 +18,8 @@ impl Scene {
     pub fn of_mesh(name: &str, mesh: &TriangleMesh) -> Self {
         let mut scene = Self::default();
         let mut add = |name: &str, mesh: TriangleMesh| {
-            let node = SceneNode { name: name.to_owned(), mesh: scene.meshes.len(), transform: Similarity::identity() };
-            scene.nodes.push(node);
-            scene.meshes.push(SceneMesh { name: name.to_owned(), mesh });
+            scene.nodes.push(SceneNode::new(name, scene.meshes.len(), Similarity::identity()));
+            scene.meshes.push(SceneMesh::new(name, mesh));
         };
         if mesh.parts.is_empty() {
             add(name, mesh.clone());
@@ -95,6 +60,11 @@ impl Scene {
         if !self.points.is_empty() {
             let message = format!("{name}: {} points beside meshes are left out", self.points.len());
             warnings.push(Warning::new(message, "give a file of meshes alone, or of points alone"));
+        }
+        let pictures = self.looks.materials.iter().filter(|m| m.texture(Slot::BaseColour).is_some()).count();
+        if pictures > 0 {
+            let message = format!("{name}: pictures on {pictures} materials are passed over");
+            warnings.push(Warning::new(message, "give vertices colours if they matter"));
         }
         let mut all = TriangleMesh::default();
         let coloured = self.nodes.iter().any(|node| self.meshes[node.mesh].mesh.colours.is_some());

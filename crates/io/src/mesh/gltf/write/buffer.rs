@@ -3,21 +3,21 @@
 use serde_json::{Value, json};
 
 /// Component types and targets of the format.
-pub(super) const FLOAT: u32 = 5126;
-pub(super) const UNSIGNED_INT: u32 = 5125;
+pub(in super::super) const FLOAT: u32 = 5126;
+pub(in super::super) const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// The binary chunk while it grows.
 #[derive(Default)]
-pub(super) struct Buffer {
-    pub(super) bytes: Vec<u8>,
-    pub(super) views: Vec<Value>,
-    pub(super) accessors: Vec<Value>,
+pub(in super::super) struct Buffer {
+    pub(in super::super) bytes: Vec<u8>,
+    pub(in super::super) views: Vec<Value>,
+    pub(in super::super) accessors: Vec<Value>,
 }
 
 impl Buffer {
-    pub(super) fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+    pub(in super::super) fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         if let Some(target) = target {
             view["target"] = target.into();
@@ -28,7 +28,7 @@ impl Buffer {
         self.views.len() - 1
     }
 
-    pub(super) fn vectors<const N: usize>(&mut self, values: &[[f32; N]], bounded: bool) -> usize {
+    pub(in super::super) fn vectors<const N: usize>(&mut self, values: &[[f32; N]], bounded: bool) -> usize {
         let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ARRAY_BUFFER));
         let kind = format!("VEC{N}");
@@ -44,7 +44,16 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    pub(super) fn scalars(&mut self, values: &[f32]) -> usize {
+    /// Vectors for each instance of a node, which are no attributes of vertices.
+    pub(super) fn instances<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
+        let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+        let view = self.view(&bytes, None);
+        let kind = format!("VEC{N}");
+        self.accessors.push(json!({ "bufferView": view, "componentType": FLOAT, "count": values.len(), "type": kind }));
+        self.accessors.len() - 1
+    }
+
+    pub(in super::super) fn scalars(&mut self, values: &[f32]) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ARRAY_BUFFER));
         let accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": values.len(), "type": "SCALAR" });
@@ -52,7 +61,7 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    pub(super) fn indices(&mut self, triangles: &[[u32; 3]]) -> usize {
+    pub(in super::super) fn indices(&mut self, triangles: &[[u32; 3]]) -> usize {
         let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
         let count = 3 * triangles.len();

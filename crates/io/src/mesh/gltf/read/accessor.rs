@@ -1,8 +1,11 @@
-//! Numbers in the binary chunk of a GLB file.
+//! Numbers in the buffers of a glTF file.
 
 use arabesque_core::{Budget, Error, Result};
 
-use super::document::{AccessorRecord, Document};
+use super::{
+    buffers::Bytes,
+    document::{AccessorRecord, Document, SparseRecord},
+};
 
 /// Work of one number.
 const PER_NUMBER: u64 = 8;
@@ -20,7 +23,7 @@ const FLOAT: u32 = 5126;
 pub(super) struct Binary<'a> {
     pub(super) name: &'a str,
     pub(super) document: &'a Document,
-    pub(super) bytes: &'a [u8],
+    pub(super) buffers: &'a [Bytes<'a>],
     pub(super) budget: &'a Budget,
 }
 
@@ -28,8 +31,8 @@ impl Binary<'_> {
     /// The numbers of an accessor, `width` of them for each of its items: 3 for `VEC3`.
     ///
     /// # Errors
-    /// [`Error::Input`] when there is no such accessor, when it is of another kind, or when it reaches beyond what it refers to;
-    /// [`Error::Unsupported`] for sparse ones; those of the budget.
+    /// [`Error::Input`] when there is no such accessor, when it is of another kind, or when it reaches beyond what it refers to; those of
+    /// the budget.
     pub(super) fn numbers(&self, index: usize, width: usize) -> Result<Vec<f64>> {
         let Some(accessor) = self.document.accessors.get(index) else {
             return self.fail(index, format!("there are {}", self.document.accessors.len()));
@@ -37,27 +40,81 @@ impl Binary<'_> {
         if width_of(&accessor.kind) != Some(width) {
             return self.fail(index, format!("its type is {}, expected {width} numbers", accessor.kind));
         }
-        if accessor.sparse.is_some() {
-            let what = format!("{}: accessor {index}, which is sparse,", self.name);
-            return Err(Error::Unsupported { what, advice: "save the file without sparse accessors".into() });
-        }
         let limit = ("nodes", self.budget.limits().nodes.saturating_mul(3));
         self.budget.within(&format!("{}: items of accessor {index}", self.name), accessor.count, limit)?;
         let total = accessor.count.saturating_mul(width);
         self.budget.spend(PER_NUMBER.saturating_mul(total as u64))?;
-        let Some(view) = accessor.buffer_view else {
-            // By the format what refers to nothing is zero.
-            let (mut zeros, _held) = self.budget.list("numbers of the mesh", total)?;
-            zeros.resize(total, 0.0);
-            return Ok(zeros);
-        };
-        let (bytes, stride, size) = self.items(index, accessor, view, width)?;
         let (mut numbers, _held) = self.budget.list("numbers of the mesh", total)?;
-        for item in 0..accessor.count {
-            let item = &bytes[item * stride..];
-            numbers.extend((0..width).map(|k| number(&item[k * size..], accessor.component_type, accessor.normalized)));
+        match accessor.buffer_view {
+            Some(view) => {
+                let span = Span { view, offset: accessor.byte_offset, component: accessor.component_type, width };
+                let (bytes, stride, size) = self.items(index, span, accessor.count)?;
+                for item in 0..accessor.count {
+                    let item = &bytes[item * stride..];
+                    let read = |k: usize| number(&item[k * size..], accessor.component_type, accessor.normalized);
+                    numbers.extend((0..width).map(read));
+                }
+            }
+            // By the format what refers to nothing is zero.
+            None => numbers.resize(total, 0.0),
+        }
+        if let Some(sparse) = &accessor.sparse {
+            self.replace(index, (accessor, sparse), width, &mut numbers)?;
         }
         Ok(numbers)
+    }
+
+    /// Puts the numbers of a sparse accessor in their places.
+    fn replace(
+        &self,
+        index: usize,
+        (accessor, sparse): (&AccessorRecord, &SparseRecord),
+        width: usize,
+        numbers: &mut [f64],
+    ) -> Result<()> {
+        if sparse.count > accessor.count {
+            return self.fail(index, format!("{} of its {} items replaced", sparse.count, accessor.count));
+        }
+        self.budget.spend(PER_NUMBER.saturating_mul((sparse.count.saturating_mul(width + 1)) as u64))?;
+        let (places, values) = (&sparse.indices, &sparse.values);
+        let component = places.component_type.unwrap_or(UNSIGNED_INT);
+        let span = Span { view: places.buffer_view, offset: places.byte_offset, component, width: 1 };
+        let (at, at_stride, _) = self.items(index, span, sparse.count)?;
+        let span =
+            Span { view: values.buffer_view, offset: values.byte_offset, component: accessor.component_type, width };
+        let (bytes, stride, size) = self.items(index, span, sparse.count)?;
+        for k in 0..sparse.count {
+            let place = number(&at[k * at_stride..], component, false);
+            if !(place.fract() == 0.0 && (0.0..accessor.count as f64).contains(&place)) {
+                return self.fail(index, format!("it replaces item {place} of {}", accessor.count));
+            }
+            for n in 0..width {
+                let value = number(&bytes[k * stride + n * size..], accessor.component_type, accessor.normalized);
+                numbers[place as usize * width + n] = value;
+            }
+        }
+        Ok(())
+    }
+
+    /// How many numbers each item of an accessor has; `None` where there is no such accessor.
+    pub(super) fn width(&self, index: usize) -> Option<usize> {
+        width_of(&self.document.accessors.get(index)?.kind)
+    }
+
+    /// The bytes of a buffer view.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub(super) fn view(&self, view: usize) -> std::result::Result<&[u8], String> {
+        let Some(record) = self.document.buffer_views.get(view) else {
+            return Err(format!("it refers to buffer view {view}, which does not exist"));
+        };
+        let Some(buffer) = self.buffers.get(record.buffer) else {
+            return Err(format!("buffer view {view} refers to buffer {}, which does not exist", record.buffer));
+        };
+        let end = record.byte_offset.checked_add(record.byte_length);
+        let bytes = end.and_then(|end| buffer.get(record.byte_offset..end));
+        bytes.ok_or_else(|| format!("buffer view {view} reaches beyond the {} bytes there are", buffer.len()))
     }
 
     /// Whole numbers of an accessor.
@@ -72,34 +129,17 @@ impl Binary<'_> {
     }
 
     /// The bytes from the first item on, the bytes from one item to the next, and those of one number.
-    fn items(
-        &self,
-        index: usize,
-        accessor: &AccessorRecord,
-        view: usize,
-        width: usize,
-    ) -> Result<(&[u8], usize, usize)> {
-        let Some(size) = size_of(accessor.component_type) else {
-            return self.fail(index, format!("its component type {} is none", accessor.component_type));
+    fn items(&self, index: usize, span: Span, count: usize) -> Result<(&[u8], usize, usize)> {
+        let Some(size) = size_of(span.component) else {
+            return self.fail(index, format!("its component type {} is none", span.component));
         };
-        let Some(record) = self.document.buffer_views.get(view) else {
-            return self.fail(index, format!("it refers to buffer view {view}, which does not exist"));
-        };
-        if record.buffer != 0 || self.document.buffers.first().is_some_and(|b| b.uri.is_some()) {
-            let what = format!("{}: a buffer outside of the file", self.name);
-            return Err(Error::Unsupported { what, advice: "save it as GLB, with everything inside".into() });
-        }
-        let end = record.byte_offset.checked_add(record.byte_length);
-        let Some(bytes) = end.and_then(|end| self.bytes.get(record.byte_offset..end)) else {
-            return self
-                .fail(index, format!("buffer view {view} reaches beyond the {} bytes there are", self.bytes.len()));
-        };
-        let item = size * width;
-        let stride = record.byte_stride.unwrap_or(item);
-        let bytes = bytes.get(accessor.byte_offset..).unwrap_or_default();
-        let last = accessor.count.saturating_sub(1).checked_mul(stride).and_then(|last| last.checked_add(item));
-        if stride < item || (accessor.count > 0 && last.is_none_or(|needed| needed > bytes.len())) {
-            return self.fail(index, format!("{} items reach beyond buffer view {view}", accessor.count));
+        let bytes = self.view(span.view).or_else(|problem| self.fail(index, problem))?;
+        let item = size * span.width;
+        let stride = self.document.buffer_views.get(span.view).and_then(|v| v.byte_stride).unwrap_or(item);
+        let bytes = bytes.get(span.offset..).unwrap_or_default();
+        let last = count.saturating_sub(1).checked_mul(stride).and_then(|last| last.checked_add(item));
+        if stride < item || (count > 0 && last.is_none_or(|needed| needed > bytes.len())) {
+            return self.fail(index, format!("{count} items reach beyond buffer view {}", span.view));
         }
         Ok((bytes, stride, size))
     }
@@ -108,6 +148,16 @@ impl Binary<'_> {
         let advice = "write the file again; it is damaged";
         Err(Error::input(format!("{}: accessor {index}", self.name), problem, advice))
     }
+}
+
+/// Where numbers lie.
+struct Span {
+    view: usize,
+    /// Bytes of the view before them.
+    offset: usize,
+    component: u32,
+    /// Numbers of one item.
+    width: usize,
 }
 
 fn width_of(kind: &str) -> Option<usize> {
@@ -153,7 +203,8 @@ mod tests {
         );
         let document: Document = serde_json::from_str(&text).unwrap();
         let bytes = [0, 0, 128, 63, 255, 2, 127, 129];
-        Binary { name: "a.glb", document: &document, bytes: &bytes, budget: &Budget::default() }.numbers(0, width)
+        let buffers = [Bytes::Chunk(&bytes)];
+        Binary { name: "a.glb", document: &document, buffers: &buffers, budget: &Budget::default() }.numbers(0, width)
     }
 
     #[test]
@@ -181,6 +232,12 @@ mod tests {
                 vec![63.0, 127.0],
             ),
             ("{\"componentType\": 5126, \"count\": 2, \"type\": \"SCALAR\"}", 1, vec![0.0, 0.0]),
+            (
+                "{\"componentType\": 5121, \"count\": 3, \"type\": \"SCALAR\", \"sparse\": {\"count\": 1, \"indices\": \
+                 {\"bufferView\": 0, \"componentType\": 5121, \"byteOffset\": 5}, \"values\": {\"bufferView\": 0, \"byteOffset\": 6}}}",
+                1,
+                vec![0.0, 0.0, 127.0],
+            ),
         ] {
             assert_eq!(numbers(accessor, width).unwrap(), expected, "{accessor}");
         }
@@ -222,11 +279,22 @@ mod tests {
                 "its type is MAT4, expected 3",
             ),
             (
-                "{\"bufferView\": 0, \"componentType\": 5126, \"count\": 1, \"type\": \"SCALAR\", \"sparse\": {}}",
+                "{\"componentType\": 5121, \"count\": 1, \"type\": \"SCALAR\", \"sparse\": {\"count\": 1, \"indices\": \
+                 {\"bufferView\": 0, \"componentType\": 5121, \"byteOffset\": 4}, \"values\": {\"bufferView\": 0}}}",
                 1,
-                "sparse",
+                "it replaces item 255 of 1",
             ),
-            ("{\"bufferView\": 3, \"componentType\": 5121, \"count\": 1, \"type\": \"SCALAR\"}", 1, "a buffer outside"),
+            (
+                "{\"componentType\": 5121, \"count\": 1, \"type\": \"SCALAR\", \"sparse\": {\"count\": 2, \"indices\": \
+                 {\"bufferView\": 0}, \"values\": {\"bufferView\": 0}}}",
+                1,
+                "2 of its 1 items replaced",
+            ),
+            (
+                "{\"bufferView\": 3, \"componentType\": 5121, \"count\": 1, \"type\": \"SCALAR\"}",
+                1,
+                "refers to buffer 1",
+            ),
             ("", 1, "accessor 0: there are 0"),
         ] {
             let message = numbers(accessor, width).unwrap_err().to_string();

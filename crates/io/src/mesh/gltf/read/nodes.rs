@@ -1,13 +1,16 @@
-//! The tree of nodes of a GLB file: which mesh stands where.
+//! The tree of nodes of a glTF file: which mesh stands where.
 
 use arabesque_core::{Error, Matrix, Result, Similarity, Vector};
 
 use super::{accessor::Binary, document::NodeRecord};
+use crate::mesh::scene::matrix_of;
 
 /// Work of one node or instance.
 const PER_NODE: u64 = 500;
 /// How far a transform may be from a similarity to count as one, relative to its scale.
 const NEARLY: f64 = 1e-5;
+/// Volume that is left of a cube, relative to the cube of the longest side, below which a transform is flat.
+const FLAT: f64 = 1e-9;
 
 /// `p -> linear * p + shift`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,13 +35,7 @@ impl Affine {
 
     /// From its parts, as the format has them: the rotation is a quaternion x, y, z, w.
     fn of_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> Self {
-        let length = rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let [x, y, z, w] = if length > 0.0 { rotation.map(|v| v / length) } else { [0.0, 0.0, 0.0, 1.0] };
-        let rows = [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-        ];
+        let rows = matrix_of(rotation).0;
         let linear = Matrix(rows.map(|row| std::array::from_fn(|c| row[c] * scale[c])));
         Self { linear, shift: Vector(translation) }
     }
@@ -65,17 +62,28 @@ impl Affine {
         a.cross(b).dot(c)
     }
 
-    /// The same as a similarity, where it is one.
-    pub(super) fn similarity(&self) -> Option<Similarity<3>> {
-        let scale = self.determinant().cbrt();
-        if !(scale > 0.0 && scale.is_finite()) {
-            return None;
-        }
+    /// Whether it leaves nothing of a volume, but for rounding.
+    pub(super) fn is_flat(&self) -> bool {
+        let longest = self.linear.0.iter().map(|row| Vector(*row).norm()).fold(0.0, f64::max);
+        let share = self.determinant().abs() / longest.powi(3);
+        // No number where there is nothing at all, or too little for the cube.
+        !(share > FLAT && share.is_finite())
+    }
+
+    /// As a similarity after a stretch that leaves volumes as large as they are and may mirror; `None` for the stretch where there is
+    /// none. Transforms of one stretch turned differently have the same one.
+    pub(super) fn parted(&self) -> (Similarity<3>, Option<Matrix<3>>) {
+        let determinant = self.determinant();
+        let scale = determinant.abs().cbrt();
         let scaled = Matrix(self.linear.0.map(|row| row.map(|v| v / scale)));
-        let product = scaled.compose(&scaled.transpose());
-        let off = |r: usize, c: usize| (product.0[r][c] - f64::from(u8::from(r == c))).abs();
+        // Of what turns things inside out, the x axis is turned first, so that a rotation remains.
+        let mirror = if determinant < 0.0 { -1.0 } else { 1.0 };
+        let proper = Matrix(scaled.0.map(|[x, y, z]| [mirror * x, y, z]));
+        let rotation = proper.nearest_rotation();
+        let stretch = rotation.transpose().compose(&scaled);
+        let off = |r: usize, c: usize| (stretch.0[r][c] - f64::from(u8::from(r == c))).abs();
         let similar = (0..9).all(|k| off(k / 3, k % 3) < NEARLY);
-        similar.then(|| Similarity { rotation: scaled.nearest_rotation(), scale, translation: self.shift })
+        (Similarity { rotation, scale, translation: self.shift }, (!similar).then_some(stretch))
     }
 }
 
@@ -83,6 +91,8 @@ impl Affine {
 #[derive(Debug)]
 pub(super) struct Placed<'a> {
     pub(super) name: &'a str,
+    /// Number of the node in the file.
+    pub(super) node: usize,
     pub(super) mesh: usize,
     pub(super) place: Affine,
 }
@@ -157,7 +167,7 @@ impl<'a> Walk<'a, '_> {
         };
         for place in places {
             budget.spend(PER_NODE)?;
-            self.found.push(Placed { name, mesh, place: here.after(&place) });
+            self.found.push(Placed { name, node: number, mesh, place: here.after(&place) });
         }
         let what = format!("{}: meshes in their places", self.binary.name);
         budget.within(&what, self.found.len(), ("nodes", budget.limits().nodes))?;

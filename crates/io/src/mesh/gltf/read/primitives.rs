@@ -1,16 +1,21 @@
-//! The primitives of one mesh of a GLB file: its triangles and its points.
+//! The primitives of one mesh of a glTF file: its triangles, with what their vertices have, and its points.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{Error, PointSet, Result, TriangleMesh, Vector, Warning};
 
 use super::{
     accessor::Binary,
-    colour::srgb,
-    document::{Paint, Primitive},
+    document::{MaterialRecord, Primitive},
     points::append,
 };
-use crate::geometry::{Polygons, attributes::Attribute};
+use crate::{
+    geometry::{Polygons, attributes::Attribute},
+    mesh::{
+        colour::srgb,
+        scene::{self, Attributes},
+    },
+};
 
 /// Modes of the format.
 const POINTS: u32 = 0;
@@ -23,6 +28,8 @@ const FAN: u32 = 6;
 pub(super) struct Parts {
     pub(super) name: String,
     pub(super) mesh: TriangleMesh,
+    /// How the triangles look.
+    pub(super) looks: Vec<scene::Primitive>,
     /// Points; their colours are light.
     pub(super) points: PointSet<3>,
     pub(super) warnings: Vec<Warning>,
@@ -32,8 +39,10 @@ pub(super) struct Parts {
 struct Vertices {
     positions: Vec<Vector<3>>,
     normals: Option<Vec<Vector<3>>>,
-    /// Light, not shares of what a screen is given.
+    /// Light, not shares of what a screen is given, with that of the material.
     colours: Option<Vec<[f64; 3]>>,
+    /// What is written again as it is.
+    attributes: Attributes,
 }
 
 impl Parts {
@@ -51,12 +60,16 @@ impl Parts {
         for primitive in &record.primitives {
             reader.primitive(primitive)?;
         }
-        if record.primitives.iter().any(|p| reader.paint(p).is_some_and(|p| p.base_color_texture.is_some())) {
-            let message = format!("{}: pictures on it are passed over", reader.place);
-            reader.parts.warnings.push(Warning::new(message, "give its vertices colours if they matter"));
-        }
         reader.finish()
     }
+}
+
+/// Where the vertices of a primitive are in the mesh.
+#[derive(Clone)]
+struct Found {
+    first: u32,
+    count: usize,
+    attributes: Arc<Attributes>,
 }
 
 struct Reader<'a> {
@@ -64,7 +77,7 @@ struct Reader<'a> {
     place: String,
     parts: Parts,
     /// Where the vertices of attributes begin, so that they are read once.
-    first_of: BTreeMap<(Vec<usize>, Option<usize>), (u32, usize)>,
+    first_of: BTreeMap<(Vec<usize>, Option<usize>), Found>,
     coloured: bool,
     smooth: bool,
 }
@@ -84,16 +97,13 @@ impl Reader<'_> {
         match primitive.mode.unwrap_or(TRIANGLES) {
             POINTS => self.points(primitive),
             TRIANGLES | STRIP | FAN => self.triangles(primitive),
-            mode => {
-                let message = format!("{}: lines (mode {mode}) are left out", self.place);
-                self.parts.warnings.push(Warning::new(message, "draw what is wanted as triangles or points"));
-                Ok(())
-            }
+            // Lines are counted and told where everything is that is left out.
+            _ => Ok(()),
         }
     }
 
-    fn paint(&self, primitive: &Primitive) -> Option<&Paint> {
-        self.binary.document.materials.get(primitive.material?)?.pbr_metallic_roughness.as_ref()
+    fn material(&self, primitive: &Primitive) -> Option<&MaterialRecord> {
+        self.binary.document.materials.get(primitive.material?)
     }
 
     fn vertices(&mut self, primitive: &Primitive) -> Result<Vertices> {
@@ -110,39 +120,60 @@ impl Reader<'_> {
         }
         let normals = primitive.attributes.get("NORMAL").map(|&n| self.binary.numbers(n, 3)).transpose()?;
         let normals = normals.map(|numbers| vectors(&numbers));
-        let colours = self.colours(primitive, positions.len())?;
-        let lengths = [normals.as_ref().map(Vec::len), colours.as_ref().map(Vec::len)];
-        if lengths.into_iter().flatten().any(|length| length != positions.len()) {
+        let light = self.light(primitive)?;
+        let colours = self.colours(primitive, &light, positions.len());
+        let attributes = Attributes {
+            uv: [self.floats(primitive, "TEXCOORD_0")?, self.floats(primitive, "TEXCOORD_1")?],
+            tangents: self.floats(primitive, "TANGENT")?,
+            colours: light,
+        };
+        let lists =
+            [attributes.uv[0].len(), attributes.uv[1].len(), attributes.tangents.len(), attributes.colours.len()];
+        let lengths = lists.into_iter().filter(|length| *length > 0).chain(normals.as_ref().map(Vec::len));
+        if lengths.into_iter().any(|length| length != positions.len()) {
             return self.fail("a primitive whose attributes have different numbers of vertices".into());
         }
         if normals.iter().flatten().any(|n| !n.is_finite()) {
             return self.fail("a normal that is not finite".into());
         }
-        Ok(Vertices { positions, normals, colours })
+        Ok(Vertices { positions, normals, colours, attributes })
     }
 
-    fn colours(&self, primitive: &Primitive, count: usize) -> Result<Option<Vec<[f64; 3]>>> {
-        let paint = self.paint(primitive);
+    /// An attribute of `N` finite floats for each vertex; an empty list where there is none.
+    fn floats<const N: usize>(&self, primitive: &Primitive, name: &str) -> Result<Vec<[f32; N]>> {
+        let Some(&accessor) = primitive.attributes.get(name) else { return Ok(Vec::new()) };
+        let numbers = self.binary.numbers(accessor, N)?;
+        if numbers.iter().any(|v| !(*v as f32).is_finite()) {
+            return self.fail(format!("a value of {name} that is not finite"));
+        }
+        Ok(numbers.chunks_exact(N).map(|c| std::array::from_fn(|k| c[k] as f32)).collect())
+    }
+
+    /// Colours of vertices with their opacity; an empty list where there are none.
+    fn light(&self, primitive: &Primitive) -> Result<Vec<[f32; 4]>> {
+        let Some(&accessor) = primitive.attributes.get("COLOR_0") else { return Ok(Vec::new()) };
+        if self.binary.width(accessor) == Some(4) {
+            return self.floats(primitive, "COLOR_0");
+        }
+        let colours: Vec<[f32; 3]> = self.floats(primitive, "COLOR_0")?;
+        Ok(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect())
+    }
+
+    /// What vertices and material give together.
+    fn colours(&self, primitive: &Primitive, light: &[[f32; 4]], count: usize) -> Option<Vec<[f64; 3]>> {
+        let paint = self.material(primitive).and_then(|material| material.pbr_metallic_roughness.as_ref());
         // What a picture is multiplied by says nothing without the picture.
         let factor = paint.filter(|p| p.base_color_texture.is_none()).and_then(|p| p.base_color_factor);
         let factor: Option<[f64; 3]> = factor.map(|[r, g, b, _]| [r, g, b]);
-        let Some(&accessor) = primitive.attributes.get("COLOR_0") else {
-            return Ok(factor.map(|colour| vec![colour; count]));
-        };
-        let width = match self.binary.document.accessors.get(accessor) {
-            Some(record) if record.kind == "VEC4" => 4,
-            _ => 3,
-        };
-        let numbers = self.binary.numbers(accessor, width)?;
-        let factor = factor.unwrap_or([1.0; 3]);
-        if numbers.iter().any(|v| !v.is_finite()) {
-            return self.fail("a colour that is not finite".into());
+        if light.is_empty() {
+            return factor.map(|colour| vec![colour; count]);
         }
-        Ok(Some(numbers.chunks_exact(width).map(|c| std::array::from_fn(|k| c[k] * factor[k])).collect()))
+        let factor = factor.unwrap_or([1.0; 3]);
+        Some(light.iter().map(|c| std::array::from_fn(|k| f64::from(c[k]) * factor[k])).collect())
     }
 
     fn triangles(&mut self, primitive: &Primitive) -> Result<()> {
-        let (first, count) = self.shared_vertices(primitive)?;
+        let Found { first, count, attributes } = self.shared_vertices(primitive)?;
         let indices = match primitive.indices {
             Some(accessor) => self.binary.indices(accessor)?,
             None => (0..count as u32).collect(),
@@ -167,15 +198,21 @@ impl Reader<'_> {
         }
         let found = self.parts.mesh.triangles.len() + cut.triangles.len();
         self.check("triangles", found)?;
+        self.parts.looks.push(scene::Primitive {
+            triangles: self.parts.mesh.triangles.len()..found,
+            vertices: first as usize..first as usize + count,
+            material: primitive.material.filter(|m| *m < self.binary.document.materials.len()),
+            attributes,
+        });
         self.parts.mesh.triangles.extend(cut.triangles);
         Ok(())
     }
 
     /// The first vertex of a primitive in the mesh, and how many there are; what other primitives have read is shared.
-    fn shared_vertices(&mut self, primitive: &Primitive) -> Result<(u32, usize)> {
+    fn shared_vertices(&mut self, primitive: &Primitive) -> Result<Found> {
         let key = (primitive.attributes.values().copied().collect::<Vec<_>>(), primitive.material);
         if let Some(known) = self.first_of.get(&key) {
-            return Ok(*known);
+            return Ok(known.clone());
         }
         let vertices = self.vertices(primitive)?;
         let (first, count) = (self.parts.mesh.positions.len(), vertices.positions.len());
@@ -188,13 +225,13 @@ impl Reader<'_> {
         mesh.normals.get_or_insert_default().extend(normals.into_iter().map(Vector::unit_or_zero));
         let colours = vertices.colours.unwrap_or_else(|| vec![[1.0; 3]; count]);
         mesh.colours.get_or_insert_default().extend(colours.into_iter().map(|c| c.map(srgb)));
-        let found = (first as u32, count);
-        self.first_of.insert(key, found);
+        let found = Found { first: first as u32, count, attributes: Arc::new(vertices.attributes) };
+        self.first_of.insert(key, found.clone());
         Ok(found)
     }
 
     fn points(&mut self, primitive: &Primitive) -> Result<()> {
-        let Vertices { positions, normals, colours } = self.vertices(primitive)?;
+        let Vertices { positions, normals, colours, .. } = self.vertices(primitive)?;
         let mut set = PointSet { positions, normals, colours, ..PointSet::default() };
         set.radii = self.scalars(primitive, "_RADIUS", Attribute::Radius, set.len())?;
         let whole = |list: Vec<f64>| list.into_iter().map(|v| v as i32).collect();
@@ -241,12 +278,30 @@ impl Reader<'_> {
         if !self.coloured {
             mesh.colours = None;
         }
-        let complete = self.smooth && mesh.normals.iter().flatten().all(|n| *n != Vector::ZERO);
-        if !complete {
+        if !self.smooth {
             mesh.normals = None;
         }
+        mend(mesh);
         Ok(self.parts)
     }
+}
+
+/// Gives vertices whose normal has no length that of the triangles around them: a single one would cost a smooth mesh its look.
+fn mend(mesh: &mut TriangleMesh) {
+    let Some(mut normals) = mesh.normals.take() else { return };
+    let is_zero: Vec<bool> = normals.iter().map(|n| *n == Vector::ZERO).collect();
+    if is_zero.contains(&true) {
+        for (k, corners) in mesh.triangles.iter().enumerate() {
+            for v in corners.map(|v| v as usize).into_iter().filter(|v| is_zero[*v]) {
+                normals[v] += mesh.double_area(k);
+            }
+        }
+        let up = Vector([0.0, 1.0, 0.0]);
+        for v in (0..normals.len()).filter(|v| is_zero[*v]) {
+            normals[v] = Some(normals[v].unit_or_zero()).filter(|n| *n != Vector::ZERO).unwrap_or(up);
+        }
+    }
+    mesh.normals = Some(normals);
 }
 
 fn vectors(numbers: &[f64]) -> Vec<Vector<3>> {

@@ -2,7 +2,8 @@
 
 use arabesque_core::{PointSet, Vector};
 
-use super::{colour::srgb, nodes::Affine};
+use super::nodes::Affine;
+use crate::mesh::colour::srgb;
 
 /// The points in their place; their colours as screens have them.
 pub(super) fn in_place(points: &PointSet<3>, place: &Affine) -> PointSet<3> {

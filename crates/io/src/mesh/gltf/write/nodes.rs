@@ -1,0 +1,161 @@
+//! Nodes of a GLB file: one for each place of a mesh, or one for all places of one kind.
+
+use std::collections::BTreeMap;
+
+use arabesque_core::{Budget, Decimals, Error, Result, Similarity};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::buffer::Buffer;
+use crate::mesh::scene::{Scene, SceneNode, quaternion};
+
+/// Work of one node.
+const PER_NODE: u64 = 2000;
+/// The extension by which one node stands in many places.
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// A node as the document has it.
+#[derive(Serialize)]
+pub(super) struct Node<'a> {
+    #[serde(skip_serializing_if = "str::is_empty")]
+    name: &'a str,
+    mesh: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    translation: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotation: Option<[f64; 4]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scale: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extensions: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extras: Option<Value>,
+}
+
+impl<'a> Node<'a> {
+    pub(super) fn new(name: &'a str, mesh: usize) -> Self {
+        Self { name, mesh, translation: None, rotation: None, scale: None, extensions: None, extras: None }
+    }
+
+    pub(super) fn is_instanced(&self) -> bool {
+        self.extensions.is_some()
+    }
+}
+
+/// Numbers of the meshes that nodes show, in order.
+///
+/// # Errors
+/// [`Error::Input`] for a node whose mesh does not exist.
+pub(super) fn shown(scene: &Scene) -> Result<Vec<usize>> {
+    let mut used = vec![false; scene.meshes.len()];
+    for (number, node) in scene.nodes.iter().enumerate() {
+        let Some(used) = used.get_mut(node.mesh) else {
+            let problem = format!("mesh {} where there are {}", node.mesh, scene.meshes.len());
+            return Err(Error::input(
+                format!("node {number} of the scene"),
+                problem,
+                "add the mesh, or remove the node",
+            ));
+        };
+        *used = !scene.meshes[node.mesh].mesh.triangles.is_empty();
+    }
+    Ok((0..used.len()).filter(|&n| used[n]).collect())
+}
+
+/// What nodes are made of.
+pub(super) struct NodesOut<'a, 'b> {
+    pub(super) scene: &'a Scene,
+    /// Numbers of the meshes that are written, in order.
+    pub(super) numbers: &'b [usize],
+    pub(super) budget: &'b Budget,
+}
+
+impl<'a> NodesOut<'a, '_> {
+    /// The nodes whose mesh is written, with its number in the file.
+    fn written(&self) -> impl Iterator<Item = (&'a SceneNode, usize)> {
+        self.scene.nodes.iter().filter_map(|node| Some((node, self.numbers.binary_search(&node.mesh).ok()?)))
+    }
+
+    /// A node for each place.
+    pub(super) fn single(&mut self) -> Result<Vec<Node<'a>>> {
+        let reaches = self.reaches();
+        let mut nodes = Vec::with_capacity(self.scene.nodes.len());
+        for (node, mesh) in self.written() {
+            self.budget.spend(PER_NODE)?;
+            nodes.push(record(node, mesh, reaches[mesh]));
+        }
+        Ok(nodes)
+    }
+
+    /// How far each mesh that is written reaches.
+    fn reaches(&self) -> Vec<f64> {
+        let reach = |&n: &usize| self.scene.meshes[n].mesh.bounds().size().0.into_iter().fold(0.0, f64::max);
+        self.numbers.iter().map(reach).collect()
+    }
+
+    /// A node for all places that a mesh has in one class.
+    pub(super) fn instanced(&mut self, buffer: &mut Buffer) -> Result<Vec<Node<'a>>> {
+        let mut groups: BTreeMap<(usize, Option<&str>), Vec<&SceneNode>> = BTreeMap::new();
+        for (node, mesh) in self.written() {
+            self.budget.spend(PER_NODE)?;
+            groups.entry((mesh, node.class.as_deref())).or_default().push(node);
+        }
+        let reaches = self.reaches();
+        let mut nodes = Vec::new();
+        for ((mesh, class), members) in groups {
+            let [first, _, ..] = members[..] else {
+                nodes.extend(members.iter().map(|node| record(node, mesh, reaches[mesh])));
+                continue;
+            };
+            let places: Vec<Similarity<3>> = members.iter().map(|node| node.transform).collect();
+            let name = class.unwrap_or(&self.scene.meshes[first.mesh].name);
+            let name = if name.is_empty() { &first.name } else { name };
+            let attributes = instances(&places, buffer);
+            let extensions = Some(json!({ INSTANCING: { "attributes": attributes } }));
+            let extras = class.map(|class| json!({ "class": class }));
+            nodes.push(Node { extensions, extras, ..Node::new(name, mesh) });
+        }
+        Ok(nodes)
+    }
+}
+
+/// Lists of places; what changes nothing in any of them is left out.
+fn instances(places: &[Similarity<3>], buffer: &mut Buffer) -> Value {
+    let floats = |v: [f64; 3]| v.map(|c| c as f32);
+    let translations: Vec<[f32; 3]> = places.iter().map(|p| floats(p.translation.0)).collect();
+    let rotations: Vec<[f32; 4]> = places.iter().map(|p| quaternion(&p.rotation).map(|v| v as f32)).collect();
+    let scales: Vec<[f32; 3]> = places.iter().map(|p| [p.scale as f32; 3]).collect();
+    let mut attributes = json!({ "TRANSLATION": buffer.instances(&translations) });
+    if rotations.iter().any(|r| *r != [0.0, 0.0, 0.0, 1.0]) {
+        attributes["ROTATION"] = buffer.instances(&rotations).into();
+    }
+    if scales.iter().any(|s| *s != [1.0; 3]) {
+        attributes["SCALE"] = buffer.instances(&scales).into();
+    }
+    attributes
+}
+
+/// A node, with nine digits of its place; what changes nothing is left out.
+fn record(node: &SceneNode, mesh: usize, reach: f64) -> Node<'_> {
+    let transform = &node.transform;
+    let extent = transform.translation.0.iter().fold(reach * transform.scale, |most, c| most.max(c.abs()));
+    let (place, share) = (Decimals::for_extent(extent).plus(3), Decimals::for_extent(1.0).plus(3));
+    let scale = Decimals::for_extent(transform.scale).plus(3).round(transform.scale);
+    let rotation = quaternion(&transform.rotation).map(|v| share.round(v));
+    let mut extras = json!({});
+    if let Some(class) = &node.class {
+        extras["class"] = class.as_str().into();
+    }
+    for (key, number) in [("id", node.id), ("source", node.source)] {
+        if let Some(number) = number {
+            extras[key] = number.into();
+        }
+    }
+    Node {
+        translation: Some(transform.translation.0.map(|v| place.round(v))).filter(|t| *t != [0.0; 3]),
+        rotation: Some(rotation).filter(|r| *r != [0.0, 0.0, 0.0, 1.0]),
+        scale: Some([scale; 3]).filter(|s| *s != [1.0; 3]),
+        extras: extras.as_object().is_some_and(|e| !e.is_empty()).then_some(extras),
+        ..Node::new(&node.name, mesh)
+    }
+}

@@ -4,8 +4,9 @@ use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
     Border, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo,
-    Region, Space, Structures,
+    Region, Resources, Space, Structures,
     core::options::{Choice, help_list, preset_list},
+    is_scene_of_meshes,
     patterns::Params,
     structures::StructureParams,
 };

@@ -1,6 +1,6 @@
 //! What is missing goes where there is room.
 
-use arabesque_core::{Budget, Matrix, Numbered, Placement, Result, Stage, Stream, Vector};
+use arabesque_core::{Buckets, Budget, Matrix, Numbered, Placement, Result, Stage, Stream, Vector};
 
 use super::{
     contact::{Body, contact, price},
@@ -31,13 +31,16 @@ impl<const D: usize> Things<'_, D> {
         let mut roomy = self.roomy(TRIES * missing, &mut random, budget)?;
         roomy.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut short = short;
+        let mut near = self.buckets();
         for (_, place) in roomy {
             let Some(class) = (0..short.len()).max_by(|&a, &b| short[a].total_cmp(&short[b])) else { break };
             if short[class] <= 0.0 {
                 break;
             }
-            if let Some(placement) = self.fitting(class as u32, place, &mut random, budget)? {
-                self.bodies.push(self.body(placement.source, &placement.transform));
+            if let Some(placement) = self.fitting((class as u32, place), &near, &mut random, budget)? {
+                let body = self.body(placement.source, &placement.transform);
+                near.insert(self.bodies.len() as u32, body.centre);
+                self.bodies.push(body);
                 self.placements.push(placement);
                 self.moved.push(true);
                 short[class] -= 1.0;
@@ -75,13 +78,12 @@ impl<const D: usize> Things<'_, D> {
     /// An element of a class that fits at a place, moved a little where that helps.
     fn fitting(
         &self,
-        class: u32,
-        place: Vector<D>,
+        (class, place): (u32, Vector<D>),
+        near: &Buckets<D>,
         random: &mut Stream,
         budget: &Budget,
     ) -> Result<Option<Placement<D>>> {
         let members = self.library.members(class);
-        let index = self.index();
         let mut meter = budget.meter();
         for _ in 0..SOURCES {
             let source = members[random.below(members.len())];
@@ -92,7 +94,7 @@ impl<const D: usize> Things<'_, D> {
             for _ in 0..STEPS {
                 let transform = self.extent.turned(source, at, &Matrix::identity());
                 let body = self.body(source as usize, &transform);
-                let (push, over, cost) = self.wish(&body, class, &index);
+                let (push, over, cost) = self.wish(&body, class, near);
                 meter.spend(cost)?;
                 let inner = body.solid.inradius() * body.pose.scale;
                 if over <= FITS * inner && self.extent.admits(source, at) {
@@ -106,9 +108,9 @@ impl<const D: usize> Things<'_, D> {
     }
 
     /// Where a body would go, how deep it lies too deep, and the cost of knowing.
-    fn wish(&self, body: &Body<'_, D>, class: u32, index: &arabesque_core::GridIndex<D>) -> (Vector<D>, f64, u64) {
+    fn wish(&self, body: &Body<'_, D>, class: u32, near: &Buckets<D>) -> (Vector<D>, f64, u64) {
         let (mut push, mut worst, mut cost) = (Vector::ZERO, 0.0_f64, 500);
-        for (j, offset) in self.around_of(index, body) {
+        for (j, offset) in self.met(near, body) {
             cost += price(body, &self.bodies[j]);
             let Some(found) = contact(body, &self.bodies[j], offset) else { continue };
             let over = found.depth - self.allowed.of(class, self.class(j));
@@ -120,8 +122,25 @@ impl<const D: usize> Things<'_, D> {
         (push, worst, cost)
     }
 
-    fn around_of(&self, index: &arabesque_core::GridIndex<D>, body: &Body<'_, D>) -> Vec<(usize, Vector<D>)> {
-        // Those that were put in since the index was made come after it.
-        self.around(index, body, usize::MAX)
+    fn buckets(&self) -> Buckets<D> {
+        let cell = self.widest.max(1e-9);
+        let mut near = Buckets::new(&self.extent.request().domain, cell, cell);
+        self.bodies.iter().zip(0..).for_each(|(body, i)| near.insert(i, body.centre));
+        near
+    }
+
+    /// The bodies that a body may touch, with the way to each.
+    fn met(&self, near: &Buckets<D>, body: &Body<'_, D>) -> Vec<(usize, Vector<D>)> {
+        let domain = &self.extent.request().domain;
+        let mut met = Vec::new();
+        near.near(body.centre, body.radius + self.widest, |j| {
+            let other = &self.bodies[j as usize];
+            let offset = domain.offset(body.centre, other.centre);
+            if offset.norm() < body.radius + other.radius {
+                met.push((j as usize, offset));
+            }
+        });
+        met.sort_by_key(|(j, _)| *j);
+        met
     }
 }

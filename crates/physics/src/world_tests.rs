@@ -1,0 +1,101 @@
+//! Tiny scenes.
+
+use arabesque_core::{Limits, TriangleMesh};
+
+use super::*;
+use crate::shape::Collider;
+
+const DOWN: Vector<3> = Vector([0.0, -1.0, 0.0]);
+
+fn brick(size: [f64; 3]) -> TriangleMesh {
+    let positions = (0..8).map(|k| Vector([0, 1, 2].map(|a| size[a] * f64::from(k >> a & 1)))).collect();
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+    TriangleMesh { positions, triangles, ..TriangleMesh::default() }
+}
+
+fn body(shape: &Arc<Shape>, place: [f64; 3]) -> Body {
+    Body { shape: Arc::clone(shape), pose: Similarity::shift(Vector(place)), frozen: false }
+}
+
+fn world(surroundings: Surroundings, gravity: Vector<3>, bodies: Vec<Body>) -> World {
+    let mut world = World::new(surroundings, gravity, &PhysicsParams::default()).unwrap();
+    world.place(bodies).unwrap();
+    world
+}
+
+fn stack() -> World {
+    let shape = Arc::new(Shape::new(&brick([2.0, 0.5, 1.0]), "brick").unwrap());
+    assert_eq!(shape.collider(), Collider::Cuboid);
+    let bodies = (0..4).map(|k| body(&shape, [0.0, 0.2 + 0.7 * f64::from(k), 0.0])).collect();
+    world(Surroundings::default().floor(0.0), DOWN, bodies)
+}
+
+#[test]
+fn bricks_with_gaps_come_to_lie_on_the_floor_and_on_one_another() {
+    let mut world = stack();
+    let run = world.settle(&Budget::default()).unwrap();
+    assert!(run.warnings.is_empty(), "{:?}", run.warnings);
+    for (k, body) in world.bodies().iter().enumerate() {
+        let height = body.pose.apply(body.shape.centre())[1];
+        assert!((height - (0.25 + 0.5 * k as f64)).abs() < 0.03, "{k}: {height}");
+    }
+    assert!(run.after.deepest < 0.02, "{:?}", run.after);
+}
+
+#[test]
+fn the_same_bodies_give_the_same_bytes_in_any_pool() {
+    let poses = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut world = stack();
+            world.settle(&Budget::default()).unwrap();
+            world.bodies().iter().map(|b| b.pose).collect::<Vec<_>>()
+        })
+    };
+    assert_eq!(poses(1), poses(2));
+    assert_eq!(poses(1), poses(3));
+}
+
+#[test]
+fn overlapping_bodies_are_pushed_apart_a_little_and_frozen_ones_stay() {
+    let shape = Arc::new(Shape::new(&brick([1.0; 3]), "cube").unwrap());
+    let mut bodies = vec![body(&shape, [0.1, 0.2, 0.3]), body(&shape, [0.9, 0.2, 0.3])];
+    bodies[0].frozen = true;
+    bodies[1].pose.scale = 1.2;
+    let before = bodies.clone();
+    let mut world = world(Surroundings::default(), Vector::ZERO, bodies);
+    for _ in 0..10 {
+        let run = world.substeps(5, &Budget::default()).unwrap();
+        assert!(run.after.total <= run.before.total);
+    }
+    assert_eq!(world.bodies()[0].pose, before[0].pose);
+    let moved = world.bodies()[1].pose.translation[0] - before[1].pose.translation[0];
+    assert!((0.15..0.3).contains(&moved), "{moved}");
+    assert_eq!(world.bodies()[1].pose.scale, 1.2);
+}
+
+#[test]
+fn bodies_at_one_place_stay_bounded_and_those_that_fall_for_ever_are_put_back() {
+    let shape = Arc::new(Shape::new(&brick([1.0; 3]), "cube").unwrap());
+    let mut at_one = world(Surroundings::default(), Vector::ZERO, vec![body(&shape, [0.0; 3]); 5]);
+    at_one.substeps(5, &Budget::default()).unwrap();
+    assert!(at_one.bodies().iter().all(|b| b.pose.translation.norm() < 1.0));
+    let mut falling = world(Surroundings::default(), DOWN, vec![body(&shape, [0.0; 3])]);
+    falling.params.steps = 4000;
+    let run = falling.settle(&Budget::default()).unwrap();
+    assert!(run.warnings.iter().any(|w| w.message.contains("left the scene")), "{:?}", run.warnings);
+    assert_eq!(falling.bodies()[0].pose, Similarity::identity());
+}
+
+#[test]
+fn flat_meshes_and_broken_poses_are_refused_and_a_stop_is_heard() {
+    let error = Shape::new(&brick([1.0, 0.0, 1.0]), "leaf").unwrap_err().to_string();
+    assert!(error.contains("leaf") && error.contains("flat"), "{error}");
+    let mut world = stack();
+    let mut bodies = world.bodies().to_vec();
+    bodies[2].pose.translation[0] = f64::NAN;
+    assert!(world.place(bodies).unwrap_err().to_string().contains("element 3"));
+    let run = world.settle(&Budget::stopping_at(Limits::default(), 3)).unwrap();
+    assert_eq!((run.steps, run.stopped), (2, StopReason::Stopped));
+}

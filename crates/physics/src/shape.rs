@@ -83,7 +83,7 @@ impl Shape {
             return fail("the mesh is flat, expected a solid with a volume");
         }
         let points: Vec<_> = points.iter().map(|&p| p - centre).collect();
-        let own = mesh_volume(&points, &mesh.triangles).unwrap_or(hull_volume).min(hull_volume);
+        let own = mesh_volume(&points, &mesh.triangles).unwrap_or(hull_volume);
         let (solid, kind) = solid(&points, mesh, own, hull_volume, name)?;
         let scale = radius.powi(3);
         let inradius = solid.inradius() * radius;
@@ -261,3 +261,7 @@ fn box_around(points: &[Vec3], mesh: &TriangleMesh) -> Option<(Pose, Vec3)> {
     let half = Vec3::new(high[0] - low[0], high[1] - low[1], high[2] - low[2]) * 0.5;
     Some((Pose::from_parts(middle, rotation), half))
 }
+
+#[cfg(test)]
+#[path = "shape_tests.rs"]
+mod tests;

@@ -99,3 +99,37 @@ fn flat_meshes_and_broken_poses_are_refused_and_a_stop_is_heard() {
     let run = world.settle(&Budget::stopping_at(Limits::default(), 3)).unwrap();
     assert_eq!((run.steps, run.stopped), (2, StopReason::Stopped));
 }
+
+#[test]
+fn bodies_in_a_bowl_stay_in_it() {
+    let shape = Arc::new(Shape::new(&brick([0.5; 3]), "cube").unwrap());
+    let bodies = (0..8).map(|k| body(&shape, [f64::from(k % 2) * 0.7, 0.5 + 0.6 * f64::from(k / 2), 0.2])).collect();
+    // A dish: the rim is a square of side 6 at height 3, the bottom one of side 2 at height 0.
+    let ring = |half: f64, y: f64| [[-half, y, -half], [half, y, -half], [half, y, half], [-half, y, half]].map(Vector);
+    let mut positions = ring(1.0, 0.0).to_vec();
+    positions.extend(ring(3.0, 3.0));
+    let sides = (0..4_u32).flat_map(|k| [[k, (k + 1) % 4, k + 4], [(k + 1) % 4, (k + 1) % 4 + 4, k + 4]]);
+    let triangles = sides.chain([[0, 2, 1], [0, 3, 2]]).collect();
+    let dish = TriangleMesh { positions, triangles, ..TriangleMesh::default() };
+    let surroundings = Surroundings { surfaces: vec![dish], ..Surroundings::default() };
+    let mut world = world(surroundings, DOWN, bodies);
+    world.settle(&Budget::default()).unwrap();
+    for body in world.bodies() {
+        let [x, y, z] = body.pose.apply(body.shape.centre()).0;
+        assert!(y > 0.1 && y < 3.0 && x.abs().max(z.abs()) < 1.0 + y, "{x} {y} {z}");
+    }
+}
+
+#[test]
+fn a_thousand_bodies_pile_up_in_a_box_without_running_into_one_another() {
+    let shape = Arc::new(Shape::new(&brick([1.0, 0.8, 0.6]), "brick").unwrap());
+    let at = |k: usize| [k % 10, k / 100, k / 10 % 10].map(|n| n as f64 * 0.95);
+    let bodies = (0..1000).map(|k| body(&shape, at(k))).collect();
+    let bounds = Bounds::new(Vector([-0.1, 0.0, -0.1]), Vector([11.0, 40.0, 11.0]));
+    let mut world = world(Surroundings::default().inside_box(&bounds), DOWN, bodies);
+    let first = world.substeps(5, &Budget::default()).unwrap();
+    (0..9).for_each(|_| drop(world.substeps(5, &Budget::default()).unwrap()));
+    let last = world.settle(&Budget::default()).unwrap();
+    assert!(last.after.total < 0.3 * first.before.total, "{:?} {:?}", first.before, last.after);
+    assert!(last.after.deepest < 0.1, "{:?}", last.after);
+}

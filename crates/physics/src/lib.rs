@@ -7,14 +7,16 @@
 //! | step | module | source |
 //! |---|---|---|
 //! | a mesh becomes a solid: ball, box, convex hull, or several hulls | `shape` | |
-//! | floors, walls, obstacles and containers | `surroundings` | [Ma 2011 §5, "domain shape"] |
-//! | a few gentle steps, or steps until all is at rest | `world` | [Ma 2011 §5, "interleaved physics solver"; fig. 15] |
+//! | floors, walls, obstacles and containers | `surroundings`, `guard` | [Ma 2011 §5, "domain shape"] |
+//! | a few gentle steps, or steps until all is at rest | `world`, over the sets of the solver in `scene` | [Ma 2011 §5, "interleaved physics solver"; fig. 15] |
 //! | how deep things are in one another, and what floats | `figures` | [Ma 2011 fig. 15] |
 //!
 //! Where it departs from the paper:
 //!
 //! - Steps begin at rest, motion is damped and bounded by a share of an element's size, so that the pattern stays what it was.
-//! - What the solver loses (a pose that is not a number, a fall out of the scene) goes back to where it was, and is told.
+//! - What the solver loses (a pose that is not a number, a fall out of the scene, a way through a surface) goes back to where it was; where
+//!   all bursts apart, everything goes back to where it was shortly before. It is told.
+//! - Where elements may reach over the sides of a box, their middles stay in it, as if the pile went on beyond.
 //! - Masses lie within a factor of 20 of the median: the solver does badly with a pea below a pumpkin.
 //!
 //! The solver runs on one thread, from fresh sets in each call: the same bodies give the same bytes whatever ran before and however many threads
@@ -22,7 +24,10 @@
 //! the house promises the same bytes on one machine, it is left off.
 
 mod figures;
+mod guard;
 mod params;
+mod scene;
+mod setting;
 mod shape;
 mod surroundings;
 mod units;
@@ -30,6 +35,7 @@ mod world;
 
 pub use figures::Figures;
 pub use params::PhysicsParams;
+pub use setting::Body;
 pub use shape::{Collider, Shape};
-pub use surroundings::{Surroundings, Wall};
-pub use world::{Body, Run, World};
+pub use surroundings::{Side, Surface, Surroundings, Wall};
+pub use world::{Run, World};

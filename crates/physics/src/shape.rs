@@ -1,6 +1,6 @@
 //! What the solver sees of a mesh.
 
-use arabesque_core::{Error, Result, TriangleMesh, Vector};
+use arabesque_core::{Budget, Error, Result, TriangleMesh, Vector, Warning};
 use rapier3d::{
     math::{Pose, Vector as Vec3},
     parry::{
@@ -14,12 +14,18 @@ use crate::units::{vec3, vector};
 
 /// Share by which ball, box and hull may differ in volume from the mesh that they stand for.
 const TOLERANCE: f64 = 0.05;
+/// Share of its hull that a convex mesh fills.
+const CONVEX: f64 = 1.0 - 2.0 * TOLERANCE;
 /// Most corners of a hull; more are as good as invisible and slow.
 const MOST_CORNERS: usize = 64;
 /// Most hulls for one mesh.
 const MOST_PARTS: usize = 32;
 /// Most triangles of a mesh that is cut into hulls.
 const MOST_TRIANGLES: usize = 50_000;
+/// Work of cutting a mesh into hulls, and of each of its triangles and corners, in units of the budget.
+const CUTTING: u64 = 400_000_000;
+const PER_TRIANGLE: u64 = 20_000;
+const PER_CORNER: u64 = 2_000;
 
 /// What stands for a mesh where it touches others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +50,7 @@ pub struct Shape {
     radius: f64,
     volume: f64,
     inradius: f64,
+    warning: Option<Warning>,
 }
 
 #[derive(Clone)]
@@ -63,9 +70,11 @@ impl Shape {
     /// What stands for `mesh`, which errors call `name`.
     ///
     /// # Errors
-    /// [`Error::Input`] where the mesh is broken, has coordinates that are not numbers, or has no volume.
-    pub fn new(mesh: &TriangleMesh, name: &str) -> Result<Self> {
+    /// [`Error::Input`] where the mesh is broken, has coordinates that are not numbers, or has no volume; when the budget is used up, or
+    /// somebody asks to stop.
+    pub fn new(mesh: &TriangleMesh, name: &str, budget: &Budget) -> Result<Self> {
         mesh.check(name)?;
+        budget.spend(PER_CORNER * mesh.positions.len() as u64)?;
         let fail = |problem: &str| Err(Error::input(name, problem, "give it a thickness in the program it came from"));
         if mesh.triangles.is_empty() || mesh.positions.iter().any(|p| !p.is_finite()) {
             return fail("the mesh has no triangles or coordinates that are not numbers, expected a solid");
@@ -83,16 +92,31 @@ impl Shape {
             return fail("the mesh is flat, expected a solid with a volume");
         }
         let points: Vec<_> = points.iter().map(|&p| p - centre).collect();
-        let own = mesh_volume(&points, &mesh.triangles).unwrap_or(hull_volume);
-        let (solid, kind) = solid(&points, mesh, own, hull_volume, name)?;
+        let own = mesh_volume(&points, &mesh.triangles).map_or(hull_volume, f64::abs);
+        let cutting = cutting(mesh, own > CONVEX * hull_volume, name, budget)?;
+        let (solid, kind) = solid(&points, mesh, (own, hull_volume), matches!(cutting, Cutting::Allowed), name)?;
+        let warning = if let Cutting::Refused(warning) = cutting { Some(warning) } else { None };
         let scale = radius.powi(3);
         let inradius = solid.inradius() * radius;
-        Ok(Self { solid, kind, centre: middle + vector(centre) * radius, radius, volume: own * scale, inradius })
+        Ok(Self {
+            solid,
+            kind,
+            centre: middle + vector(centre) * radius,
+            radius,
+            volume: own * scale,
+            inradius,
+            warning,
+        })
     }
 
     /// What stands for the mesh.
     pub fn collider(&self) -> Collider {
         self.kind
+    }
+
+    /// What the user should know: that a mesh with hollows is taken for its hull.
+    pub fn warning(&self) -> Option<&Warning> {
+        self.warning.as_ref()
     }
 
     /// The middle of its volume, in coordinates of the mesh.
@@ -158,11 +182,44 @@ fn hull_inradius(hull: &ConvexPolyhedron) -> f64 {
     f64::from(depths.fold(f32::INFINITY, f32::min).max(0.0))
 }
 
-/// The simplest solid that is near enough to the mesh.
-fn solid(points: &[Vec3], mesh: &TriangleMesh, own: f64, of_hull: f64, name: &str) -> Result<(Solid, Collider)> {
+/// Whether a mesh is to be cut into hulls.
+enum Cutting {
+    Needless,
+    Allowed,
+    Refused(Warning),
+}
+
+fn cutting(mesh: &TriangleMesh, is_convex: bool, name: &str, budget: &Budget) -> Result<Cutting> {
+    if is_convex {
+        return Ok(Cutting::Needless);
+    }
+    let count = mesh.triangles.len();
+    let work = CUTTING + PER_TRIANGLE * count as u64;
+    let refused = |why: String| {
+        let message = format!("{name}: physics takes the mesh for its convex hull, hollows filled, for {why}");
+        Ok(Cutting::Refused(Warning::new(message, "make it simpler, or cut it into convex elements")))
+    };
+    if count > MOST_TRIANGLES {
+        return refused(format!("it has {count} triangles, and at most {MOST_TRIANGLES} are cut into hulls"));
+    }
+    match budget.foresee(work) {
+        Ok(()) => budget.spend(work).map(|()| Cutting::Allowed),
+        Err(Error::Limit { .. }) => refused("no work is left for cutting it into hulls".into()),
+        Err(error) => Err(error),
+    }
+}
+
+/// The simplest solid that is near enough to the mesh, whose volume is `own` and that of its hull `of_hull`.
+fn solid(
+    points: &[Vec3],
+    mesh: &TriangleMesh,
+    (own, of_hull): (f64, f64),
+    is_cut: bool,
+    name: &str,
+) -> Result<(Solid, Collider)> {
     let fail = || Error::input(name, "no hull of the mesh could be made", "close its surface, or make it simpler");
     let near = |a: f64, b: f64| (a - b).abs() <= TOLERANCE * b;
-    if own > (1.0 - 2.0 * TOLERANCE) * of_hull {
+    if own > CONVEX * of_hull {
         let norms = points.iter().map(|p| p.length());
         let (least, most) = norms.fold((f32::INFINITY, 0.0_f32), |(a, b), r| (a.min(r), b.max(r)));
         let round = 4.0 / 3.0 * std::f64::consts::PI * f64::from(most).powi(3);
@@ -176,7 +233,7 @@ fn solid(points: &[Vec3], mesh: &TriangleMesh, own: f64, of_hull: f64, name: &st
         }
         return Ok((Solid::Hulls(vec![hull(points).ok_or_else(fail)?]), Collider::Hull));
     }
-    if mesh.triangles.len() > MOST_TRIANGLES {
+    if !is_cut {
         return Ok((Solid::Hulls(vec![hull(points).ok_or_else(fail)?]), Collider::Hull));
     }
     let parameters =
@@ -223,8 +280,8 @@ fn triangles(hull: &ConvexPolyhedron) -> Vec<[u32; 3]> {
     all
 }
 
-/// Volume of a closed surface; `None` where it is not closed.
-fn mesh_volume(points: &[Vec3], triangles: &[[u32; 3]]) -> Option<f64> {
+/// Volume of a closed surface, negative where it is inside out; `None` where it is not closed.
+pub(crate) fn mesh_volume(points: &[Vec3], triangles: &[[u32; 3]]) -> Option<f64> {
     // Over the surface of a solid the areas sum to nothing, and they do not where something is missing.
     let (mut sum, mut area, mut volume) = (Vector::ZERO, 0.0, 0.0);
     for t in triangles {
@@ -234,7 +291,7 @@ fn mesh_volume(points: &[Vec3], triangles: &[[u32; 3]]) -> Option<f64> {
         area += normal.norm();
         volume += a.dot(b.cross(c)) / 6.0;
     }
-    (sum.norm() < 1e-3 * area && volume.abs() > 1e-6).then_some(volume.abs())
+    (sum.norm() < 1e-3 * area && volume.abs() > 1e-6).then_some(volume)
 }
 
 /// The box around the points whose sides lie as the largest faces of the mesh do: its pose and half its sides.

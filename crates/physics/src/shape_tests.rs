@@ -32,7 +32,7 @@ fn sphere() -> TriangleMesh {
 
 #[test]
 fn a_sphere_is_a_ball_of_its_volume() {
-    let shape = Shape::new(&sphere(), "plum").unwrap();
+    let shape = Shape::new(&sphere(), "plum", &Budget::default()).unwrap();
     assert_eq!(shape.collider(), Collider::Ball);
     assert!((0.95..1.0).contains(&shape.inradius()), "{}", shape.inradius());
     assert!((3.9..4.19).contains(&shape.volume()), "{}", shape.volume());
@@ -41,7 +41,7 @@ fn a_sphere_is_a_ball_of_its_volume() {
 
 #[test]
 fn a_cone_is_its_hull_and_has_few_corners() {
-    let shape = Shape::new(&turned(&[(1.0, 0.0), (0.2, 5.0)], 200), "carrot").unwrap();
+    let shape = Shape::new(&turned(&[(1.0, 0.0), (0.2, 5.0)], 200), "carrot", &Budget::default()).unwrap();
     assert_eq!(shape.collider(), Collider::Hull);
     assert!(shape.centre()[1] < 2.0, "{:?}", shape.centre());
 }
@@ -49,19 +49,29 @@ fn a_cone_is_its_hull_and_has_few_corners() {
 #[test]
 fn a_dumbbell_is_cut_into_hulls() {
     let dumbbell = turned(&[(1.0, 0.0), (1.0, 1.0), (0.2, 1.1), (0.2, 2.9), (1.0, 3.0), (1.0, 4.0)], 16);
-    let shape = Shape::new(&dumbbell, "dumbbell").unwrap();
+    let shape = Shape::new(&dumbbell, "dumbbell", &Budget::default()).unwrap();
     assert!(matches!(shape.collider(), Collider::Hulls(2..)), "{:?}", shape.collider());
     assert!(shape.scaled(0.5).is_some());
 }
 
 #[test]
 fn where_a_mesh_lies_and_how_large_it_is_does_not_matter() {
-    let near = Shape::new(&sphere(), "plum").unwrap();
+    let near = Shape::new(&sphere(), "plum", &Budget::default()).unwrap();
     let mut mesh = sphere();
     for p in &mut mesh.positions {
         *p = *p * 1e-3 + Vector([500.0, -200.0, 7.0]);
     }
-    let far = Shape::new(&mesh, "plum").unwrap();
+    let far = Shape::new(&mesh, "plum", &Budget::default()).unwrap();
     assert_eq!(far.collider(), near.collider());
     assert!((far.size() / near.size() - 1e-3).abs() < 1e-6);
+}
+
+#[test]
+fn a_mesh_with_hollows_is_taken_for_its_hull_where_no_work_is_left_and_that_is_told() {
+    let dumbbell = turned(&[(1.0, 0.0), (1.0, 1.0), (0.2, 1.1), (0.2, 2.9), (1.0, 3.0), (1.0, 4.0)], 16);
+    let budget = Budget::new(arabesque_core::Limits { work: 10, ..Default::default() });
+    let shape = Shape::new(&dumbbell, "dumbbell", &budget).unwrap();
+    assert_eq!(shape.collider(), Collider::Hull);
+    assert!(shape.warning().unwrap().message.contains("dumbbell: physics takes the mesh for its convex hull"));
+    assert!(Shape::new(&sphere(), "plum", &budget).unwrap().warning().is_none());
 }

@@ -11,13 +11,35 @@ pub struct Wall {
     pub normal: Vector<3>,
 }
 
+/// On which side of a surface the elements are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Each on whichever side it is: sheets, open bowls.
+    Either,
+    /// In a closed mesh: a container. What is outside is pushed in.
+    Inside,
+    /// Where the normals point: the ground, or an obstacle. What is behind is pushed out.
+    Outside,
+}
+
+/// A surface that elements do not pass.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Its triangles.
+    pub mesh: TriangleMesh,
+    /// Where the elements are.
+    pub side: Side,
+}
+
 /// Floors, walls and containers.
 #[derive(Clone, Debug, Default)]
 pub struct Surroundings {
     /// Planes, each with everything on one side.
     pub walls: Vec<Wall>,
-    /// Surfaces that elements do not pass, seen from whichever side they are on: obstacles, and bowls that they lie in.
-    pub surfaces: Vec<TriangleMesh>,
+    /// Surfaces that elements do not pass.
+    pub surfaces: Vec<Surface>,
+    /// A box that the middles of elements stay in, where they may reach over its sides.
+    pub middles: Option<Bounds<3>>,
 }
 
 impl Surroundings {
@@ -47,7 +69,7 @@ impl Surroundings {
                 return Err(Error::input(place, "its plane has no place or direction", "give it finite numbers"));
             }
         }
-        for (k, mesh) in self.surfaces.iter().enumerate() {
+        for (k, Surface { mesh, .. }) in self.surfaces.iter().enumerate() {
             let name = format!("surface {}", k + 1);
             mesh.check(&name)?;
             if mesh.triangles.is_empty() || mesh.positions.iter().any(|p| !p.is_finite()) {
@@ -57,6 +79,9 @@ impl Surroundings {
                     "mend it",
                 ));
             }
+        }
+        if self.middles.is_some_and(|b| !(b.min.is_finite() && b.max.is_finite())) {
+            return Err(Error::input("the box for middles", "its corners are not numbers", "give it finite numbers"));
         }
         Ok(())
     }

@@ -169,7 +169,8 @@ fn gravity(job: &Space) -> Result<Option<Vector<3>>> {
 }
 
 /// Walls, floors and containers at the place of the job.
-fn surroundings(job: &mut Space, border: Border, bounds: &Bounds<3>, context: &RunContext<'_>) -> Result<Surroundings> {
+fn surroundings(job: &mut Space, request: &EngineRequest<3>, context: &RunContext<'_>) -> Result<Surroundings> {
+    let (border, bounds) = (request.border, request.domain.bounds());
     let mut around = Surroundings::default();
     if let Some(inside) = &mut job.inside {
         if border != Border::Inside {

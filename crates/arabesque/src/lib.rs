@@ -85,7 +85,7 @@ pub use arabesque_core::{
     Unobserved, Warning, Watch,
 };
 pub use arabesque_ribbons::Closing;
-pub use artwork::{Artwork, Encoded, Geometry, PlacedPoint, ReliefSummary, RibbonSummary, Summary};
+pub use artwork::{Artwork, Encoded, Geometry, PhysicsSummary, PlacedPoint, ReliefSummary, RibbonSummary, Summary};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};
 pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, Measurements, Verdict, measure};
@@ -93,8 +93,8 @@ pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
     Carrier, Cuboid, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill, Format, Input,
-    Job, Method, OutputOptions, Parameters, Reading, Recipe, Redo, Region, Relief, Ribbon, Size, Space, Structures,
-    Surface, Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
+    Job, Method, OutputOptions, Parameters, Physics, Reading, Recipe, Redo, Region, Relief, Ribbon, Size, Space,
+    Structures, Surface, Tile, WidthSource, carried_recipe, is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;
 pub use space::is_scene_of_meshes;

@@ -50,8 +50,8 @@ pub use region::{
     segment::{self, Segment},
 };
 pub use run::{
-    Border, Covered, Drawn, EnergyPoint, Forecast, Instance, Outcome, Patch, Placement, Progress, Request, Snapshot,
-    StopReason, Unobserved, Warning, Watch,
+    Between, Border, Covered, Drawn, EnergyPoint, Forecast, Instance, Outcome, Patch, Placement, Progress, Request,
+    Snapshot, StopReason, Unobserved, Warning, Watch,
 };
 pub use space::{Bounds, Matrix, Similarity, Spread, Vector, Warp, cell_index, cell_place, warp};
 pub use text::{Decimals, rounded};

@@ -23,7 +23,7 @@ use crate::{
     frozen,
     layout::{Layout, grains},
     optimise::{
-        attributes,
+        attributes, between,
         existence::{self, Changes},
         matching::Prices,
         positions,
@@ -433,6 +433,7 @@ where
         let joined;
         (*votes, joined) = edges::assign(state)?;
         tangents::assign(state)?;
+        between::step(state)?;
         let moved = state.announce_moves(NOTICEABLE * state.library.spacing * context.extent.smallest_spacing_scale);
         state.reindex();
         Ok(moved || exchanged + joined > 0 || changes != Changes::default())

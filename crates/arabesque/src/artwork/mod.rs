@@ -6,7 +6,7 @@ mod summary;
 
 pub use made::{Encoded, Geometry};
 pub use points::PlacedPoint;
-pub use summary::{ReliefSummary, RibbonSummary, Summary};
+pub use summary::{PhysicsSummary, ReliefSummary, RibbonSummary, Summary};
 
 pub(crate) use made::{Made, Sheet};
 pub(crate) use points::points;

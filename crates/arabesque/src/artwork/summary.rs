@@ -34,6 +34,9 @@ pub struct Summary {
     /// Of reliefs alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reliefs: Option<ReliefSummary>,
+    /// Of physics alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub physics: Option<PhysicsSummary>,
     /// The last mean energy, in squared mean spacings, where the method has one.
     pub energy: Option<f64>,
 }
@@ -47,6 +50,25 @@ pub struct RibbonSummary {
     pub pieces: usize,
     /// Their cost together, in 8-bit colour steps.
     pub cost: f64,
+}
+
+/// What elements did when they were left to come to rest, as their colliders touch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PhysicsSummary {
+    /// Steps until all was at rest.
+    pub steps: usize,
+    /// Pairs of elements that were in one another by more than a hundredth of an element's size, before.
+    pub overlaps_before: usize,
+    /// The same, after.
+    pub overlaps: usize,
+    /// How deep elements were in one another at most, before, in the units of the exemplar.
+    pub deepest_before: f64,
+    /// The same, after.
+    pub deepest: f64,
+    /// Elements that lay on nothing, over others or not, before.
+    pub floating_before: usize,
+    /// The same, after.
+    pub floating: usize,
 }
 
 /// How the patches of a relief went together.
@@ -90,6 +112,7 @@ impl Summary {
             tile: None,
             ribbons: None,
             reliefs: None,
+            physics: None,
             energy: outcome.energy.last().map(|e| e.energy),
         }
     }

@@ -14,7 +14,7 @@ use arabesque_io::{
 };
 
 use crate::{
-    artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
+    artwork::{Encoded, Geometry, Made, PhysicsSummary, PlacedPoint, Sheet, Summary, points},
     plane::{snapshot, unfinished},
     recipe::Format,
     solid::write::{Said, encode_mesh, picture},
@@ -34,6 +34,8 @@ pub(crate) struct VolumeMade {
     /// The box.
     pub(crate) frame: Bounds<3>,
     pub(crate) outcome: Outcome<3>,
+    /// What physics did at the end, where it did.
+    pub(crate) physics: Option<PhysicsSummary>,
 }
 
 impl VolumeMade {
@@ -43,7 +45,13 @@ impl VolumeMade {
         frame: Bounds<3>,
         snapshot: Snapshot<3>,
     ) -> Self {
-        Self { exemplar: Arc::clone(exemplar), bodies: bodies.clone(), frame, outcome: unfinished(snapshot) }
+        Self {
+            exemplar: Arc::clone(exemplar),
+            bodies: bodies.clone(),
+            frame,
+            outcome: unfinished(snapshot),
+            physics: None,
+        }
     }
 
     /// Meshes in their places.
@@ -102,7 +110,7 @@ impl Made for VolumeMade {
     }
 
     fn summary(&self) -> Summary {
-        Summary::of(&*self.exemplar, &self.outcome)
+        Summary { physics: self.physics, ..Summary::of(&*self.exemplar, &self.outcome) }
     }
 
     fn geometry(&self) -> Geometry {

@@ -2,12 +2,22 @@
 
 mod layer;
 mod made;
+#[cfg(feature = "physics")]
+mod physics;
+#[cfg(not(feature = "physics"))]
+#[path = "no_physics.rs"]
+mod physics;
+#[cfg(all(test, feature = "physics"))]
+mod physics_tests;
 mod place;
 mod scene;
 
 use std::sync::Arc;
 
-use arabesque_core::{Border, Budget, Domain, Error, Exemplar, Request as EngineRequest, Result, Watch};
+use arabesque_core::{
+    Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, StopReason, Warning,
+    Watch,
+};
 use arabesque_io::{
     geometry::{Kind, kind_of},
     mesh::gltf::read_scene,
@@ -15,16 +25,17 @@ use arabesque_io::{
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
-    artwork::Artwork,
+    artwork::{Artwork, PhysicsSummary},
     exemplar::{LoadedExemplar, understood},
     method::{Preparation, Ready, RunContext, Show},
-    plane::in_exemplar,
+    plane::{in_exemplar, snapshot},
     recipe::{Input, Job, Recipe, Space},
     resources::{Files, Resources},
     spacing::spacing,
 };
 use layer::{Layer, layer};
 use made::VolumeMade;
+use physics::Physical;
 use place::place;
 use scene::Bodies;
 
@@ -76,7 +87,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
 }
 
 impl Volume {
-    fn resolve(&self, context: &mut RunContext<'_>) -> Result<EngineRequest<3>> {
+    fn resolve(&self, context: &mut RunContext<'_>) -> Result<(EngineRequest<3>, Option<Arc<Physical>>)> {
         let Job::Space(mut space) = context.job.clone() else {
             return Err(Error::parameter("request", context.job.name(), "a request for a part of space"));
         };
@@ -96,10 +107,12 @@ impl Volume {
         request.border = space.border.unwrap_or(usual);
         request.fields = place.fields;
         request.ground = place.ground;
+        let physical = Physical::new(&mut space, self.bodies.as_deref(), &request, context)?;
+        request.between = physical.as_ref().and_then(Physical::between);
         context.job = Job::Space(space);
         request.seed = context.seed;
         request.budget = context.budget().clone();
-        Ok(request)
+        Ok((request, physical))
     }
 }
 
@@ -109,7 +122,7 @@ impl Ready for Volume {
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
-        let request = self.resolve(&mut context)?;
+        let (request, physical) = self.resolve(&mut context)?;
         let frame = request.domain.bounds();
         let origin = context.origin();
         let kind = (&self.exemplar, &self.bodies);
@@ -123,11 +136,13 @@ impl Ready for Volume {
             Some(outcome) => outcome,
             None => self.engine.run(&request, &mut show)?,
         };
+        let physics = match physical {
+            Some(physical) => settle(&physical, &mut outcome, &request.budget, &mut show)?,
+            None => None,
+        };
         outcome.warnings.splice(0..0, context.warnings);
-        Ok(Artwork::new(
-            origin,
-            VolumeMade { exemplar: Arc::clone(&self.exemplar), bodies: self.bodies.clone(), frame, outcome },
-        ))
+        let (exemplar, bodies) = (Arc::clone(&self.exemplar), self.bodies.clone());
+        Ok(Artwork::new(origin, VolumeMade { exemplar, bodies, frame, outcome, physics }))
     }
 }
 
@@ -144,6 +159,27 @@ pub fn is_scene_of_meshes(exemplar: &Input, resources: &Resources) -> Result<boo
     }
     let scene = read_scene(exemplar.name(), &bytes, files.budget())?;
     Ok(scene.points.is_empty() && !scene.nodes.is_empty())
+}
+
+/// Lets the elements of a run that ended by itself come to rest.
+fn settle(
+    physical: &Physical,
+    outcome: &mut Outcome<3>,
+    budget: &Budget,
+    watch: &mut dyn Watch<arabesque_core::Snapshot<3>>,
+) -> Result<Option<PhysicsSummary>> {
+    if outcome.stopped != StopReason::Finished {
+        let advice = "let the run end by itself";
+        outcome.warnings.push(Warning::new("elements were not left to come to rest: the run was cut short", advice));
+        return Ok(None);
+    }
+    let count = outcome.placements.len();
+    let progress = Progress { stage: "settling".into(), done: 0, total: 1, fraction: 1.0, energy: None, count };
+    if watch.step(&progress, &|| snapshot(outcome)).is_break() {
+        outcome.stopped = StopReason::Stopped;
+        return Ok(None);
+    }
+    physical.settle(outcome, budget).map(Some)
 }
 
 /// Refuses a box that is too large or too small for the pattern.

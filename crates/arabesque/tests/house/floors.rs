@@ -12,7 +12,7 @@ use super::{
 };
 
 /// Folders of the crates that compute and nothing else, and what their sources must not touch.
-const PURE: &[&str] = &["core", "surface", "patterns", "structures", "ribbons", "reliefs", "measure"];
+const PURE: &[&str] = &["core", "surface", "patterns", "structures", "ribbons", "reliefs", "measure", "physics"];
 const OUTSIDE: &[&str] = &["fs", "env", "net", "process"];
 
 /// Most source files in one folder.

@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
-    Border, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Recipe, Redo,
-    Region, Resources, Space, Structures,
+    Border, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Physics,
+    Recipe, Redo, Region, Resources, Space, Structures,
     core::options::{Choice, help_list, preset_list},
     is_scene_of_meshes,
     patterns::Params,
@@ -73,6 +73,17 @@ struct Place {
     /// Scenes of meshes: what lies on the floor in the exemplar (its lowest place) lies on the floor of the result
     #[arg(long)]
     floor: bool,
+    /// Scenes of meshes: elements push one another apart, fall and come to rest: so many steps of physics after each iteration, or settle
+    /// for the end alone [a value needs =; without one: 5]
+    #[arg(long, value_name = "N|settle", num_args = 0..=1, require_equals = true, default_missing_value = "5",
+        value_parser = str::parse::<Physics>)]
+    physics: Option<Physics>,
+    /// With --physics: the direction in which elements fall, its length the strength [default: 0,-1,0; on a mesh towards it]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple, requires = "physics")]
+    gravity: Option<[f64; 3]>,
+    /// With --physics: friction between elements and with what is around them, from 0 to 2 [default: 0.5]
+    #[arg(long, value_name = "F", requires = "physics")]
+    friction: Option<f64>,
     /// Keep these shapes free; structures also what is dark in a PNG picture; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
@@ -169,6 +180,13 @@ struct Writing {
     /// With --mesh: set a parameter of the surface by its name (listed under surface --help); may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair, requires = "mesh")]
     surface: Vec<(String, String)>,
+}
+
+/// Reads three numbers.
+fn triple(text: &str) -> Result<[f64; 3], Error> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    let three = numbers.and_then(|numbers| <[f64; 3]>::try_from(numbers).ok());
+    three.ok_or_else(|| Error::parameter("gravity", text, "three numbers, such as 0,-1,0"))
 }
 
 /// Reads the names of an enumeration of the library, and lists them in the help.
@@ -361,6 +379,9 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
             keep: place.keep.map(Input::file),
             direction: direction.as_deref().map(Direction::parse),
             floor: place.floor,
+            physics: place.physics,
+            gravity: place.gravity,
+            friction: place.friction,
             method,
             border,
             orient,

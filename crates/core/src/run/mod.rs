@@ -7,5 +7,5 @@ mod watch;
 
 pub use outcome::{Covered, Drawn, EnergyPoint, Instance, Outcome, Placement, StopReason, Warning};
 pub use patch::Patch;
-pub use request::{Border, Request};
+pub use request::{Between, Border, Request};
 pub use watch::{Forecast, Progress, Snapshot, Unobserved, Watch};

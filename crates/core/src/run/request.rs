@@ -1,10 +1,11 @@
 //! What to make: domain, fields, frozen parts and seed of one run.
 
-use std::sync::Arc;
+use std::{fmt::Debug, sync::Arc};
 
 use crate::{
     budget::Budget,
     choices,
+    error::Result,
     field::Fields,
     region::{Domain, Ground, Outline},
     run::{Drawn, Placement},
@@ -36,6 +37,15 @@ impl Default for Border {
     }
 }
 
+/// What moves elements between the steps of a run, such as physics [Ma 2011 §5].
+pub trait Between<const D: usize>: Debug + Send + Sync {
+    /// Moves and turns elements a little; frozen ones stay, and none comes or goes. The same placements must always end in the same ones.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    fn step(&self, placements: &mut [Placement<D>], budget: &Budget) -> Result<()>;
+}
+
 /// What to make from a prepared exemplar.
 #[derive(Clone, Debug)]
 pub struct Request<const D: usize> {
@@ -55,6 +65,8 @@ pub struct Request<const D: usize> {
     pub obstacles: Vec<Outline<D>>,
     /// Box in which everything outside the domain stays as it is, so that new strokes end where the domain does. Default none.
     pub known: Option<Bounds<D>>,
+    /// What moves elements after each step of a run. Default none.
+    pub between: Option<Arc<dyn Between<D>>>,
     /// Seed of all random choices. Default 0.
     pub seed: u64,
     /// What the run may use up.
@@ -73,6 +85,7 @@ impl<const D: usize> Request<D> {
             frozen_curves: Vec::new(),
             obstacles: Vec::new(),
             known: None,
+            between: None,
             seed: 0,
             budget: Budget::default(),
         }

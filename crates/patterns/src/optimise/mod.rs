@@ -2,6 +2,7 @@
 
 pub(crate) mod assignment;
 pub(crate) mod attributes;
+pub(crate) mod between;
 pub(crate) mod existence;
 pub(crate) mod matching;
 pub(crate) mod positions;

@@ -343,6 +343,12 @@ impl<'a, const D: usize> State<'a, D> {
         }
     }
 
+    /// Puts item `i` elsewhere, turned otherwise from the local frame there.
+    pub(crate) fn place_item(&mut self, i: u32, position: Vector<D>, turn: Matrix<D>) {
+        self.items[i].turn = turn;
+        self.move_item(i, position);
+    }
+
     /// Puts item `i` elsewhere, turned as it is from the local frame.
     pub(crate) fn move_item(&mut self, i: u32, position: Vector<D>) {
         let position = self.extent.grounded(self.items[i].item.source, position);

@@ -3,6 +3,7 @@
 mod fill;
 mod inputs;
 mod parameters;
+mod physics;
 mod redo;
 mod relief;
 mod ribbon;
@@ -12,6 +13,7 @@ mod surface;
 
 pub use fill::{ExemplarTile, Fill, Method, Reading};
 pub use parameters::Parameters;
+pub use physics::Physics;
 pub use redo::Redo;
 pub use relief::Relief;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};

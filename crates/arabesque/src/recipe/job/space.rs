@@ -10,6 +10,7 @@ use crate::recipe::{
     job::{
         fill::Method,
         parameters::{self, Parameters},
+        physics::Physics,
         structures::Direction,
     },
     size::Cuboid,
@@ -55,6 +56,17 @@ pub struct Space {
     /// at the same height, and nothing else does. Default: false; on a mesh always.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub floor: bool,
+    /// Scenes of meshes: elements push one another apart, fall and come to rest. A number of steps of physics after each iteration of the
+    /// engine, or `settle` for the end alone. Default: no physics.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub physics: Option<Physics>,
+    /// The direction in which elements fall; its length is the strength, 1 as on earth, and 0 for none. Default: 0, -1, 0; on a mesh
+    /// towards it everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<[f64; 3]>,
+    /// Friction between elements, and between them and what is around them, from 0 to 2. Default: 0.5.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
     /// Parameters of the engine.
     #[serde(default, skip_serializing_if = "Parameters::is_empty")]
     #[schemars(schema_with = "parameters::of_patterns")]
@@ -83,6 +95,18 @@ impl Space {
             params: self.params.clone(),
             floor: self.floor || self.on.is_some(),
             ..Self::default()
+        }
+    }
+
+    /// The physics that is asked for.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for options of physics without it.
+    pub(crate) fn asked_physics(&self) -> Result<Option<Physics>> {
+        let options = [("gravity", self.gravity.is_some()), ("friction", self.friction.is_some())];
+        match options.into_iter().find(|(_, is_given)| *is_given && self.physics.is_none()) {
+            None => Ok(self.physics),
+            Some((name, _)) => Err(Error::parameter(name, "given without physics", "both, or neither")),
         }
     }
 

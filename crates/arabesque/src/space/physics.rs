@@ -1,0 +1,204 @@
+//! Physics for elements in space: between the iterations of the engine, and at the end.
+
+use std::sync::{Arc, Mutex};
+
+use arabesque_core::{
+    Between, Border, Budget, Error, Outcome, Placement, Request as EngineRequest, Result, Similarity, StopReason,
+    Vector, Warning,
+};
+use arabesque_patterns::Deform;
+use arabesque_physics::{Body, PhysicsParams, Run, Shape, Side, Surface, Surroundings, World};
+use arabesque_surface::MeshIndex;
+
+use crate::{
+    artwork::PhysicsSummary,
+    method::RunContext,
+    recipe::{Physics, Space},
+    solid::read::{indexed_mesh, mesh},
+    space::scene::Bodies,
+};
+
+/// Straight down, as strong as on earth.
+const DOWN: Vector<3> = Vector([0.0, -1.0, 0.0]);
+/// The strongest gravity, where that of the earth is 1.
+const STRONGEST: f64 = 10.0;
+
+/// Elements as bodies, and what is around them.
+#[derive(Debug)]
+pub(super) struct Physical {
+    /// What stands for each mesh of the scene.
+    shapes: Vec<Arc<Shape>>,
+    /// The mesh of each element of the exemplar, and how it lies there.
+    sources: Vec<(usize, Similarity<3>)>,
+    surroundings: Surroundings,
+    gravity: Vector<3>,
+    /// The mesh towards which elements fall, where they do.
+    ground: Option<MeshIndex>,
+    params: PhysicsParams,
+    /// Steps after each iteration.
+    substeps: usize,
+    /// What went wrong in an iteration first.
+    trouble: Mutex<Option<Warning>>,
+}
+
+impl Physical {
+    /// What `job` asks for, whose place and border rule are known; `None` where it asks for no physics.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for what physics cannot do, [`Error::Parameter`] for numbers out of range, [`Error::Input`] for meshes without
+    /// a volume.
+    pub(super) fn new(
+        job: &mut Space,
+        bodies: Option<&Bodies>,
+        request: &EngineRequest<3>,
+        context: &mut RunContext<'_>,
+    ) -> Result<Option<Arc<Self>>> {
+        let Some(physics) = job.asked_physics()? else { return Ok(None) };
+        let Some(bodies) = bodies else {
+            return Err(unsupported("physics for points and curves", "give a scene of meshes, or leave it out"));
+        };
+        if job.params.engine_params()?.deform != Deform::Rigid {
+            return Err(unsupported("physics for elements that bend", "leave out deform or physics"));
+        }
+        let mut params = PhysicsParams::default();
+        if let Some(friction) = job.friction {
+            params.set("friction", &friction.to_string())?;
+        }
+        let scene = &bodies.scene;
+        let budget = context.budget().stage("preparing physics");
+        let shape = |(k, shown): (usize, &arabesque_io::mesh::gltf::SceneMesh)| {
+            let called = format!("{}: mesh {k} {}", context.exemplar_name(), shown.name);
+            Ok(Arc::new(Shape::new(&shown.mesh, called.trim_end(), &budget)?))
+        };
+        let shapes: Vec<_> = scene.meshes.iter().enumerate().map(shape).collect::<Result<_>>()?;
+        context.warnings.extend(shapes.iter().filter_map(|shape| shape.warning().cloned()));
+        let gravity = gravity(job)?;
+        let ground = match &mut job.on {
+            Some(on) if gravity.is_none() => Some(indexed_mesh(on, context.files)?.0),
+            _ => None,
+        };
+        let sources = scene.nodes.iter().map(|node| (node.mesh, node.transform)).collect();
+        let substeps = if let Physics::Substeps(count) = physics { count } else { 0 };
+        Ok(Some(Arc::new(Self {
+            shapes,
+            sources,
+            surroundings: surroundings(job, request, context)?,
+            gravity: if ground.is_some() { Vector::ZERO } else { gravity.unwrap_or(DOWN) },
+            ground,
+            params,
+            substeps,
+            trouble: Mutex::new(None),
+        })))
+    }
+
+    /// What the engine calls after each iteration, if anything.
+    pub(super) fn between(self: &Arc<Self>) -> Option<Arc<dyn Between<3>>> {
+        (self.substeps > 0).then(|| Arc::clone(self) as Arc<dyn Between<3>>)
+    }
+
+    /// Lets everything come to rest.
+    ///
+    /// # Errors
+    /// Where the scene is too wide for physics.
+    pub(super) fn settle(&self, outcome: &mut Outcome<3>, budget: &Budget) -> Result<PhysicsSummary> {
+        let mut world = self.world(&outcome.placements)?;
+        let run = world.settle(&budget.stage("settling"))?;
+        self.take_over(&world, &mut outcome.placements);
+        if let Ok(mut trouble) = self.trouble.lock() {
+            outcome.warnings.extend(trouble.take());
+        }
+        outcome.warnings.extend(run.warnings.iter().cloned());
+        if run.stopped != StopReason::Finished {
+            outcome.stopped = run.stopped;
+        }
+        Ok(summary(&run))
+    }
+
+    fn world(&self, placements: &[Placement<3>]) -> Result<World> {
+        let mut world = World::new(self.surroundings.clone(), self.gravity, &self.params)?;
+        let body = |placement: &Placement<3>| {
+            let (mesh, own) = &self.sources[placement.source];
+            let shape = Arc::clone(&self.shapes[*mesh]);
+            let pose = placement.transform.after(own);
+            let towards = |ground: &MeshIndex| -ground.closest(pose.apply(shape.centre())).normal;
+            let gravity = self.ground.as_ref().map(towards);
+            Body { pose, shape, frozen: placement.frozen.is_some(), gravity }
+        };
+        world.place(placements.iter().map(body).collect())?;
+        Ok(world)
+    }
+
+    /// Places that physics did not change stay as they are, to the last bit.
+    fn take_over(&self, world: &World, placements: &mut [Placement<3>]) {
+        for (placement, body) in placements.iter_mut().zip(world.bodies()) {
+            let own = &self.sources[placement.source].1;
+            if !body.frozen && body.pose != placement.transform.after(own) {
+                placement.transform = body.pose.after(&own.inverse());
+            }
+        }
+    }
+}
+
+impl Between<3> for Physical {
+    fn step(&self, placements: &mut [Placement<3>], budget: &Budget) -> Result<()> {
+        let mut world = self.world(placements)?;
+        let run = world.substeps(self.substeps, budget)?;
+        if run.stopped != StopReason::Finished {
+            // The run tells that it ended; the account tells why.
+            budget.spend(0)?;
+        }
+        self.take_over(&world, placements);
+        if let (Some(warning), Ok(mut trouble)) = (run.warnings.into_iter().next(), self.trouble.lock()) {
+            trouble.get_or_insert(warning);
+        }
+        Ok(())
+    }
+}
+
+fn unsupported(what: &str, advice: &str) -> Error {
+    Error::Unsupported { what: what.into(), advice: advice.into() }
+}
+
+fn gravity(job: &Space) -> Result<Option<Vector<3>>> {
+    let Some(given) = job.gravity.map(Vector) else { return Ok(None) };
+    if given.is_finite() && given.norm() <= STRONGEST {
+        return Ok(Some(given));
+    }
+    let expected = format!("three numbers, together no longer than {STRONGEST}");
+    Err(Error::parameter("gravity", given.0.map(|x| x.to_string()).join(","), expected))
+}
+
+/// Walls, floors and containers at the place of the job.
+fn surroundings(job: &mut Space, request: &EngineRequest<3>, context: &RunContext<'_>) -> Result<Surroundings> {
+    let (border, bounds) = (request.border, request.domain.bounds());
+    let mut around = Surroundings::default();
+    if let Some(inside) = &mut job.inside {
+        if border != Border::Inside {
+            return Err(unsupported(
+                &format!("physics inside a mesh with border {}", border.name()),
+                "use border inside, for which the mesh is a container, or leave physics out",
+            ));
+        }
+        around.surfaces.push(Surface { mesh: mesh(inside, context.files)?.0, side: Side::Inside });
+    } else if let Some(on) = &mut job.on {
+        around.surfaces.push(Surface { mesh: mesh(on, context.files)?.0, side: Side::Outside });
+        return Ok(around);
+    } else if border == Border::Inside {
+        around = around.inside_box(&bounds);
+    } else {
+        around.middles = Some(bounds);
+    }
+    Ok(if request.ground.is_some() { around.floor(bounds.min[1]) } else { around })
+}
+
+fn summary(run: &Run) -> PhysicsSummary {
+    PhysicsSummary {
+        steps: run.steps,
+        overlaps_before: run.before.overlaps,
+        overlaps: run.after.overlaps,
+        deepest_before: run.before.deepest,
+        deepest: run.after.deepest,
+        floating_before: run.before.floating,
+        floating: run.after.floating,
+    }
+}

@@ -1,0 +1,324 @@
+//! What the solver sees of a mesh.
+
+use arabesque_core::{Budget, Error, Result, TriangleMesh, Vector, Warning};
+use rapier3d::{
+    math::{Pose, Vector as Vec3},
+    parry::{
+        mass_properties::MassProperties,
+        shape::{Compound, ConvexPolyhedron, SharedShape},
+        transformation::vhacd::{VHACD, VHACDParameters},
+    },
+};
+
+use crate::units::{vec3, vector};
+
+/// Share by which ball, box and hull may differ in volume from the mesh that they stand for.
+const TOLERANCE: f64 = 0.05;
+/// Share of its hull that a convex mesh fills.
+const CONVEX: f64 = 1.0 - 2.0 * TOLERANCE;
+/// Most corners of a hull; more are as good as invisible and slow.
+const MOST_CORNERS: usize = 64;
+/// Most hulls for one mesh.
+const MOST_PARTS: usize = 32;
+/// Most triangles of a mesh that is cut into hulls.
+const MOST_TRIANGLES: usize = 50_000;
+/// Work of cutting a mesh into hulls, and of each of its triangles and corners, in units of the budget.
+const CUTTING: u64 = 400_000_000;
+const PER_TRIANGLE: u64 = 20_000;
+const PER_CORNER: u64 = 2_000;
+
+/// What stands for a mesh where it touches others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Collider {
+    /// The mesh is round, near enough.
+    Ball,
+    /// The mesh is a box, near enough.
+    Cuboid,
+    /// The mesh is convex, near enough.
+    Hull,
+    /// The mesh is cut into this many convex hulls.
+    Hulls(usize),
+}
+
+/// A mesh, prepared once for all elements that look like it.
+#[derive(Clone)]
+pub struct Shape {
+    /// In coordinates in which the origin is `centre` and the length is `radius`.
+    solid: Solid,
+    kind: Collider,
+    centre: Vector<3>,
+    radius: f64,
+    volume: f64,
+    inradius: f64,
+    warning: Option<Warning>,
+}
+
+#[derive(Clone)]
+enum Solid {
+    Ball(f32),
+    Cuboid(Pose, Vec3),
+    Hulls(Vec<ConvexPolyhedron>),
+}
+
+impl std::fmt::Debug for Shape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Shape({:?}, centre {:?}, radius {})", self.kind, self.centre.0, self.radius)
+    }
+}
+
+impl Shape {
+    /// What stands for `mesh`, which errors call `name`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the mesh is broken, has coordinates that are not numbers, or has no volume; when the budget is used up, or
+    /// somebody asks to stop.
+    pub fn new(mesh: &TriangleMesh, name: &str, budget: &Budget) -> Result<Self> {
+        mesh.check(name)?;
+        budget.spend(PER_CORNER * mesh.positions.len() as u64)?;
+        let fail = |problem: &str| Err(Error::input(name, problem, "give it a thickness in the program it came from"));
+        if mesh.triangles.is_empty() || mesh.positions.iter().any(|p| !p.is_finite()) {
+            return fail("the mesh has no triangles or coordinates that are not numbers, expected a solid");
+        }
+        let middle = mesh.bounds().centre();
+        let radius = mesh.positions.iter().map(|&p| (p - middle).norm()).fold(0.0, f64::max);
+        if !(radius.is_finite() && radius > 0.0) {
+            return fail("all corners of the mesh lie at one place, expected a solid");
+        }
+        let points: Vec<_> = mesh.positions.iter().map(|&p| vec3((p - middle) * (1.0 / radius))).collect();
+        let Some(hull) = hull(&points) else { return fail("the mesh is flat, expected a solid with a volume") };
+        let properties = MassProperties::from_convex_polyhedron(1.0, hull.points(), &triangles(&hull));
+        let (hull_volume, centre) = (f64::from(properties.mass()), properties.local_com);
+        if hull_volume < 1e-6 || !centre.is_finite() {
+            return fail("the mesh is flat, expected a solid with a volume");
+        }
+        let points: Vec<_> = points.iter().map(|&p| p - centre).collect();
+        let own = mesh_volume(&points, &mesh.triangles).map_or(hull_volume, f64::abs);
+        let cutting = cutting(mesh, own > CONVEX * hull_volume, name, budget)?;
+        let (solid, kind) = solid(&points, mesh, (own, hull_volume), matches!(cutting, Cutting::Allowed), name)?;
+        let warning = if let Cutting::Refused(warning) = cutting { Some(warning) } else { None };
+        let scale = radius.powi(3);
+        let inradius = solid.inradius() * radius;
+        Ok(Self {
+            solid,
+            kind,
+            centre: middle + vector(centre) * radius,
+            radius,
+            volume: own * scale,
+            inradius,
+            warning,
+        })
+    }
+
+    /// What stands for the mesh.
+    pub fn collider(&self) -> Collider {
+        self.kind
+    }
+
+    /// What the user should know: that a mesh with hollows is taken for its hull.
+    pub fn warning(&self) -> Option<&Warning> {
+        self.warning.as_ref()
+    }
+
+    /// The middle of its volume, in coordinates of the mesh.
+    pub fn centre(&self) -> Vector<3> {
+        self.centre
+    }
+
+    /// Volume, in cubic units of the mesh.
+    pub fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    /// Diameter of the ball of its volume: what the lengths of [`crate::PhysicsParams`] are relative to.
+    pub fn size(&self) -> f64 {
+        (6.0 * self.volume / std::f64::consts::PI).cbrt()
+    }
+
+    /// Radius of about the largest ball within it.
+    pub fn inradius(&self) -> f64 {
+        self.inradius
+    }
+
+    /// The collider, `scale` times as large as the mesh.
+    pub(crate) fn scaled(&self, scale: f64) -> Option<SharedShape> {
+        let s = (scale * self.radius) as f32;
+        let part = |hull: &ConvexPolyhedron| hull.clone().scaled(Vec3::splat(s));
+        Some(match &self.solid {
+            Solid::Ball(r) => SharedShape::ball(r * s),
+            Solid::Cuboid(pose, half) if *pose == Pose::IDENTITY => {
+                SharedShape::cuboid(half.x * s, half.y * s, half.z * s)
+            }
+            Solid::Cuboid(pose, half) => {
+                let pose = Pose::from_parts(pose.translation * s, pose.rotation);
+                SharedShape::compound(vec![(pose, SharedShape::cuboid(half.x * s, half.y * s, half.z * s))])
+            }
+            Solid::Hulls(hulls) if hulls.len() == 1 => SharedShape::new(part(&hulls[0])?),
+            Solid::Hulls(hulls) => {
+                let parts: Option<Vec<_>> =
+                    hulls.iter().map(|h| Some((Pose::IDENTITY, SharedShape::new(part(h)?)))).collect();
+                SharedShape::new(Compound::new(parts?))
+            }
+        })
+    }
+}
+
+impl Solid {
+    /// Distance from the middle of a part to its faces, of the part where it is largest.
+    fn inradius(&self) -> f64 {
+        match self {
+            Self::Ball(r) => f64::from(*r),
+            Self::Cuboid(_, half) => f64::from(half.min_element()),
+            Self::Hulls(hulls) => hulls.iter().map(hull_inradius).fold(0.0, f64::max),
+        }
+    }
+}
+
+fn hull_inradius(hull: &ConvexPolyhedron) -> f64 {
+    let middle = hull.points().iter().fold(Vec3::ZERO, |sum, &p| sum + p) / hull.points().len().max(1) as f32;
+    let depths = hull.faces().iter().map(|face| {
+        let corner = hull.points()[hull.vertices_adj_to_face()[face.first_vertex_or_edge as usize] as usize];
+        face.normal.dot(corner - middle)
+    });
+    f64::from(depths.fold(f32::INFINITY, f32::min).max(0.0))
+}
+
+/// Whether a mesh is to be cut into hulls.
+enum Cutting {
+    Needless,
+    Allowed,
+    Refused(Warning),
+}
+
+fn cutting(mesh: &TriangleMesh, is_convex: bool, name: &str, budget: &Budget) -> Result<Cutting> {
+    if is_convex {
+        return Ok(Cutting::Needless);
+    }
+    let count = mesh.triangles.len();
+    let work = CUTTING + PER_TRIANGLE * count as u64;
+    let refused = |why: String| {
+        let message = format!("{name}: physics takes the mesh for its convex hull, hollows filled, for {why}");
+        Ok(Cutting::Refused(Warning::new(message, "make it simpler, or cut it into convex elements")))
+    };
+    if count > MOST_TRIANGLES {
+        return refused(format!("it has {count} triangles, and at most {MOST_TRIANGLES} are cut into hulls"));
+    }
+    match budget.foresee(work) {
+        Ok(()) => budget.spend(work).map(|()| Cutting::Allowed),
+        Err(Error::Limit { .. }) => refused("no work is left for cutting it into hulls".into()),
+        Err(error) => Err(error),
+    }
+}
+
+/// The simplest solid that is near enough to the mesh, whose volume is `own` and that of its hull `of_hull`.
+fn solid(
+    points: &[Vec3],
+    mesh: &TriangleMesh,
+    (own, of_hull): (f64, f64),
+    is_cut: bool,
+    name: &str,
+) -> Result<(Solid, Collider)> {
+    let fail = || Error::input(name, "no hull of the mesh could be made", "close its surface, or make it simpler");
+    let near = |a: f64, b: f64| (a - b).abs() <= TOLERANCE * b;
+    if own > CONVEX * of_hull {
+        let norms = points.iter().map(|p| p.length());
+        let (least, most) = norms.fold((f32::INFINITY, 0.0_f32), |(a, b), r| (a.min(r), b.max(r)));
+        let round = 4.0 / 3.0 * std::f64::consts::PI * f64::from(most).powi(3);
+        if least > 0.97 * most && own > 0.85 * round {
+            return Ok((Solid::Ball((own / round).cbrt() as f32 * most), Collider::Ball));
+        }
+        if let Some((pose, half)) = box_around(points, mesh)
+            && near(own, 8.0 * f64::from(half.x * half.y * half.z))
+        {
+            return Ok((Solid::Cuboid(pose, half), Collider::Cuboid));
+        }
+        return Ok((Solid::Hulls(vec![hull(points).ok_or_else(fail)?]), Collider::Hull));
+    }
+    if !is_cut {
+        return Ok((Solid::Hulls(vec![hull(points).ok_or_else(fail)?]), Collider::Hull));
+    }
+    let parameters =
+        VHACDParameters { resolution: 48, max_convex_hulls: MOST_PARTS as u32, concavity: 0.02, ..Default::default() };
+    let parts = VHACD::decompose(&parameters, points, &mesh.triangles, false).compute_convex_hulls(4);
+    let mut hulls: Vec<_> = parts.iter().filter_map(|(points, _)| hull(points)).take(MOST_PARTS).collect();
+    if hulls.is_empty() {
+        hulls.push(hull(points).ok_or_else(fail)?);
+    }
+    let kind = if hulls.len() == 1 { Collider::Hull } else { Collider::Hulls(hulls.len()) };
+    Ok((Solid::Hulls(hulls), kind))
+}
+
+/// The hull of points, of at most [`MOST_CORNERS`] corners; `None` where they lie in a plane.
+fn hull(points: &[Vec3]) -> Option<ConvexPolyhedron> {
+    let (corners, faces) = rapier3d::parry::transformation::try_convex_hull(points).ok()?;
+    if corners.len() <= MOST_CORNERS {
+        return ConvexPolyhedron::from_convex_mesh(corners, &faces);
+    }
+    // The farthest corner in each of many directions, spread as the seeds of a sunflower.
+    let direction = |k: usize| {
+        let (z, turn) = (1.0 - (2.0 * k as f32 + 1.0) / MOST_CORNERS as f32, 2.399_963_2 * k as f32);
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new(r * turn.cos(), r * turn.sin(), z)
+    };
+    let farthest =
+        |d: Vec3| (1..corners.len()).fold(0, |best, k| if corners[k].dot(d) > corners[best].dot(d) { k } else { best });
+    let mut kept: Vec<_> = (0..MOST_CORNERS).map(|k| farthest(direction(k))).collect();
+    kept.sort_unstable();
+    kept.dedup();
+    let kept: Vec<_> = kept.into_iter().map(|k| corners[k]).collect();
+    let (corners, faces) = rapier3d::parry::transformation::try_convex_hull(&kept).ok()?;
+    ConvexPolyhedron::from_convex_mesh(corners, &faces)
+}
+
+/// The faces of a hull, as fans of triangles.
+fn triangles(hull: &ConvexPolyhedron) -> Vec<[u32; 3]> {
+    let mut all = Vec::new();
+    for face in hull.faces() {
+        let first = face.first_vertex_or_edge as usize;
+        let corners = &hull.vertices_adj_to_face()[first..first + face.num_vertices_or_edges as usize];
+        all.extend((1..corners.len().saturating_sub(1)).map(|k| [corners[0], corners[k], corners[k + 1]]));
+    }
+    all
+}
+
+/// Volume of a closed surface, negative where it is inside out; `None` where it is not closed.
+pub(crate) fn mesh_volume(points: &[Vec3], triangles: &[[u32; 3]]) -> Option<f64> {
+    // Over the surface of a solid the areas sum to nothing, and they do not where something is missing.
+    let (mut sum, mut area, mut volume) = (Vector::ZERO, 0.0, 0.0);
+    for t in triangles {
+        let [a, b, c] = t.map(|k| vector(points[k as usize]));
+        let normal = (b - a).cross(c - a);
+        sum += normal;
+        area += normal.norm();
+        volume += a.dot(b.cross(c)) / 6.0;
+    }
+    (sum.norm() < 1e-3 * area && volume.abs() > 1e-6).then_some(volume)
+}
+
+/// The box around the points whose sides lie as the largest faces of the mesh do: its pose and half its sides.
+fn box_around(points: &[Vec3], mesh: &TriangleMesh) -> Option<(Pose, Vec3)> {
+    let normals: Vec<_> =
+        mesh.triangles.iter().map(|t| t.map(|k| points[k as usize])).map(|[a, b, c]| (b - a).cross(c - a)).collect();
+    let largest = |weight: &dyn Fn(Vec3) -> f32| {
+        let best = (0..normals.len())
+            .fold(0, |best, k| if weight(normals[k]) > 1.001 * weight(normals[best]) { k } else { best });
+        normals.get(best).copied()
+    };
+    let x = largest(&|n| n.length())?.try_normalize()?;
+    let across = |n: Vec3| n - x * n.dot(x);
+    let y = across(largest(&|n| if n.dot(x).abs() < 0.1 * n.length() { n.length() } else { 0.0 })?).try_normalize()?;
+    let axes = [x, y, x.cross(y)];
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for p in points {
+        for (k, axis) in axes.iter().enumerate() {
+            (low[k], high[k]) = (low[k].min(p.dot(*axis)), high[k].max(p.dot(*axis)));
+        }
+    }
+    let middle = (0..3).fold(Vec3::ZERO, |sum, k| sum + axes[k] * (0.5 * (low[k] + high[k])));
+    let rotation = rapier3d::math::Rotation::from_mat3(&rapier3d::math::Matrix::from_cols(axes[0], axes[1], axes[2]));
+    let half = Vec3::new(high[0] - low[0], high[1] - low[1], high[2] - low[2]) * 0.5;
+    Some((Pose::from_parts(middle, rotation), half))
+}
+
+#[cfg(test)]
+#[path = "shape_tests.rs"]
+mod tests;

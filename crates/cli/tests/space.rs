@@ -122,3 +122,58 @@ fn the_shipped_foam_is_a_network() {
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(report["junctions"].as_u64().unwrap() > 100 && report["warnings"].as_array().unwrap().is_empty());
 }
+
+/// The number of nodes of a GLB file, and the names of its meshes.
+fn nodes(bytes: &[u8]) -> (usize, Vec<String>) {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let document: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
+    let meshes = document["meshes"].as_array().unwrap();
+    let names = meshes.iter().map(|mesh| mesh["name"].as_str().unwrap().to_owned()).collect();
+    (document["nodes"].as_array().unwrap().len(), names)
+}
+
+#[test]
+fn a_scene_of_meshes_fills_a_box_and_repeats_itself() {
+    let folder = Folder::new();
+    let scene = example("scene-vegetables.glb");
+    folder.ok(&format!("fill {scene} --box 4x3x4 --seed 3 -o a.glb --threads 1"));
+    folder.ok("run a.glb -o b.glb --threads 2");
+    let (a, b) = (folder.read("a.glb"), folder.read("b.glb"));
+    assert!(a == b);
+    let (count, meshes) = nodes(&a);
+    // 143 elements in 146 cubic units of the exemplar.
+    assert!((40..=55).contains(&count), "{count} for about 47");
+    assert_eq!(meshes, ["kernel", "die", "bean"], "each mesh once");
+    let other = folder.ok(&format!("fill {scene} --box 4x3x4 --seed 4 -o c.glb"));
+    assert!(other.status.success() && folder.read("c.glb") != a);
+}
+
+#[test]
+fn a_single_layer_goes_on_as_exactly_as_a_drawing() {
+    let folder = Folder::new();
+    let scene = example("scene-bricks.glb");
+    folder.ok(&format!("fill {scene} --box 12x0.5x9 --floor -o wall.glb"));
+    let (count, _) = nodes(&folder.read("wall.glb"));
+    // 153 bricks on 146 square units.
+    assert!((100..=126).contains(&count), "{count} for about 113");
+}
+
+#[test]
+fn meshes_are_filled_and_covered_and_what_makes_no_sense_is_refused() {
+    let folder = Folder::new();
+    let scene = example("scene-plums.glb");
+    let ball = "# a cube\nv 0 0 0\nv 5 0 0\nv 0 5 0\nv 5 5 0\nv 0 0 5\nv 5 0 5\nv 0 5 5\nv 5 5 5\n\
+        f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    folder.write("cube.obj", ball);
+    folder.ok(&format!("fill {scene} --inside cube.obj -o in.glb"));
+    let (count, _) = nodes(&folder.read("in.glb"));
+    assert!((40..=125).contains(&count), "{count} in 125 cubic units, whole ones alone");
+    folder.write("sheet.obj", "v 0 0 0\nv 6 0 0\nv 6 0 6\nv 0 0 6\nf 1 4 3 2\n");
+    let bricks = example("scene-bricks.glb");
+    folder.ok(&format!("fill {bricks} --on sheet.obj -o on.glb"));
+    let refused = folder.run(&format!("fill {scene} --inside sheet.obj -o x.glb"));
+    assert_eq!(refused.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("open"), "{refused:?}");
+    let both = folder.run(&format!("fill {scene} --box 4x4x4 --direction most -o x.glb"));
+    assert!(String::from_utf8_lossy(&both.stderr).contains("direction"), "{both:?}");
+}

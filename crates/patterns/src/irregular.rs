@@ -84,7 +84,9 @@ where
             Some(s) => search::dissimilarity(&s.level, &s.library, params.matching, budget)?,
             None => None,
         };
-        let is_wanted = params.even == Switch::On && params.deform == Deform::Rigid;
+        // What has a volume is evened out by that, at the end.
+        let is_rigid = params.deform == Deform::Rigid && exemplar.solids.is_empty();
+        let is_wanted = params.even == Switch::On && is_rigid;
         let evenness = match levels.last().filter(|_| is_wanted) {
             Some(s) => {
                 let net = s.level.net.as_deref();

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, EnergyPoint, Error, Exemplar, Outcome, Result, Snapshot, StopReason, Warning};
+use arabesque_core::{
+    Bounds, EnergyPoint, Error, Exemplar, Matrix, Outcome, Result, Similarity, Snapshot, StopReason, Warning,
+};
 use arabesque_io::{
     json,
     mesh::{
@@ -24,6 +26,9 @@ use crate::{
 
 /// How far a written polyline may lie from its curve, in mean spacings.
 const CHORD: f64 = 0.005;
+
+/// What takes y to z, and z to the front.
+const UPRIGHT: Matrix<3> = Matrix([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]);
 
 /// Points and curves in a box.
 #[derive(Debug)]
@@ -61,7 +66,11 @@ impl VolumeMade {
         match sheet.format {
             Format::Glb => Ok(Encoded { bytes: write_scene(&scene, sheet.recipe, budget)?, warnings: Vec::new() }),
             Format::Png => {
-                let places: Vec<_> = (0..scene.meshes.len()).map(|m| scene.places(m)).collect();
+                // Pictures have z up, scenes y.
+                let upright = Similarity { rotation: UPRIGHT, ..Similarity::identity() };
+                let places: Vec<Vec<_>> = (0..scene.meshes.len())
+                    .map(|m| scene.places(m).iter().map(|place| upright.after(place)).collect())
+                    .collect();
                 let shown = scene.meshes.iter().zip(&places).filter(|(_, places)| !places.is_empty());
                 let items: Vec<_> = shown.map(|(m, places)| Item::Placed(&m.mesh, places)).collect();
                 Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new() })

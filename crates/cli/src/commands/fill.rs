@@ -189,6 +189,13 @@ fn triple(text: &str) -> Result<[f64; 3], Error> {
     three.ok_or_else(|| Error::parameter("gravity", text, "three numbers, such as 0,-1,0"))
 }
 
+impl Place {
+    /// Whether it is a part of space that elements can fill.
+    fn is_in_space(&self) -> bool {
+        self.cuboid.is_some() || self.inside.is_some() || self.on.is_some()
+    }
+}
+
 /// Reads the names of an enumeration of the library, and lists them in the help.
 pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     let known = T::CHOICES.iter().map(|(name, help)| PossibleValue::new(*name).help(help.trim_end_matches('.')));
@@ -225,7 +232,9 @@ impl Fill {
         let writing = self.writing;
         let is_structure = match self.engine.method {
             Method::Structures => true,
-            Method::Auto => is_structure(&self.exemplar) && !is_scene_of_elements(&exemplar)?,
+            Method::Auto => {
+                is_structure(&self.exemplar) && !(self.place.is_in_space() && is_scene_of_elements(&exemplar)?)
+            }
             Method::Elements | Method::Curves => false,
         };
         let job = if is_structure {

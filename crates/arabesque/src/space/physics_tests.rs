@@ -23,8 +23,9 @@ fn dice(height: f64) -> Vec<u8> {
             0.5 + 1.15 * f64::from(k / 16),
             f64::from(k / 4 % 4) * 1.3 + 0.06 * f64::from(k % 5),
         ])),
+        ..SceneNode::default()
     };
-    let meshes = vec![SceneMesh { name: "die".into(), mesh: cube(height) }];
+    let meshes = vec![SceneMesh::new("die", cube(height))];
     let scene =
         Scene { meshes, nodes: (0..32).map(node).collect(), ..Scene::of_points(arabesque_core::PointSet::default()) };
     write_scene(&scene, None, &Budget::default()).unwrap()

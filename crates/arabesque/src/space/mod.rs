@@ -161,16 +161,17 @@ pub fn is_scene_of_meshes(exemplar: &Input, resources: &Resources) -> Result<boo
     Ok(scene.points.is_empty() && !scene.nodes.is_empty())
 }
 
-/// Lets the elements of a run that ended by itself come to rest.
+/// Lets the elements of a run come to rest that nobody stopped; where it reached a limit, on an account of its own.
 fn settle(
     physical: &Physical,
     outcome: &mut Outcome<3>,
     budget: &Budget,
     watch: &mut dyn Watch<arabesque_core::Snapshot<3>>,
 ) -> Result<Option<PhysicsSummary>> {
-    if outcome.stopped != StopReason::Finished {
+    let budget = &if outcome.stopped == StopReason::Limit { budget.fresh() } else { budget.clone() };
+    if outcome.stopped == StopReason::Stopped {
         let advice = "let the run end by itself";
-        outcome.warnings.push(Warning::new("elements were not left to come to rest: the run was cut short", advice));
+        outcome.warnings.push(Warning::new("elements were not left to come to rest: the run was stopped", advice));
         return Ok(None);
     }
     let count = outcome.placements.len();

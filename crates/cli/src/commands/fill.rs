@@ -237,6 +237,15 @@ impl Fill {
             }
             Method::Elements | Method::Curves => false,
         };
+        if self.place.physics.is_some() && (is_structure || !is_scene(&self.exemplar)) {
+            let advice =
+                "leave it out, or give a scene of meshes as GLB, with --method elements where there are points in it";
+            return Err(Error::Unsupported {
+                what: "physics for anything but elements in space".into(),
+                advice: advice.into(),
+            }
+            .into());
+        }
         let job = if is_structure {
             structures(self.place, self.fields, self.engine, &writing)?
         } else if is_scene(&self.exemplar) {

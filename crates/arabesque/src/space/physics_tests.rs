@@ -1,5 +1,7 @@
 //! Small heaps of dice.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, its helpers too")]
+
 use arabesque_core::{Budget, Similarity, TriangleMesh, Unobserved, Vector};
 use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode, read_scene, write_scene};
 

@@ -27,6 +27,7 @@ use crate::recipe::{format::Format, input::Input};
 
 /// What is to be made, one variant a kind of job; each owns the options that it has.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "there are few jobs at a time, and they are seldom moved")]
 pub enum Job {
     /// Fill a page, a shape or a seamless tile of the plane.
     Fill(Fill),

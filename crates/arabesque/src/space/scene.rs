@@ -184,7 +184,7 @@ fn solid(index: &MeshIndex, points: &[Vector<3>], centre: Vector<3>, budget: &Bu
     grid.values = index.signed_distances(&places, budget)?;
     let inside = grid.values.iter().filter(|v| **v > 0.0).count();
     let cell = bounds.measure() / nodes.iter().map(|n| n - 1).product::<usize>().max(1) as f64;
-    Ok(Solid { distance: grid, points: points.to_vec(), centre, measure: cell * inside as f64 })
+    Ok(Solid { distance: grid, bounds: index.bounds(), points: points.to_vec(), centre, measure: cell * inside as f64 })
 }
 
 /// Corners far from one another, those that stick out first.

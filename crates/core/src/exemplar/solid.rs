@@ -1,12 +1,17 @@
 //! Elements with a volume.
 
-use crate::{field::Grid, space::Vector};
+use crate::{
+    field::Grid,
+    space::{Bounds, Vector},
+};
 
 /// A solid thing, in coordinates of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid<const D: usize> {
     /// Distance to its surface, positive inside, on a grid that reaches beyond it.
     pub distance: Grid<D, f64>,
+    /// The box around it.
+    pub bounds: Bounds<D>,
     /// Places spread over its surface.
     pub points: Vec<Vector<D>>,
     /// Centre of its volume.

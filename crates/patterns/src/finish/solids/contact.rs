@@ -5,11 +5,11 @@ use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Result, Similarity, So
 use crate::exemplar::library::Library;
 
 /// Work for each place of a surface that is looked up.
-const LOOK: u64 = 16;
+const LOOK: u64 = 8;
 /// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
 const QUANTILE: f64 = 0.9;
 /// Overlaps below this share of the inner radius are none.
-const TOUCH: f64 = 0.02;
+const TOUCH: f64 = 0.04;
 
 /// A solid in its place.
 #[derive(Clone, Copy, Debug)]
@@ -41,15 +41,20 @@ impl<'a, const D: usize> Body<'a, D> {
         self.solid.depth(self.pose.inverse().apply(p)) * self.pose.scale
     }
 
+    /// Whether the box of `other` lies beside the one of this along one of its axes: long bodies side by side mostly do.
+    fn misses(&self, other: &Self, both: &Similarity<D>, moved: Vector<D>) -> bool {
+        let (own, its) = (&self.solid.bounds, &other.solid.bounds);
+        let away = both.apply(its.centre()) + moved - own.centre();
+        let (half, its_half) = (own.size() * 0.5, its.size() * (0.5 * both.scale));
+        (0..D).any(|k| {
+            let reach: f64 = (0..D).map(|l| both.rotation.0[k][l].abs() * its_half[l]).sum();
+            away[k].abs() > half[k] + reach
+        })
+    }
+
     /// The deepest place of the surface of `other` in this one, with the way out of it.
     fn deepest(&self, other: &Self, shift: Vector<D>) -> Option<Contact<D>> {
         let to_own = self.pose.inverse();
-        // Long bodies side by side mostly miss one another's box.
-        let middle = to_own.apply(other.centre + shift);
-        let room = self.solid.distance.bounds.clamp(middle) - middle;
-        if room.norm() * self.pose.scale > other.radius {
-            return None;
-        }
         let both = to_own.after(&other.pose);
         let moved = to_own.rotation.apply(shift) * to_own.scale;
         let mut best: Option<(f64, Vector<D>)> = None;
@@ -72,6 +77,12 @@ pub(super) fn contact<const D: usize>(a: &Body<'_, D>, b: &Body<'_, D>, offset: 
         return None;
     }
     let shift = a.centre + offset - b.centre;
+    let (to_a, to_b) = (a.pose.inverse(), b.pose.inverse());
+    let (of_b_in_a, of_a_in_b) = (to_a.after(&b.pose), to_b.after(&a.pose));
+    let shifted = |to: &Similarity<D>, by: Vector<D>| to.rotation.apply(by) * to.scale;
+    if a.misses(b, &of_b_in_a, shifted(&to_a, shift)) || b.misses(a, &of_a_in_b, shifted(&to_b, -shift)) {
+        return None;
+    }
     let of_b = a.deepest(b, shift).map(|c| Contact { way: -c.way, ..c });
     let back = -shift;
     let of_a = b.deepest(a, back).map(|c| Contact { at: c.at + shift, ..c });

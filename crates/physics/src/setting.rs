@@ -15,7 +15,7 @@ pub struct Body {
     pub pose: Similarity<3>,
     /// It stays where it is to the last bit.
     pub frozen: bool,
-    /// Where it falls to, where that is not the same everywhere: as [`World::new`] has it.
+    /// Where it falls to, where that is not the same everywhere: as [`crate::World::new`] has it.
     pub gravity: Option<Vector<3>>,
 }
 

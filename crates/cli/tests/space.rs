@@ -1,5 +1,7 @@
 //! Boxes in space: networks of curves, clouds of points.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 mod common;
 
 use common::{Folder, example};

@@ -116,7 +116,7 @@ impl<const D: usize> Things<'_, D> {
             let over = found.depth - self.allowed.of(class, self.class(j));
             if over > 0.0 {
                 worst = worst.max(over);
-                push = push + found.way * over;
+                push += found.way * over;
             }
         }
         (push, worst, cost)

@@ -120,7 +120,7 @@ impl<const D: usize> Things<'_, D> {
         let lever = if stands || self.library.upright[source as u32] { [0.0; 3] } else { cross(arm, found.way) };
         let turned: f64 = lever.iter().map(|v| v * v).sum::<f64>() / gyration2;
         let strength = amount / (1.0 + turned);
-        push.shift = push.shift + found.way * strength;
+        push.shift += found.way * strength;
         for (sum, v) in push.turn.iter_mut().zip(lever) {
             *sum += v * strength / gyration2;
         }

@@ -3,9 +3,10 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{
-    Bounds, Budget, Class, Element, Error, Exemplar, Grid, Outline, Result, Role, Solid, TriangleMesh, Vector, Warning,
+    Bounds, Budget, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Solid, TriangleMesh,
+    Vector, Warning, lattice_cell,
 };
-use arabesque_io::mesh::gltf::{Scene, SceneMesh, read_scene};
+use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode, read_scene};
 use arabesque_surface::{MeshIndex, scatter};
 
 /// Points that are scattered over a mesh, and corners that are added to them, at most.
@@ -63,17 +64,18 @@ impl Bodies {
             warnings.push(Warning::new(message, "use --method structures, which continues both"));
             scene.points = arabesque_core::PointSet::default();
         }
+        if scene.nodes.len() == 1 && scene.components(budget)? > 1 {
+            let frame = scene.frame;
+            scene = scene.split_components(budget)?;
+            scene.frame = frame;
+            warnings.append(&mut scene.warnings);
+        }
         let bodies = bodies(name, &scene.meshes, budget)?;
-        let mut classes: Vec<Class> = Vec::new();
-        let mut number_of = BTreeMap::new();
+        let found = scene.classes();
+        let classes = found.names.into_iter().map(|name| Class { name }).collect();
         let mut elements = Vec::with_capacity(scene.nodes.len());
-        for node in &scene.nodes {
+        for (node, class) in scene.nodes.iter().zip(found.of_node) {
             budget.spend(1000)?;
-            let called = class_name(if node.name.is_empty() { &scene.meshes[node.mesh].name } else { &node.name });
-            let class = *number_of.entry(called.to_owned()).or_insert_with(|| {
-                classes.push(Class { name: called.to_owned() });
-                classes.len() - 1
-            });
             let body = &bodies[node.mesh];
             elements.push(Element {
                 class,
@@ -113,12 +115,42 @@ impl Bodies {
         Self { scene: Arc::clone(&self.scene), exemplar: Arc::new(exemplar), floor: Some(floor) }
     }
 
+    /// The elements of another scene, each as a copy of one with the same mesh.
+    ///
+    /// # Errors
+    /// As [`read_scene`]; [`Error::Input`] for a mesh that the exemplar does not have.
+    pub(crate) fn kept(&self, name: &str, bytes: &[u8], budget: &Budget) -> Result<Vec<Placement<3>>> {
+        let kept = read_scene(name, bytes, budget)?;
+        let source_of = |mesh: &SceneMesh| {
+            let is_same = |own: &SceneMesh| {
+                own.mesh.positions == mesh.mesh.positions && own.mesh.triangles == mesh.mesh.triangles
+            };
+            let known = self.scene.meshes.iter().position(is_same)?;
+            self.scene.nodes.iter().position(|node| node.mesh == known)
+        };
+        let mut sources = Vec::with_capacity(kept.meshes.len());
+        for mesh in &kept.meshes {
+            budget.spend((self.scene.meshes.len() * mesh.mesh.positions.len().max(1)) as u64)?;
+            sources.push(source_of(mesh));
+        }
+        let placement = |node: &SceneNode| {
+            let Some(source) = sources[node.mesh] else {
+                let problem =
+                    format!("the mesh {} of a kept element is none of the exemplar", kept.meshes[node.mesh].name);
+                return Err(Error::input(name, problem, "keep elements of a result of this exemplar"));
+            };
+            let transform = node.transform.after(&self.scene.nodes[source].transform.inverse());
+            Ok(Placement { source, transform, control: Vec::new(), frozen: None })
+        };
+        kept.nodes.iter().map(placement).collect()
+    }
+
     /// The scene of these elements in other places.
-    pub(crate) fn placed(&self, placements: &[arabesque_core::Placement<3>], frame: Option<Bounds<3>>) -> Scene {
-        let node = |placement: &arabesque_core::Placement<3>| {
+    pub(crate) fn placed(&self, placements: &[Placement<3>], frame: Option<Bounds<3>>) -> Scene {
+        let node = |placement: &Placement<3>| {
             let source = &self.scene.nodes[placement.source];
             let name = self.exemplar.classes[self.exemplar.elements[placement.source].class].name.clone();
-            arabesque_io::mesh::gltf::SceneNode {
+            SceneNode {
                 name,
                 mesh: source.mesh,
                 transform: placement.transform.after(&source.transform),
@@ -130,13 +162,13 @@ impl Bodies {
     }
 }
 
-/// The exemplar in its frame, if the file has one. A box that centres fill is tight around a lattice: it shows more elements than there are
-/// elsewhere, so that the frame must be as much wider.
+/// The exemplar in its frame; where the file has none, that is the box around all that is in it. A lattice that fits its frame tightly
+/// shows more elements than there are elsewhere, so that the frame must be as much wider.
 fn framed(name: &str, elements: Vec<Element<3>>, classes: Vec<Class>, frame: Option<Bounds<3>>) -> Result<Exemplar<3>> {
-    let Some(frame) = frame else { return Exemplar::unframed(name, elements, classes) };
+    let frame = frame.unwrap_or_else(|| Bounds::around(elements.iter().flat_map(|e| e.outline.points())));
     let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
     let tight = Exemplar::new(name, elements, classes, frame)?;
-    let Some(cell) = arabesque_core::lattice_cell(&centres) else { return Ok(tight) };
+    let Some(cell) = lattice_cell(&centres) else { return Ok(tight) };
     let factor = cell * centres.len() as f64 / frame.measure();
     if !(1.0..=WIDEST).contains(&factor) {
         return Ok(tight);
@@ -144,13 +176,6 @@ fn framed(name: &str, elements: Vec<Element<3>>, classes: Vec<Class>, frame: Opt
     let grow = frame.size() * (0.5 * (factor.cbrt() - 1.0));
     let window = Bounds::new(frame.min - grow, frame.max + grow);
     Ok(Exemplar { window, ..tight })
-}
-
-/// The name of a class: that of a node without the number at its end.
-fn class_name(name: &str) -> &str {
-    let short = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let short = if short.len() < name.len() { short.trim_end_matches(['.', '_', '-', ' ']) } else { name };
-    if short.is_empty() { name } else { short }
 }
 
 fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>> {
@@ -182,9 +207,7 @@ fn solid(index: &MeshIndex, points: &[Vector<3>], centre: Vector<3>, budget: &Bu
     let mut grid = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
     let places: Vec<_> = (0..grid.values.len()).map(|n| grid.node(n)).collect();
     grid.values = index.signed_distances(&places, budget)?;
-    let inside = grid.values.iter().filter(|v| **v > 0.0).count();
-    let cell = bounds.measure() / nodes.iter().map(|n| n - 1).product::<usize>().max(1) as f64;
-    Ok(Solid { distance: grid, bounds: index.bounds(), points: points.to_vec(), centre, measure: cell * inside as f64 })
+    Ok(Solid::new(grid, index.bounds(), points.to_vec(), centre))
 }
 
 /// Corners far from one another, those that stick out first.

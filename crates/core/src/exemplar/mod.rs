@@ -216,16 +216,6 @@ impl<const D: usize> Exemplar<D> {
         Self::new(place, elements.collect(), classes, window_around(points))
     }
 
-    /// An exemplar of elements whose frame nobody tells: the window is the bounding box of the centres, grown until its density is that
-    /// of the interior.
-    ///
-    /// # Errors
-    /// As [`Exemplar::new`].
-    pub fn unframed(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>) -> Result<Self> {
-        let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
-        Self::new(place, elements, classes, window_around(&centres))
-    }
-
     /// What it shows.
     pub fn view(&self) -> View<D> {
         View { window: self.window, hole: self.hole }

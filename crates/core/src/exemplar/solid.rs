@@ -16,11 +16,18 @@ pub struct Solid<const D: usize> {
     pub points: Vec<Vector<D>>,
     /// Centre of its volume.
     pub centre: Vector<D>,
-    /// Volume.
-    pub measure: f64,
+    /// Distance of its farthest place from its centre, and radius of the largest ball in it.
+    radii: [f64; 2],
 }
 
 impl<const D: usize> Solid<D> {
+    /// A solid with these distances, positive inside; `bounds` is the box around it, `points` are spread over its surface.
+    pub fn new(distance: Grid<D, f64>, bounds: Bounds<D>, points: Vec<Vector<D>>, centre: Vector<D>) -> Self {
+        let reach = points.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
+        let inner = distance.values.iter().copied().fold(0.0, f64::max);
+        Self { distance, bounds, points, centre, radii: [reach, inner] }
+    }
+
     /// How deep `p` lies in it: negative outside, where it is about the distance; minus infinity beyond the grid.
     pub fn depth(&self, p: Vector<D>) -> f64 {
         if !self.distance.bounds.contains(p) {
@@ -74,11 +81,11 @@ impl<const D: usize> Solid<D> {
 
     /// Distance of its farthest place from its centre.
     pub fn radius(&self) -> f64 {
-        self.points.iter().map(|p| (*p - self.centre).norm()).fold(0.0, f64::max)
+        self.radii[0]
     }
 
     /// Radius of the largest ball in it.
     pub fn inradius(&self) -> f64 {
-        self.distance.values.iter().copied().fold(0.0, f64::max)
+        self.radii[1]
     }
 }

@@ -82,12 +82,14 @@ fn slab<const D: usize>(exemplar: &Exemplar<D>, library: &Library<D>) -> Option<
         return None;
     }
     let mean = standing.iter().sum::<f64>() / standing.len() as f64;
-    let whole = exemplar.window.size()[UP];
+    let floors = exemplar.elements.iter().zip(&exemplar.heights).find_map(|(e, h)| Some(e.centre[UP] - (*h)?));
+    let (low, high) = (exemplar.window.min[UP], exemplar.window.max[UP]);
     let everything = exemplar.heights.iter().all(Option::is_some);
     let thickness = if everything { f64::INFINITY } else { 2.0 * mean };
     let is_standing = |c: u32| library.members(c).iter().any(|&e| exemplar.heights[e as usize].is_some());
     let stands = (0..library.classes() as u32).map(is_standing).collect();
-    Some(Slab { thickness, share: if everything { 1.0 } else { (thickness / whole).clamp(0.02, 0.98) }, stands })
+    let within = (floors? + thickness).min(high) - low;
+    Some(Slab { thickness, share: (within / (high - low)).clamp(0.02, if everything { 1.0 } else { 0.98 }), stands })
 }
 
 /// How far inside the border the centres of each class lie; negative outside.

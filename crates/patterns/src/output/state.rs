@@ -136,7 +136,8 @@ impl<'a, const D: usize> State<'a, D> {
         let parts = &self.level.parts[item.source];
         let first_key = self.level.key[self.level.first[item.source]];
         let first = self.samples.len() as u32;
-        let position = self.extent.grounded(item.source, item.position);
+        let stays = item.frozen.is_some();
+        let position = if stays { item.position } else { self.extent.grounded(item.source, item.position) };
         let item = Item { position: self.request.domain.wrap(position), ..item };
         let number = self.items.push(LiveItem { item, turn, alive: true, first, count: parts.len() as u32 });
         for part in 0..parts.len() as u32 {

@@ -65,8 +65,21 @@ impl<'a, const D: usize> Body<'a, D> {
                 best = Some((depth, own));
             }
         }
+        // What lies at one place hardly shows in surfaces: the ball in the middle of the other one has to come out as well.
+        let middle = to_own.apply(other.centre + shift);
+        let depth = self.solid.depth(middle) * self.pose.scale;
+        if depth > 0.0 {
+            let whole = depth + other.solid.inradius() * other.pose.scale;
+            if best.is_none_or(|(most, _)| whole > most) {
+                best = Some((whole, middle));
+            }
+        }
         let (depth, own) = best?;
-        let way = self.pose.rotation.apply(self.solid.outwards(own));
+        let mut way = self.pose.rotation.apply(self.solid.outwards(own));
+        if way == Vector::ZERO {
+            // In the very middle any way leads out.
+            way[0] = 1.0;
+        }
         Some(Contact { depth, at: self.pose.apply(own), way })
     }
 }

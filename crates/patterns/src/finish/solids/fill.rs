@@ -63,11 +63,12 @@ impl<const D: usize> Things<'_, D> {
                 continue;
             }
             let mut deepest = -2.0 * self.widest;
-            index.within(p, self.widest, |j, offset| {
+            let looked = index.within(p, self.widest, |j, offset| {
                 let body = &self.bodies[j];
                 let shifted = body.centre - offset;
                 deepest = deepest.max(body.depth(shifted).max(body.radius - 3.0 * self.widest));
             });
+            meter.spend(60 * looked)?;
             if deepest < 0.0 {
                 found.push((-deepest, p));
             }

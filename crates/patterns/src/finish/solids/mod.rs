@@ -43,5 +43,6 @@ pub(crate) fn mend<const D: usize>(
         if round + 1 < ROUNDS { things.fill(targets, SLACK, round as u64, &budget) } else { Ok(()) }
     });
     *placements = things.into_placements();
+    placements.retain(|p| p.frozen.is_some() || extent.keeps_rule(p));
     mended
 }

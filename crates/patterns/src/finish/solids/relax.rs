@@ -12,6 +12,8 @@ use super::{
 const STEPS: usize = 40;
 /// Overlaps beyond what is allowed by less than this share of the spacing are left.
 const ENOUGH: f64 = 0.008;
+/// Bodies are pushed so far inside of a border, in spacings, that what is left undone does not reach over it.
+const MARGIN: f64 = 0.012;
 /// A body that moves by less than this share of the spacing is at rest.
 const STILL: f64 = 0.001;
 /// Share of a correction that is made in a step.
@@ -89,7 +91,8 @@ impl<const D: usize> Things<'_, D> {
         let domain = &request.domain;
         let depth = domain.signed_distance(body.centre);
         let inside = matches!(request.border, Border::Inside | Border::Turn);
-        if depth >= if inside { body.radius } else { 0.0 } {
+        let margin = MARGIN * self.library.spacing;
+        if depth >= if inside { body.radius + margin } else { 0.0 } {
             return (None, 2000);
         }
         let back = |p: Vector<D>, depth: f64| {
@@ -102,7 +105,7 @@ impl<const D: usize> Things<'_, D> {
         let mut worst = (0.0, body.centre);
         for point in &body.solid.points {
             let p = body.pose.apply(*point);
-            let out = domain.signed_distance(p);
+            let out = domain.signed_distance(p) - margin;
             if out < worst.0 {
                 worst = (out, p);
             }

@@ -43,6 +43,14 @@ impl LoadedExemplar {
             let problem = "a picture where an SVG drawing or a CSV file of points was expected";
             return Err(Error::input(name, problem, "draw the elements as vectors"));
         }
+        if arabesque_io::mesh::gltf::is_glb(bytes) {
+            let problem = "a scene in space where a drawing or points were expected";
+            return Err(Error::input(
+                name,
+                problem,
+                "fill a part of space: --box, --inside or --on, or use --method structures",
+            ));
+        }
         let text = file::decode_text(name, bytes, budget)?;
         if looks_like_curves(name, &text) {
             let net = obj::read_curves(name, &text, budget)?;

@@ -11,6 +11,8 @@ mod physics;
 mod physics_tests;
 mod place;
 mod scene;
+#[cfg(test)]
+mod scene_tests;
 
 use std::sync::Arc;
 
@@ -107,6 +109,17 @@ impl Volume {
         request.border = space.border.unwrap_or(usual);
         request.fields = place.fields;
         request.ground = place.ground;
+        if let Some(input) = &mut space.keep {
+            let Some(bodies) = &self.bodies else {
+                let advice = "leave it out, or give a scene of meshes";
+                return Err(Error::Unsupported {
+                    what: "keep for points and curves in space".into(),
+                    advice: advice.into(),
+                });
+            };
+            let bytes = context.files.embed(input)?;
+            request.frozen = bodies.kept(input.name(), &bytes, context.budget())?;
+        }
         let physical = Physical::new(&mut space, self.bodies.as_deref(), &request, context)?;
         request.between = physical.as_ref().and_then(Physical::between);
         context.job = Job::Space(space);

@@ -55,10 +55,14 @@ fn dice_come_to_lie_on_the_floor_and_on_one_another_and_the_recipe_repeats_it() 
         let artwork = run(&recipe(|job| job.physics = Some(physics))).unwrap();
         let told = artwork.summary().physics.unwrap();
         assert!(told.steps > 0 && told.floating <= told.floating_before, "{physics}: {told:?}");
-        assert!(told.deepest < told.deepest_before.max(0.03) && told.overlaps <= told.overlaps_before, "{physics}: {told:?}");
+        assert!(
+            told.deepest < told.deepest_before.max(0.03) && told.overlaps <= told.overlaps_before,
+            "{physics}: {told:?}"
+        );
         let file = bytes(&artwork);
         let scene = read_scene("out.glb", &file, &Budget::default()).unwrap();
-        assert!((15..75).contains(&scene.nodes.len()), "{}", scene.nodes.len());
+        // 16 stand on 26 square units, so that about 21 do here, and as many lie on them.
+        assert!((32..56).contains(&scene.nodes.len()), "{}", scene.nodes.len());
         let lowest = scene.nodes.iter().map(|n| n.transform.translation[1]).fold(f64::INFINITY, f64::min);
         assert!((0.45..0.6).contains(&lowest), "{lowest}");
         let again = recipe_in("out.glb", &file).unwrap();

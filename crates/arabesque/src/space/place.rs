@@ -12,9 +12,8 @@ use crate::{
     method::RunContext,
     plane::constant_factor,
     recipe::{FieldSource, Space},
-    solid::read::indexed_mesh,
     space::scene::UP,
-    structure::directions,
+    structure::{covered, filled},
 };
 
 /// A place in space, with its fields.
@@ -50,22 +49,14 @@ pub(super) fn place(
             Ok(Place { domain: Domain::Box(bounds), fields: fields(constant), ground })
         }
         Space { inside: Some(input), .. } => {
-            let (index, warnings) = indexed_mesh(input, context.files)?;
-            context.warnings.extend(warnings);
-            let report = MeshReport::new(&index, context.budget())?;
-            context.warnings.extend(report.volume_of(input.name())?);
+            let (index, report) = filled(input, context)?;
             let bounds = index.bounds();
             let solid = Inside::new(index, &report, context.budget())?;
             let ground = floor.map(|_| Arc::new(Floor(bounds.min[UP])) as Arc<dyn Ground<3>>);
             Ok(Place { domain: Domain::Region(Arc::new(solid)), fields: fields(constant), ground })
         }
         Space { on: Some(input), direction, .. } => {
-            let (index, warnings) = indexed_mesh(input, context.files)?;
-            context.warnings.extend(warnings);
-            let report = MeshReport::new(&index, context.budget())?;
-            context.warnings.extend(report.surface_of(input.name())?);
-            let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
-            context.warnings.extend(field.warnings().iter().cloned());
+            let (index, field) = covered(input, direction, context)?;
             let under = floor.unwrap_or_default();
             let heights = [exemplar.window.min[UP], exemplar.window.max[UP]].map(|y| (y - under) * largest);
             let layer = Arc::new(Layer { index, field, turned: turned.to_radians(), heights });

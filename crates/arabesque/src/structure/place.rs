@@ -7,7 +7,7 @@ use arabesque_core::{
 };
 use arabesque_io::{file, geometry::Cloud, mesh::obj, svg};
 use arabesque_structures::{Along, Flat, Shell, Solid, Territory, Thread, Tube};
-use arabesque_surface::{Bend, DirectionField, Directions, MeshReport};
+use arabesque_surface::{Bend, DirectionField, Directions, MeshIndex, MeshReport};
 
 use crate::{
     method::RunContext,
@@ -98,26 +98,42 @@ pub(super) fn in_space(
             Ok(Arc::new(Tube::new(threads, job.radius.unwrap_or(0.5 * across))?))
         }
         ("on", Structures { on: Some(input), direction, .. }) => {
-            let (index, warnings) = indexed_mesh(input, context.files)?;
-            context.warnings.extend(warnings);
-            let report = MeshReport::new(&index, context.budget())?;
-            context.warnings.extend(report.surface_of(input.name())?);
-            let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
-            context.warnings.extend(field.warnings().iter().cloned());
+            let (index, field) = covered(input, direction, context)?;
             let shell = Shell::new(Arc::new(index), Arc::new(field), factor(job, place)?);
             Ok(Arc::new(shell.turned(degrees(job, place)?.to_radians())))
         }
         ("inside", Structures { inside: Some(input), .. }) => {
-            let (index, warnings) = indexed_mesh(input, context.files)?;
-            context.warnings.extend(warnings);
-            let report = MeshReport::new(&index, context.budget())?;
-            context.warnings.extend(report.volume_of(input.name())?);
+            let (index, report) = filled(input, context)?;
             Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), even(job, place)?)))
         }
         (other, _) => {
             Err(elsewhere(other, "in the plane", "points in space", "give size, tile, box, along, on or inside"))
         }
     }
+}
+
+/// A mesh to cover, with directions along it; the files are embedded.
+pub(crate) fn covered(
+    input: &mut Input,
+    direction: &mut Option<Direction>,
+    context: &mut RunContext<'_>,
+) -> Result<(MeshIndex, DirectionField)> {
+    let (index, warnings) = indexed_mesh(input, context.files)?;
+    context.warnings.extend(warnings);
+    let report = MeshReport::new(&index, context.budget())?;
+    context.warnings.extend(report.surface_of(input.name())?);
+    let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
+    context.warnings.extend(field.warnings().iter().cloned());
+    Ok((index, field))
+}
+
+/// A closed mesh to fill, with what is known of it; the file is embedded.
+pub(crate) fn filled(input: &mut Input, context: &mut RunContext<'_>) -> Result<(MeshIndex, MeshReport)> {
+    let (index, warnings) = indexed_mesh(input, context.files)?;
+    context.warnings.extend(warnings);
+    let report = MeshReport::new(&index, context.budget())?;
+    context.warnings.extend(report.volume_of(input.name())?);
+    Ok((index, report))
 }
 
 /// A sheet in space: fields and what is avoided lie over it.

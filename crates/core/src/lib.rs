@@ -35,7 +35,7 @@ pub use curve::{
     polyline_length, spans_inside, straight, turned_about,
 };
 pub use error::{Error, Result};
-pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, Role, Solid, View, lattice_cell};
+pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, PointLattice, Role, Solid, View, point_lattice};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, Rotations, ScalarField};
 pub use geometry::{MeshPart, PointSet, TriangleMesh};
 pub use image::Image;

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{
     Bounds, Budget, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Solid, TriangleMesh,
-    Vector, Warning, lattice_cell,
+    Vector, Warning, point_lattice,
 };
 use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode, read_scene};
 use arabesque_surface::{MeshIndex, scatter};
@@ -162,13 +162,13 @@ impl Bodies {
     }
 }
 
-/// The exemplar in its frame; where the file has none, that is the box around all that is in it. A lattice that fits its frame tightly
-/// shows more elements than there are elsewhere, so that the frame must be as much wider.
+/// The exemplar in its frame, if the file has one. A lattice that fits its frame tightly shows more elements than there are elsewhere, so that
+/// the frame must be as much wider.
 fn framed(name: &str, elements: Vec<Element<3>>, classes: Vec<Class>, frame: Option<Bounds<3>>) -> Result<Exemplar<3>> {
-    let frame = frame.unwrap_or_else(|| Bounds::around(elements.iter().flat_map(|e| e.outline.points())));
+    let Some(frame) = frame else { return Exemplar::unframed(name, elements, classes) };
     let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
     let tight = Exemplar::new(name, elements, classes, frame)?;
-    let Some(cell) = lattice_cell(&centres) else { return Ok(tight) };
+    let Some(cell) = point_lattice(&centres).and_then(|lattice| lattice.cell) else { return Ok(tight) };
     let factor = cell * centres.len() as f64 / frame.measure();
     if !(1.0..=WIDEST).contains(&factor) {
         return Ok(tight);

@@ -6,7 +6,7 @@ mod window;
 
 pub use solid::Solid;
 pub use view::View;
-pub use window::lattice_cell;
+pub use window::{PointLattice, point_lattice};
 
 use std::sync::Arc;
 
@@ -216,6 +216,20 @@ impl<const D: usize> Exemplar<D> {
         Self::new(place, elements.collect(), classes, window_around(points))
     }
 
+    /// An exemplar of elements whose frame nobody tells: the bounding box of the centres, grown by half a step around a lattice, else until
+    /// its density is that of the interior.
+    ///
+    /// # Errors
+    /// As [`Exemplar::new`].
+    pub fn unframed(place: &str, elements: Vec<Element<D>>, classes: Vec<Class>) -> Result<Self> {
+        let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
+        let window = match point_lattice(&centres) {
+            Some(lattice) => Bounds::around(centres.iter().copied()).grown(0.5 * lattice.step),
+            None => window_around(&centres),
+        };
+        Self::new(place, elements, classes, window)
+    }
+
     /// What it shows.
     pub fn view(&self) -> View<D> {
         View { window: self.window, hole: self.hole }
@@ -248,6 +262,28 @@ mod tests {
         let slanted: Vec<_> = (0..9).map(|k| Vector::xy(f64::from(k), 0.1 * f64::from(k))).collect();
         assert!(told(&slanted).starts_with("t: all 9 points lie on one line"));
         assert!(told(&[]).contains("no element found"));
+    }
+
+    #[test]
+    fn a_lattice_is_framed_by_half_a_step_and_strewn_points_are_none() {
+        let points: Vec<_> = (0..32).map(|k| Vector([k % 4, k / 16, k / 4 % 4].map(|n| 1.5 * f64::from(n)))).collect();
+        let lattice = point_lattice(&points).unwrap();
+        assert!((lattice.step - 1.5).abs() < 1e-12 && lattice.cell.is_none(), "two layers surround nothing");
+        let element = |&p: &Vector<3>| Element {
+            class: 0,
+            centre: p,
+            pose: Similarity::shift(p),
+            outline: Outline::default(),
+            colour: [0.0; 3],
+            lean: [Vector::ZERO; 3],
+            role: Role::Source,
+        };
+        let classes = vec![Class { name: "a".into() }];
+        let framed = Exemplar::unframed("t", points.iter().map(element).collect(), classes).unwrap();
+        assert!((framed.window.measure() - 32.0 * 1.5_f64.powi(3)).abs() < 1e-9, "{:?}", framed.window);
+        let mut stream = crate::random::Stream::new(2, crate::random::Stage::TEST, 0);
+        let strewn: Vec<_> = (0..60).map(|_| Vector([0; 3].map(|_| stream.range(0.0, 5.0)))).collect();
+        assert_eq!(point_lattice(&strewn), None);
     }
 
     #[test]

@@ -38,8 +38,17 @@ pub(super) fn window_around<const D: usize>(points: &[Vector<D>]) -> Bounds<D> {
 /// Distances to the nearest neighbour in a lattice differ by less than this share of their mean.
 const EVEN: f64 = 0.12;
 
-/// Measure of a cell of points that lie in a lattice, more or less; `None` for others, and where too few of them are surrounded.
-pub fn lattice_cell<const D: usize>(points: &[Vector<D>]) -> Option<f64> {
+/// What a lattice of points is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLattice {
+    /// Mean distance to the nearest neighbour.
+    pub step: f64,
+    /// Measure of a cell; `None` where too few of them are surrounded.
+    pub cell: Option<f64>,
+}
+
+/// The lattice that points lie in, more or less: all have their nearest neighbour at about one distance. `None` for others.
+pub fn point_lattice<const D: usize>(points: &[Vector<D>]) -> Option<PointLattice> {
     let tight = Bounds::around(points.iter().copied());
     let spacing = (tight.measure() / points.len().max(1) as f64).powf(1.0 / D as f64);
     if points.len() < 9 || spacing <= 0.0 {
@@ -52,12 +61,10 @@ pub fn lattice_cell<const D: usize>(points: &[Vector<D>]) -> Option<f64> {
     let nearest: Option<Vec<f64>> =
         points.iter().enumerate().map(|(i, &p)| index.nearest(p, 3.0 * spacing, Some(i)).map(|n| n.1)).collect();
     let nearest = nearest?;
-    let mean = nearest.iter().sum::<f64>() / nearest.len() as f64;
-    let variance = nearest.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / nearest.len() as f64;
-    if variance.sqrt() > EVEN * mean {
-        return None;
-    }
-    interior_cell(points, &tight, spacing)
+    let step = nearest.iter().sum::<f64>() / nearest.len() as f64;
+    let variance = nearest.iter().map(|d| (d - step).powi(2)).sum::<f64>() / nearest.len() as f64;
+    let is_even = variance.sqrt() <= EVEN * step;
+    is_even.then(|| PointLattice { step, cell: interior_cell(points, &tight, spacing) })
 }
 
 /// Mean measure of the Voronoi cells that do not reach the box, found by sampling; `None` when fewer than nine are whole.

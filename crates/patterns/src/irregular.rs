@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Budget, Error, Exemplar, Forecast, Numbered, Outcome, Request, Result, Snapshot, Vector, Warning, Watch,
+    Budget, Error, Exemplar, Forecast, Numbered, Outcome, Placement, Request, Result, Snapshot, Vector, Warning, Watch,
 };
 
 use crate::{
@@ -172,6 +172,16 @@ where
         let stopped = ending::reason(cut_short, &mut warnings)?;
         let Snapshot { placements, curves, .. } = found;
         Ok(Outcome { placements, sequence: Vec::new(), curves, areas: Vec::new(), energy: trace, warnings, stopped })
+    }
+
+    /// See [`crate::Prepared::take_apart`].
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn taken_apart(&self, placements: &mut Vec<Placement<D>>, request: &Request<D>) -> Result<()> {
+        let Some(sampled) = self.levels.last() else { return Ok(()) };
+        let extent = Extent::new(request, &sampled.exemplar, &sampled.library, sampled.level.base)?;
+        solids::take_apart(placements, &self.exemplar, &sampled.library, &extent)
     }
 
     /// What a run will take, by what its samples take in each iteration.

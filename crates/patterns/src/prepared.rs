@@ -3,8 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use arabesque_core::{
-    Border, Budget, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, StopReason, Vector, Warning, Watch,
-    rounded,
+    Border, Budget, Error, Exemplar, Outcome, Placement, Request, Result, Role, Snapshot, StopReason, Vector, Warning,
+    Watch, rounded,
 };
 
 use crate::{
@@ -206,6 +206,30 @@ where
     /// The repeat by which the exemplar is continued; `None` where it is treated as irregular.
     pub fn repeat(&self) -> Option<&Repeat> {
         self.regular.as_ref().map(|regular| &regular.repeat)
+    }
+
+    /// The exemplar as one that repeats; `None` where it is treated as irregular.
+    pub fn repeating(&self) -> Option<&Regular> {
+        self.regular.as_deref()
+    }
+
+    /// Takes apart elements with a volume that somebody else has placed, where they overlap more than in the exemplar, and takes out what
+    /// stays too deep or does not suit the border.
+    ///
+    /// # Errors
+    /// [`Error::NoResult`] when nothing is left; when a limit is reached, or somebody asks to stop, the result is what it is by then.
+    pub fn take_apart(&self, mut placements: Vec<Placement<D>>, request: &Request<D>) -> Result<Outcome<D>> {
+        let ended = self.irregular(&request.budget)?.taken_apart(&mut placements, request).err();
+        if placements.is_empty() {
+            return Err(ended.unwrap_or_else(|| {
+                let advice = "make the domain larger, lower the scale, or allow elements to cross its border";
+                Error::no_result("no element fits into the domain", advice)
+            }));
+        }
+        let mut warnings = Vec::new();
+        let stopped = ending::reason(ended, &mut warnings)?;
+        let (sequence, curves, areas, energy) = Default::default();
+        Ok(Outcome { placements, sequence, curves, areas, energy, warnings, stopped })
     }
 
     /// Neighbourhood radius of each level, coarsest first, in the exemplar's units; none where no neighbourhood is

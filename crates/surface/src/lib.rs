@@ -5,6 +5,7 @@
 //! | where is the nearest point of a mesh, how far is it, is a place inside | [`MeshIndex`] with [`Closest`] |
 //! | what is wrong with a mesh | [`MeshReport`] |
 //! | which way does a pattern run along it | [`DirectionField`] of [`Directions`], [`curvatures`] |
+//! | where do the nodes of a lattice lie that is laid on it | [`SurfaceLattice`] |
 //! | points spread on it, in a shell around it, inside of it | [`scatter`], [`shell_grid`], [`inside_grid`] |
 //! | where is the nearest point of a surface that points alone stand for, where does a ray meet it, how does it bend | [`OrientedPoints`] |
 //! | the surface through points, or around balls | [`reconstruct`] with [`SurfaceParams`] |
@@ -36,6 +37,7 @@ mod dipoles;
 mod directions;
 mod implicit;
 mod isosurface;
+mod lattice;
 mod mesh;
 mod oriented;
 mod params;
@@ -46,6 +48,7 @@ mod tests;
 mod tree;
 
 pub use directions::{Bend, Curvature, DirectionField, Directions, SurfaceFrame, curvatures};
+pub use lattice::{Axes, LatticePlace, SurfaceLattice};
 pub use mesh::{Closest, Found, MeshIndex, MeshReport};
 pub use oriented::{EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of};
 pub use params::{Method, Normals, Parts, SurfaceParams};

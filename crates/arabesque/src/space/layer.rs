@@ -5,9 +5,14 @@ use std::sync::Arc;
 
 use arabesque_core::{
     Bounds, Budget, Domain, Element, Exemplar, Matrix, OrientationField, Outcome, Outline, Placement,
-    Request as EngineRequest, Result, Similarity, Snapshot, Vector, Watch,
+    Request as EngineRequest, Result, Similarity, Snapshot, Stage, Stream, Vector, Watch,
 };
-use arabesque_patterns::{Params, Prepared as Engine};
+use arabesque_patterns::{Params, Prepared as Engine, repeat::Extent};
+use arabesque_surface::{Closest, SurfaceLattice};
+
+use crate::space::place::Shell;
+
+const SOURCES: Stage = Stage::new(462);
 
 /// Centres of a layer differ by less than this share of what its elements measure across it.
 const SINGLE: f64 = 0.5;
@@ -17,7 +22,8 @@ const SINGLE: f64 = 0.5;
 pub(super) struct Layer {
     /// The axes of the drawing, and the one across it.
     axes: [usize; 2],
-    across: usize,
+    pub(super) across: usize,
+    drawing: Arc<Exemplar<2>>,
     engine: Engine<2>,
     /// Height of the middle of the exemplar's window across.
     middle: f64,
@@ -54,11 +60,11 @@ impl Layer {
             });
         }
         let window = Bounds::new(flat(exemplar.window.min), flat(exemplar.window.max));
-        let drawing = Exemplar::new("exemplar", elements, exemplar.classes.clone(), window)?;
-        let engine = Engine::new(drawing, params, budget)?;
+        let drawing = Arc::new(Exemplar::new("exemplar", elements, exemplar.classes.clone(), window)?);
+        let engine = Engine::new(Arc::clone(&drawing), params, budget)?;
         let middle = exemplar.window.centre()[across];
         let centres = exemplar.elements.iter().map(|e| e.centre).collect();
-        Ok(Some(Self { axes, across, engine, middle, centres }))
+        Ok(Some(Self { axes, across, drawing, engine, middle, centres }))
     }
 
     /// Fills a box, in the middle of which the layer lies; `None` where that turns it about another axis.
@@ -103,6 +109,49 @@ impl Layer {
             warnings: outcome.warnings,
             stopped: outcome.stopped,
         }))
+    }
+
+    /// Covers a mesh, if the drawing repeats: its lattice is laid on the mesh and breaks where that bends too much; `None` if it does not.
+    ///
+    /// # Errors
+    /// As [`SurfaceLattice::new`] and [`Engine::take_apart`].
+    pub(super) fn cover(
+        &self,
+        (shell, solids): (&Shell, &Engine<3>),
+        request: &EngineRequest<3>,
+    ) -> Result<Option<Outcome<3>>> {
+        let Some(regular) = self.engine.repeating() else { return Ok(None) };
+        let repeat = regular.repeat();
+        if repeat.extent != Extent::Plane || !request.frozen.is_empty() {
+            return Ok(None);
+        }
+        let (scale, density) = (request.fields.scale.range().0, request.fields.density.range().0);
+        let wider = scale / density.sqrt();
+        let height = (self.middle - shell.under) * scale;
+        let budget = request.budget.stage("laying the lattice on the mesh");
+        let axes = |at: &Closest| {
+            let rotation = shell.rotation(at);
+            self.axes.map(|axis| Vector([0, 1, 2].map(|r| rotation.0[r][axis])))
+        };
+        let vectors = repeat.lattice.vectors.map(|v| v * wider);
+        let lattice = SurfaceLattice::new(&shell.index, &axes, vectors, height, (request.seed, &budget))?;
+        let mut placements = Vec::new();
+        for (number, shown) in regular.cell_places(&self.drawing).iter().enumerate() {
+            let sum = shown.iter().fold(Vector::ZERO, |sum, (_, centre)| sum + *centre);
+            let mean = sum * (1.0 / shown.len().max(1) as f64);
+            let mut random = Stream::new(request.seed, SOURCES, number as u64);
+            for place in lattice.places(&shell.index, mean * wider, &budget)? {
+                let (source, centre) = shown[random.below(shown.len())];
+                let off = (centre - mean) * wider;
+                let moved = axes(&place.at).into_iter().zip(off.0).fold(Vector::ZERO, |sum, (axis, v)| sum + axis * v);
+                let at = shell.index.closest(place.at.point + moved);
+                let above = (self.centres[source][self.across] - shell.under) * scale;
+                let place = at.point + at.normal * above;
+                let transform = Similarity::about(self.centres[source], place, shell.rotation(&at), scale);
+                placements.push(Placement { source, transform, control: Vec::new(), frozen: None });
+            }
+        }
+        solids.take_apart(placements, request).map(Some)
     }
 
     /// A place in the drawing as one in space, where the middle of the layer comes to the height `to`.

@@ -38,7 +38,7 @@ use crate::{
 use layer::{Layer, layer};
 use made::VolumeMade;
 use physics::Physical;
-use place::place;
+use place::{Shell, place};
 use scene::Bodies;
 
 /// An exemplar in space, analysed.
@@ -89,7 +89,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
 }
 
 impl Volume {
-    fn resolve(&self, context: &mut RunContext<'_>) -> Result<(EngineRequest<3>, Option<Arc<Physical>>)> {
+    fn resolve(&self, context: &mut RunContext<'_>) -> Result<Resolved> {
         let Job::Space(mut space) = context.job.clone() else {
             return Err(Error::parameter("request", context.job.name(), "a request for a part of space"));
         };
@@ -98,7 +98,9 @@ impl Volume {
             return Err(Error::parameter("border", "turn", expected));
         }
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
-        let place = place(&mut space, (&self.exemplar, floor), context)?;
+        let across = self.layer.as_ref().map(|layer| layer.across);
+        let place = place(&mut space, (&self.exemplar, floor, across), context)?;
+        let shell = place.shell;
         check_volume(&self.exemplar, place.domain.measure(), context.budget())?;
         let usual = match (&self.bodies, &place.domain) {
             (None, _) => Border::Clip,
@@ -125,8 +127,16 @@ impl Volume {
         context.job = Job::Space(space);
         request.seed = context.seed;
         request.budget = context.budget().clone();
-        Ok((request, physical))
+        Ok(Resolved { request, physical, shell })
     }
+}
+
+/// What is to be done, and where.
+struct Resolved {
+    request: EngineRequest<3>,
+    physical: Option<Arc<Physical>>,
+    /// The layer on a mesh that is filled, where it is one.
+    shell: Option<Arc<Shell>>,
 }
 
 impl Ready for Volume {
@@ -135,15 +145,16 @@ impl Ready for Volume {
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
-        let (request, physical) = self.resolve(&mut context)?;
+        let Resolved { request, physical, shell } = self.resolve(&mut context)?;
         let frame = request.domain.bounds();
         let origin = context.origin();
         let kind = (&self.exemplar, &self.bodies);
         let make = |snapshot| VolumeMade::of_snapshot(kind, frame, snapshot);
         let mut show = Show { watch, origin: &origin, make };
-        let flat = match &self.layer {
-            Some(layer) => layer.run(&request, &mut show)?,
-            None => None,
+        let flat = match (&self.layer, shell) {
+            (Some(layer), Some(shell)) => layer.cover((&shell, &self.engine), &request)?,
+            (Some(layer), None) => layer.run(&request, &mut show)?,
+            (None, _) => None,
         };
         let mut outcome = match flat {
             Some(outcome) => outcome,

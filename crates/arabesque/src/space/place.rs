@@ -6,12 +6,12 @@ use arabesque_core::{
     Bounds, Budget, Domain, Error, Exemplar, Fields, Grid, Ground, Matrix, OrientationField, Region, Result, Rotations,
     Vector,
 };
-use arabesque_surface::{DirectionField, MeshIndex, MeshReport};
+use arabesque_surface::{Closest, DirectionField, MeshIndex, MeshReport};
 
 use crate::{
     method::RunContext,
     plane::constant_factor,
-    recipe::{FieldSource, Space},
+    recipe::{Direction, FieldSource, Space},
     space::scene::UP,
     structure::{covered, filled},
 };
@@ -22,12 +22,14 @@ pub(super) struct Place {
     pub(super) fields: Fields<3>,
     /// What those stand on that stand on the floor of the exemplar.
     pub(super) ground: Option<Arc<dyn Ground<3>>>,
+    /// The same as a layer on a mesh, where it is one.
+    pub(super) shell: Option<Arc<Shell>>,
 }
 
-/// The place that `job` asks for, whose files are embedded.
+/// The place that `job` asks for, whose files are embedded. `across`: the axis across which the exemplar is a single layer.
 pub(super) fn place(
     job: &mut Space,
-    (exemplar, floor): (&Exemplar<3>, Option<f64>),
+    (exemplar, floor, across): (&Exemplar<3>, Option<f64>, Option<usize>),
     context: &mut RunContext<'_>,
 ) -> Result<Place> {
     let place = job.place()?;
@@ -46,24 +48,31 @@ pub(super) fn place(
         Space { cuboid: Some(cuboid), .. } => {
             let bounds = cuboid.bounds();
             let ground = floor.map(|_| Arc::new(Floor(bounds.min[UP])) as Arc<dyn Ground<3>>);
-            Ok(Place { domain: Domain::Box(bounds), fields: fields(constant), ground })
+            Ok(Place { domain: Domain::Box(bounds), fields: fields(constant), ground, shell: None })
         }
         Space { inside: Some(input), .. } => {
             let (index, report) = filled(input, context)?;
             let bounds = index.bounds();
             let solid = Inside::new(index, &report, context.budget())?;
             let ground = floor.map(|_| Arc::new(Floor(bounds.min[UP])) as Arc<dyn Ground<3>>);
-            Ok(Place { domain: Domain::Region(Arc::new(solid)), fields: fields(constant), ground })
+            Ok(Place { domain: Domain::Region(Arc::new(solid)), fields: fields(constant), ground, shell: None })
         }
         Space { on: Some(input), direction, .. } => {
-            let (index, field) = covered(input, direction, context)?;
-            let under = floor.unwrap_or_default();
-            let heights = [exemplar.window.min[UP], exemplar.window.max[UP]].map(|y| (y - under) * largest);
-            let layer = Arc::new(Layer { index, field, turned: turned.to_radians(), heights });
-            let rotations: Arc<dyn Rotations<3>> = layer.clone();
-            let ground: Arc<dyn Ground<3>> = layer.clone();
+            // A wall stands on the floor, but lies on a mesh: its rows run level.
+            let across = across.unwrap_or(UP);
+            let is_level = across != UP && direction.is_none();
+            let mut level = Some(Direction::Towards([0.0, 1.0, 0.0]));
+            let (index, field) = covered(input, if is_level { &mut level } else { direction }, context)?;
+            let ends = exemplar.elements.iter().flat_map(|e| e.outline.points()).map(|p| p[across]);
+            let under = floor.filter(|_| across == UP).unwrap_or_else(|| ends.fold(f64::INFINITY, f64::min));
+            let heights = [exemplar.window.min[across], exemplar.window.max[across]].map(|y| (y - under) * largest);
+            let turned = if is_level { turned - 90.0 } else { turned };
+            let shell = Arc::new(Shell { index, field, turned: turned.to_radians(), heights, across, under });
+            let rotations: Arc<dyn Rotations<3>> = shell.clone();
+            let ground: Option<Arc<dyn Ground<3>>> = if across == UP { Some(shell.clone()) } else { None };
             let orientation = Some(OrientationField::Of(rotations));
-            Ok(Place { domain: Domain::Region(layer), fields: fields(orientation), ground: Some(ground) })
+            let domain = Domain::Region(shell.clone());
+            Ok(Place { domain, fields: fields(orientation), ground, shell: Some(shell) })
         }
         Space { .. } => Err(Error::parameter("place", "none", "one of box, inside and on")),
     }
@@ -164,23 +173,41 @@ impl Region<3> for Inside {
 
 /// A layer on a mesh: what lies between two heights over it.
 #[derive(Debug)]
-struct Layer {
-    index: MeshIndex,
+pub(super) struct Shell {
+    pub(super) index: MeshIndex,
     field: DirectionField,
     /// Radians by which the pattern is turned about the normal.
     turned: f64,
     heights: [f64; 2],
+    /// The axis of the exemplar that runs along the normal, and what lies on the mesh along it.
+    across: usize,
+    pub(super) under: f64,
 }
 
-impl Layer {
+impl Shell {
+    /// The rotation of the exemplar at a point of the mesh.
+    pub(super) fn rotation(&self, at: &Closest) -> Matrix<3> {
+        let frame = self.field.frame(&self.index, at);
+        let (sin, cos) = self.turned.sin_cos();
+        let (first, normal) = (frame.tangent * cos + frame.bitangent() * sin, frame.normal);
+        let columns = match self.across {
+            0 => [normal, normal.cross(first), -first],
+            1 => [first, normal, first.cross(normal)],
+            _ => [first, normal.cross(first), normal],
+        };
+        Matrix(std::array::from_fn(|r| columns.map(|c| c[r])))
+    }
+}
+
+impl Shell {
     /// The height over the mesh, and the distance to where the layer ends sideways, at the edge of an open mesh.
-    fn foot(&self, p: Vector<3>) -> (f64, arabesque_surface::Closest) {
+    fn foot(&self, p: Vector<3>) -> (f64, Closest) {
         let foot = self.index.closest(p);
         (self.index.height(&foot, p), foot)
     }
 }
 
-impl Region<3> for Layer {
+impl Region<3> for Shell {
     fn bounds(&self) -> Bounds<3> {
         self.index.bounds().grown(self.heights[0].abs().max(self.heights[1].abs()))
     }
@@ -206,7 +233,7 @@ impl Region<3> for Layer {
     }
 }
 
-impl Ground<3> for Layer {
+impl Ground<3> for Shell {
     fn height(&self, p: Vector<3>) -> f64 {
         Self::foot(self, p).0
     }
@@ -217,13 +244,8 @@ impl Ground<3> for Layer {
     }
 }
 
-impl Rotations<3> for Layer {
+impl Rotations<3> for Shell {
     fn at(&self, p: Vector<3>) -> Matrix<3> {
-        let frame = self.field.frame(&self.index, &self.index.closest(p));
-        let (sin, cos) = self.turned.sin_cos();
-        let normal = frame.normal;
-        let tangent = frame.tangent * cos + frame.bitangent() * sin;
-        let across = tangent.cross(normal);
-        Matrix(std::array::from_fn(|r| [tangent[r], normal[r], across[r]]))
+        self.rotation(&self.index.closest(p))
     }
 }

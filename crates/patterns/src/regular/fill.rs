@@ -2,7 +2,7 @@
 
 use arabesque_core::{
     Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
-    Snapshot, Warning, Watch,
+    Snapshot, Vector, Warning, Watch,
 };
 
 use crate::{
@@ -22,7 +22,7 @@ use crate::{
     repeat::{
         Explains, Repeat,
         find::find_for,
-        orbits::{Orbit, orbits},
+        orbits::{Instance, Orbit, orbits},
     },
 };
 
@@ -186,6 +186,16 @@ impl Regular {
     /// The repeat by which it is continued.
     pub fn repeat(&self) -> &Repeat {
         &self.repeat
+    }
+
+    /// For each place of the cell the elements of the exemplar that show it, and where each would have its centre at the node at
+    /// the origin.
+    pub fn cell_places(&self, exemplar: &Exemplar<2>) -> Vec<Vec<(usize, Vector<2>)>> {
+        let centre = |instance: &Instance| {
+            let e = instance.element as usize;
+            (e, exemplar.elements[e].centre - self.repeat.lattice.at(instance.node))
+        };
+        self.orbits.iter().map(|orbit| orbit.instances.iter().map(centre).collect()).collect()
     }
 
     /// Which elements lie at which place of the cell.

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod directions;
+mod lattice;
 pub(crate) mod manifold;
 mod mesh;
 mod reconstruction;

@@ -20,6 +20,32 @@ const SLACK: f64 = 0.015;
 /// Rounds of taking out, putting in and moving.
 const ROUNDS: usize = 4;
 
+/// Mends overlaps alone: nothing is put in.
+///
+/// # Errors
+/// As [`mend`].
+pub(crate) fn take_apart<const D: usize>(
+    placements: &mut Vec<Placement<D>>,
+    exemplar: &Exemplar<D>,
+    library: &Library<D>,
+    extent: &Extent<'_, D>,
+) -> Result<()> {
+    if exemplar.solids.is_empty() {
+        return Ok(());
+    }
+    let budget = extent.request().budget.stage("taking elements apart");
+    let allowed = Allowed::measure(exemplar, library, &budget)?;
+    let mut things = Things::new(placements, exemplar, library, extent, &allowed);
+    let any = Numbered::filled(f64::INFINITY, library.classes());
+    let mended = things
+        .thin(&any, SLACK, &budget)
+        .and_then(|()| things.relax(&budget))
+        .and_then(|()| things.thin(&any, SLACK, &budget));
+    *placements = things.into_placements();
+    placements.retain(|p| p.frozen.is_some() || extent.keeps_rule(p));
+    mended
+}
+
 /// Mends overlaps and numbers of elements with a volume; anything else stays as it is.
 ///
 /// # Errors

@@ -1,0 +1,90 @@
+//! Lattices on meshes of known shape.
+
+use arabesque_core::{Budget, TriangleMesh, Vector};
+
+use super::shapes::{ball, grid};
+use crate::{Axes, Closest, DirectionField, Directions, LatticePlace, MeshIndex, SurfaceLattice};
+
+const SIDE: f64 = 0.2;
+
+fn index(mesh: &TriangleMesh) -> MeshIndex {
+    MeshIndex::new(mesh, "a.obj", &Budget::default()).unwrap()
+}
+
+/// Places of a lattice of which the rows run along `direction`.
+fn places(index: &MeshIndex, direction: Vector<3>, vectors: [Vector<2>; 2], seed: u64) -> Vec<LatticePlace> {
+    let budget = Budget::default();
+    let field = DirectionField::new(index, &Directions::Constant(direction), &budget).unwrap();
+    let axes = |at: &Closest| -> Axes {
+        let frame = field.frame(index, at);
+        [frame.tangent, frame.bitangent()]
+    };
+    let lattice = SurfaceLattice::new(index, &axes, vectors, 0.0, (seed, &budget)).unwrap();
+    lattice.places(index, Vector::ZERO, &budget).unwrap()
+}
+
+fn square() -> [Vector<2>; 2] {
+    [Vector::xy(SIDE, 0.0), Vector::xy(0.0, SIDE)]
+}
+
+/// Distance of each place from the nearest other.
+fn gaps(places: &[LatticePlace]) -> Vec<f64> {
+    let nearest = |a: &LatticePlace| {
+        let apart = places.iter().map(|b| (b.at.point - a.at.point).norm()).filter(|d| *d > 0.0);
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    places.iter().map(nearest).collect()
+}
+
+#[test]
+fn on_a_flat_mesh_it_is_the_lattice_itself() {
+    let flat = index(&grid(3, 3, [false; 2], |a, b| Vector([3.0 * a, 2.0 * b, 0.0])));
+    for seed in 0..3 {
+        let found = places(&flat, Vector([1.0, 0.0, 0.0]), square(), seed);
+        assert!((135..=176).contains(&found.len()), "15 to 16 times 9 to 11, not {}", found.len());
+        let first = found[0].at.point;
+        for place in &found {
+            let nodes = (place.at.point - first).0.map(|v| v / SIDE);
+            assert!(nodes.iter().all(|n| (n - n.round()).abs() < 1e-3), "{nodes:?}");
+        }
+    }
+}
+
+#[test]
+fn rows_close_up_around_a_pipe_that_suits_them() {
+    let around = 30.0 * SIDE / std::f64::consts::TAU;
+    let pipe = index(&grid(240, 40, [true, false], |a, b| {
+        let a = a * std::f64::consts::TAU;
+        Vector([around * a.cos(), around * a.sin(), 3.0 * b])
+    }));
+    let sheared = [Vector::xy(SIDE, 0.0), Vector::xy(0.5 * SIDE, SIDE)];
+    for vectors in [square(), sheared] {
+        let found = places(&pipe, Vector([0.0, 0.0, 1.0]), vectors, 1);
+        assert!((420..=480).contains(&found.len()), "about 450, not {}", found.len());
+        assert!(gaps(&found).iter().all(|gap| *gap > 0.97 * SIDE && *gap < 1.03 * SIDE));
+    }
+}
+
+#[test]
+fn around_a_ball_it_breaks_and_leaves_neither_heaps_nor_holes() {
+    let ball = index(&ball(48, Vector::ZERO, 1.0));
+    for seed in 0..3 {
+        let found = places(&ball, Vector([0.0, 0.0, 1.0]), square(), seed);
+        let expected = ball.area() / (SIDE * SIDE);
+        let share = found.len() as f64 / expected;
+        assert!((0.9..1.1).contains(&share), "{share}");
+        let gaps = gaps(&found);
+        let regular = gaps.iter().filter(|gap| (**gap / SIDE - 1.0).abs() < 0.1).count();
+        assert!(gaps.iter().all(|gap| *gap > 0.5 * SIDE && *gap < 1.6 * SIDE));
+        assert!(regular as f64 > 0.7 * found.len() as f64, "{regular} of {}", found.len());
+    }
+}
+
+#[test]
+fn parallel_vectors_are_no_lattice() {
+    let flat = index(&grid(3, 3, [false; 2], |a, b| Vector([a, b, 0.0])));
+    let axes = |_: &Closest| [Vector([1.0, 0.0, 0.0]), Vector([0.0, 1.0, 0.0])];
+    let vectors = [Vector::xy(0.1, 0.0), Vector::xy(0.2, 0.0)];
+    let error = SurfaceLattice::new(&flat, &axes, vectors, 0.0, (0, &Budget::default())).unwrap_err();
+    assert!(error.to_string().contains("not parallel"));
+}

@@ -267,7 +267,7 @@ impl Report {
                 let job = RenderJob { svg: &svg, units, resolution: Resolution::default(), recipe: Some(NO_RECIPE) };
                 write_png(&job, budget)
             }
-            Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Ply | Format::Toml => {
+            Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Ply | Format::Usda | Format::Toml => {
                 Err(unsupported("a picture in this format"))
             }
         }

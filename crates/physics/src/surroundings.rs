@@ -45,8 +45,9 @@ pub struct Surroundings {
 impl Surroundings {
     /// A floor at this height.
     #[must_use]
-    pub fn floor(mut self, height: f64) -> Self {
-        self.walls.push(Wall { place: Vector([0.0, height, 0.0]), normal: Vector([0.0, 1.0, 0.0]) });
+    pub fn floor(mut self, axis: usize, height: f64) -> Self {
+        let along = |length: f64| Vector(std::array::from_fn(|k| if k == axis { length } else { 0.0 }));
+        self.walls.push(Wall { place: along(height), normal: along(1.0) });
         self
     }
 

@@ -83,5 +83,5 @@ pub use territory::{
     shell::Shell,
     site::Site,
     solid::Solid,
-    tube::{Along, Thread, Tube},
+    tube::{Along, Foot, Thread, Tube},
 };

@@ -58,6 +58,8 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
             (json::recipe_of(&text), "a JSON file")
         } else if ending == Some(Format::Csv) || start.starts_with("x,y,") {
             (csv::recipe_of(&text), "a file of points")
+        } else if ending == Some(Format::Usda) || start.starts_with("#usda") {
+            (csv::recipe_of(&text), "a USD file")
         } else if ending == Some(Format::Obj) || is_of_curves(start.as_bytes()) {
             (obj::recipe_of(&text), "a file of curves")
         } else {

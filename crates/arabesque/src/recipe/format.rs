@@ -24,13 +24,15 @@ pub enum Format {
     Glb,
     /// Points with attributes, and meshes.
     Ply,
+    /// Scenes of meshes as USD text.
+    Usda,
     /// The recipe alone.
     Toml,
 }
 
 impl Format {
     /// Every format, by name.
-    pub const ALL: [(&'static str, Self); 8] = [
+    pub const ALL: [(&'static str, Self); 9] = [
         ("svg", Self::Svg),
         ("png", Self::Png),
         ("json", Self::Json),
@@ -38,6 +40,7 @@ impl Format {
         ("obj", Self::Obj),
         ("glb", Self::Glb),
         ("ply", Self::Ply),
+        ("usda", Self::Usda),
         ("toml", Self::Toml),
     ];
 

@@ -28,6 +28,13 @@ pub struct OutputOptions {
     /// PNG of what lies in space: from where it is seen, as `azimuth,elevation` in degrees. Default: -60,30.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<String>,
+    /// GLB of a scene of meshes: one node with a list of places for each mesh (EXT_mesh_gpu_instancing) instead of a node for each
+    /// element. Default: false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub instancing: bool,
+    /// PLY of a scene of meshes: the centres of the elements, with their classes and rotations, instead of their meshes. Default: false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub centres: bool,
     /// Leave the recipe out of the file. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub bare: bool,

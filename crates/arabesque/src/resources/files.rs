@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeMap,
+    path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
 };
 
@@ -62,6 +63,11 @@ impl Files {
             Some(role) => self.resources.read_as(role, input),
             None => self.resources.read(input),
         }
+    }
+
+    /// Where an input lies on disk, if it does.
+    pub(crate) fn path_of(&self, input: &Input) -> Option<PathBuf> {
+        self.resources.file_of("", input).ok().flatten().filter(|_| !file::is_stream(&input.path))
     }
 
     /// The content of an input, as text.

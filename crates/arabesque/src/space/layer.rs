@@ -7,8 +7,8 @@ use arabesque_core::{
     Bounds, Budget, Domain, Element, Exemplar, Matrix, OrientationField, Outcome, Outline, Placement,
     Request as EngineRequest, Result, Similarity, Snapshot, Stage, Stream, Vector, Watch,
 };
-use arabesque_patterns::{Params, Prepared as Engine, repeat::Extent};
-use arabesque_surface::{Closest, SurfaceLattice};
+use arabesque_patterns::{Params, Prepared as Engine, Regular, repeat::Extent};
+use arabesque_surface::{Axes, Closest, SurfaceLattice};
 
 use crate::space::place::Shell;
 
@@ -23,6 +23,8 @@ pub(super) struct Layer {
     /// The axes of the drawing, and the one across it.
     axes: [usize; 2],
     pub(super) across: usize,
+    /// The axis that is up.
+    up: usize,
     drawing: Arc<Exemplar<2>>,
     engine: Engine<2>,
     /// Height of the middle of the exemplar's window across.
@@ -64,7 +66,7 @@ impl Layer {
         let engine = Engine::new(Arc::clone(&drawing), params, budget)?;
         let middle = exemplar.window.centre()[across];
         let centres = exemplar.elements.iter().map(|e| e.centre).collect();
-        Ok(Some(Self { axes, across, drawing, engine, middle, centres }))
+        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, centres }))
     }
 
     /// Fills a box, in the middle of which the layer lies; `None` where that turns it about another axis.
@@ -77,7 +79,7 @@ impl Layer {
         watch: &mut dyn Watch<Snapshot<3>>,
     ) -> Result<Option<Outcome<3>>> {
         let Domain::Box(bounds) = &request.domain else { return Ok(None) };
-        if request.fields.orientation.is_some() && self.across != 1 || !request.frozen.is_empty() {
+        if request.fields.orientation.is_some() && self.across != self.up || !request.frozen.is_empty() {
             return Ok(None);
         }
         let flat = |p: Vector<3>| Vector(self.axes.map(|axis| p[axis]));
@@ -111,6 +113,43 @@ impl Layer {
         }))
     }
 
+    /// The lattice of the drawing, if it repeats in the plane.
+    fn regular(&self) -> Option<&Regular> {
+        self.engine.repeating().filter(|regular| regular.repeat().extent == Extent::Plane)
+    }
+
+    /// Whether the drawing repeats in the plane.
+    pub(super) fn repeats(&self) -> bool {
+        self.regular().is_some()
+    }
+
+    /// The lattice on a mesh, whose vectors are longer by a factor; 0 for a drawing without.
+    fn laid(&self, shell: &Shell, [scale, wider]: [f64; 2], seed: u64, budget: &Budget) -> Result<SurfaceLattice> {
+        let vectors = self.regular().map_or([Vector::ZERO; 2], |regular| regular.repeat().lattice.vectors);
+        let height = (self.middle - shell.under) * scale;
+        SurfaceLattice::new(
+            &shell.index,
+            &|at| self.along(shell, at),
+            vectors.map(|v| v * wider),
+            height,
+            (seed, budget),
+        )
+    }
+
+    /// The axes of the drawing at a point of a mesh.
+    fn along(&self, shell: &Shell, at: &Closest) -> Axes {
+        let rotation = shell.rotation(at);
+        self.axes.map(|axis| Vector([0, 1, 2].map(|r| rotation.0[r][axis])))
+    }
+
+    /// The share of a mesh on which the lattice does not go on.
+    ///
+    /// # Errors
+    /// As [`SurfaceLattice::new`].
+    pub(super) fn broken(&self, shell: &Shell, scale: f64, budget: &Budget) -> Result<f64> {
+        Ok(self.laid(shell, [scale, scale], 0, budget)?.broken())
+    }
+
     /// Covers a mesh, if the drawing repeats: its lattice is laid on the mesh and breaks where that bends too much; `None` if it does not.
     ///
     /// # Errors
@@ -120,21 +159,11 @@ impl Layer {
         (shell, solids): (&Shell, &Engine<3>),
         request: &EngineRequest<3>,
     ) -> Result<Option<Outcome<3>>> {
-        let Some(regular) = self.engine.repeating() else { return Ok(None) };
-        let repeat = regular.repeat();
-        if repeat.extent != Extent::Plane || !request.frozen.is_empty() {
-            return Ok(None);
-        }
+        let Some(regular) = self.regular().filter(|_| request.frozen.is_empty()) else { return Ok(None) };
         let (scale, density) = (request.fields.scale.range().0, request.fields.density.range().0);
         let wider = scale / density.sqrt();
-        let height = (self.middle - shell.under) * scale;
         let budget = request.budget.stage("laying the lattice on the mesh");
-        let axes = |at: &Closest| {
-            let rotation = shell.rotation(at);
-            self.axes.map(|axis| Vector([0, 1, 2].map(|r| rotation.0[r][axis])))
-        };
-        let vectors = repeat.lattice.vectors.map(|v| v * wider);
-        let lattice = SurfaceLattice::new(&shell.index, &axes, vectors, height, (request.seed, &budget))?;
+        let lattice = self.laid(shell, [scale, wider], request.seed, &budget)?;
         let mut placements = Vec::new();
         for (number, shown) in regular.cell_places(&self.drawing).iter().enumerate() {
             let sum = shown.iter().fold(Vector::ZERO, |sum, (_, centre)| sum + *centre);
@@ -143,7 +172,11 @@ impl Layer {
             for place in lattice.places(&shell.index, mean * wider, &budget)? {
                 let (source, centre) = shown[random.below(shown.len())];
                 let off = (centre - mean) * wider;
-                let moved = axes(&place.at).into_iter().zip(off.0).fold(Vector::ZERO, |sum, (axis, v)| sum + axis * v);
+                let moved = self
+                    .along(shell, &place.at)
+                    .into_iter()
+                    .zip(off.0)
+                    .fold(Vector::ZERO, |sum, (axis, v)| sum + axis * v);
                 let at = shell.index.closest(place.at.point + moved);
                 let above = (self.centres[source][self.across] - shell.under) * scale;
                 let place = at.point + at.normal * above;

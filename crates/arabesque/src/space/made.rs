@@ -6,13 +6,18 @@ use arabesque_core::{
     Bounds, EnergyPoint, Error, Exemplar, Matrix, Outcome, Result, Similarity, Snapshot, StopReason, Warning,
 };
 use arabesque_io::{
-    json,
+    json::{
+        self,
+        placements::{PlacementsOptions, write_placements},
+    },
     mesh::{
-        gltf::{Scene, write_scene},
+        gltf::{GltfOptions, Scene, write_scene_with},
         obj,
+        scene::{Convention, Up},
+        usd::write_usda,
     },
     render::Item,
-    table::csv,
+    table::{centres::write_centres_ply, csv},
 };
 
 use crate::{
@@ -38,6 +43,8 @@ pub(crate) struct VolumeMade {
     pub(crate) bodies: Option<Arc<Bodies>>,
     /// The box.
     pub(crate) frame: Bounds<3>,
+    /// Of the exemplar's file.
+    pub(crate) convention: Convention,
     pub(crate) outcome: Outcome<3>,
     /// What physics did at the end, where it did.
     pub(crate) physics: Option<PhysicsSummary>,
@@ -47,13 +54,14 @@ impl VolumeMade {
     /// What a run has so far.
     pub(crate) fn of_snapshot(
         (exemplar, bodies): (&Arc<Exemplar<3>>, &Option<Arc<Bodies>>),
-        frame: Bounds<3>,
+        (frame, convention): (Bounds<3>, Convention),
         snapshot: Snapshot<3>,
     ) -> Self {
         Self {
             exemplar: Arc::clone(exemplar),
             bodies: bodies.clone(),
             frame,
+            convention,
             outcome: unfinished(snapshot),
             physics: None,
         }
@@ -64,10 +72,32 @@ impl VolumeMade {
         let scene = bodies.placed(&self.outcome.placements, Some(self.frame));
         let budget = sheet.budget;
         match sheet.format {
-            Format::Glb => Ok(Encoded { bytes: write_scene(&scene, sheet.recipe, budget)?, warnings: Vec::new() }),
+            Format::Glb => {
+                let scene = scene.converted(&self.convention, &Convention::default());
+                let options = GltfOptions { recipe: sheet.recipe, instancing: sheet.output.instancing };
+                Ok(Encoded { bytes: write_scene_with(&scene, &options, budget)?, warnings: Vec::new() })
+            }
+            Format::Obj => {
+                let written = obj::write_scene(&scene, None, sheet.recipe, budget)?;
+                Ok(Encoded { bytes: written.obj.into_bytes(), warnings: written.warnings })
+            }
+            Format::Usda => {
+                let (text, warnings) = write_usda(&scene, &self.convention, sheet.recipe, budget)?;
+                Ok(Encoded { bytes: text.into_bytes(), warnings })
+            }
+            Format::Json => {
+                let options = PlacementsOptions { recipe: sheet.recipe, ..PlacementsOptions::default() };
+                let text = write_placements(&scene, &options, budget)?;
+                Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new() })
+            }
+            Format::Ply if sheet.output.centres => {
+                let text = write_centres_ply(&scene, sheet.recipe, budget)?;
+                Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new() })
+            }
             Format::Png => {
                 // Pictures have z up, scenes y.
-                let upright = Similarity { rotation: UPRIGHT, ..Similarity::identity() };
+                let rotation = if self.convention.up == Up::Y { UPRIGHT } else { Matrix::identity() };
+                let upright = Similarity { rotation, ..Similarity::identity() };
                 let places: Vec<Vec<_>> = (0..scene.meshes.len())
                     .map(|m| scene.places(m).iter().map(|place| upright.after(place)).collect())
                     .collect();
@@ -89,7 +119,7 @@ impl Made for VolumeMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
         let (exemplar, outcome, frame) = (&*self.exemplar, &self.outcome, self.frame);
         if let Some(bodies) = &self.bodies
-            && !matches!(sheet.format, Format::Csv | Format::Json)
+            && sheet.format != Format::Csv
         {
             return self.encode_scene(bodies, sheet);
         }
@@ -109,7 +139,7 @@ impl Made for VolumeMade {
                 let page = json::Frame { view: frame, unit: None, recipe: sheet.recipe };
                 (json::write_json(exemplar, outcome, &page)?, Vec::new())
             }
-            Format::Svg | Format::Png | Format::Glb | Format::Ply | Format::Toml => {
+            Format::Svg | Format::Png | Format::Glb | Format::Ply | Format::Usda | Format::Toml => {
                 let what = format!("a result in space as {}", sheet.format.name());
                 let advice = "write obj (curves), csv (points) or json (both)";
                 return Err(Error::Unsupported { what, advice: advice.into() });

@@ -1,5 +1,6 @@
 //! Parts of space: scenes of meshes, networks of curves and clouds of points.
 
+mod file;
 mod layer;
 mod made;
 #[cfg(feature = "physics")]
@@ -20,10 +21,7 @@ use arabesque_core::{
     Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, StopReason, Warning,
     Watch,
 };
-use arabesque_io::{
-    geometry::{Kind, kind_of},
-    mesh::gltf::read_scene,
-};
+use arabesque_io::mesh::scene::Convention;
 use arabesque_patterns::Prepared as Engine;
 
 use crate::{
@@ -35,10 +33,11 @@ use crate::{
     resources::{Files, Resources},
     spacing::spacing,
 };
+use file::{may_be_scene, scene_of};
 use layer::{Layer, layer};
 use made::VolumeMade;
 use physics::Physical;
-use place::{Shell, place};
+use place::{Filling, Shell, place};
 use scene::Bodies;
 
 /// An exemplar in space, analysed.
@@ -57,10 +56,12 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let params = space.params.engine_params()?;
     let bytes = preparation.files.read(&preparation.exemplar)?;
     let budget = preparation.files.budget();
-    if kind_of(preparation.exemplar.name(), &bytes) == Some(Kind::Glb) {
-        let (bodies, warnings) = Bodies::read(preparation.exemplar.name(), &bytes, budget)?;
+    if may_be_scene(preparation.exemplar.name(), &bytes) {
+        let scene = scene_of(&preparation.exemplar, &bytes, preparation.files)?;
+        let (bodies, warnings) = Bodies::read(preparation.exemplar.name(), scene, space.up.axis(), budget)?;
         preparation.warnings.extend(warnings);
-        let bodies = if space.floor || space.on.is_some() { bodies.on_floor() } else { bodies };
+        let others = space.floor || space.on.is_some();
+        let bodies = if space.stands() { bodies.on_floor(others, &space.constrain)? } else { bodies };
         preparation.exemplar = preparation.exemplar.embedding(&bytes);
         let exemplar = Arc::clone(&bodies.exemplar);
         let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
@@ -97,9 +98,13 @@ impl Volume {
             let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
             return Err(Error::parameter("border", "turn", expected));
         }
+        if self.bodies.is_none() && (space.place()? != "box" || !space.avoid.is_empty()) {
+            let what = "a place other than a box for points and curves in space";
+            return Err(Error::Unsupported { what: what.into(), advice: "give a scene of meshes, or a box".into() });
+        }
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
-        let across = self.layer.as_ref().map(|layer| layer.across);
-        let place = place(&mut space, (&self.exemplar, floor, across), context)?;
+        let filling = Filling { exemplar: &self.exemplar, floor, layer: self.layer.as_deref() };
+        let place = place(&mut space, filling, context)?;
         let shell = place.shell;
         check_volume(&self.exemplar, place.domain.measure(), context.budget())?;
         let usual = match (&self.bodies, &place.domain) {
@@ -120,7 +125,8 @@ impl Volume {
                 });
             };
             let bytes = context.files.embed(input)?;
-            request.frozen = bodies.kept(input.name(), &bytes, context.budget())?;
+            let kept = scene_of(input, &bytes, context.files)?;
+            request.frozen = bodies.kept(input.name(), &kept, context.budget())?;
         }
         let physical = Physical::new(&mut space, self.bodies.as_deref(), &request, context)?;
         request.between = physical.as_ref().and_then(Physical::between);
@@ -149,7 +155,11 @@ impl Ready for Volume {
         let frame = request.domain.bounds();
         let origin = context.origin();
         let kind = (&self.exemplar, &self.bodies);
-        let make = |snapshot| VolumeMade::of_snapshot(kind, frame, snapshot);
+        let convention = match &context.job {
+            Job::Space(space) => Convention { up: space.up.into(), metres_per_unit: space.unit.metres() },
+            _ => Convention::default(),
+        };
+        let make = |snapshot| VolumeMade::of_snapshot(kind, (frame, convention), snapshot);
         let mut show = Show { watch, origin: &origin, make };
         let flat = match (&self.layer, shell) {
             (Some(layer), Some(shell)) => layer.cover((&shell, &self.engine), &request)?,
@@ -166,11 +176,12 @@ impl Ready for Volume {
         };
         outcome.warnings.splice(0..0, context.warnings);
         let (exemplar, bodies) = (Arc::clone(&self.exemplar), self.bodies.clone());
-        Ok(Artwork::new(origin, VolumeMade { exemplar, bodies, frame, outcome, physics }))
+        Ok(Artwork::new(origin, VolumeMade { exemplar, bodies, frame, convention, outcome, physics }))
     }
 }
 
-/// Whether a file is a scene of meshes and nothing else, which are elements; points beside them make it a structure.
+/// Whether a file is a scene of meshes and nothing else, which are elements; points beside them make it a structure, and an OBJ file
+/// without faces a net of curves.
 ///
 /// # Errors
 /// As [`Recipe::prepare`] for a file that cannot be read.
@@ -178,10 +189,10 @@ pub fn is_scene_of_meshes(exemplar: &Input, resources: &Resources) -> Result<boo
     let recipe = Recipe::new(exemplar.clone(), Space::default());
     let files = Files::new(resources.clone(), &recipe);
     let bytes = files.read(exemplar)?;
-    if kind_of(exemplar.name(), &bytes) != Some(Kind::Glb) {
+    if !may_be_scene(exemplar.name(), &bytes) {
         return Ok(false);
     }
-    let scene = read_scene(exemplar.name(), &bytes, files.budget())?;
+    let scene = scene_of(exemplar, &bytes, &files)?;
     Ok(scene.points.is_empty() && !scene.nodes.is_empty())
 }
 

@@ -18,8 +18,6 @@ use crate::{
     space::scene::Bodies,
 };
 
-/// Straight down, as strong as on earth.
-const DOWN: Vector<3> = Vector([0.0, -1.0, 0.0]);
 /// The strongest gravity, where that of the earth is 1.
 const STRONGEST: f64 = 10.0;
 
@@ -83,7 +81,7 @@ impl Physical {
             shapes,
             sources,
             surroundings: surroundings(job, request, context)?,
-            gravity: if ground.is_some() { Vector::ZERO } else { gravity.unwrap_or(DOWN) },
+            gravity: if ground.is_some() { Vector::ZERO } else { gravity.unwrap_or_else(|| down(job)) },
             ground,
             params,
             substeps,
@@ -159,6 +157,11 @@ fn unsupported(what: &str, advice: &str) -> Error {
     Error::Unsupported { what: what.into(), advice: advice.into() }
 }
 
+/// Straight down, as strong as on earth.
+fn down(job: &Space) -> Vector<3> {
+    Vector(std::array::from_fn(|k| if k == job.up.axis() { -1.0 } else { 0.0 }))
+}
+
 fn gravity(job: &Space) -> Result<Option<Vector<3>>> {
     let Some(given) = job.gravity.map(Vector) else { return Ok(None) };
     if given.is_finite() && given.norm() <= STRONGEST {
@@ -183,12 +186,17 @@ fn surroundings(job: &mut Space, request: &EngineRequest<3>, context: &RunContex
     } else if let Some(on) = &mut job.on {
         around.surfaces.push(Surface { mesh: mesh(on, context.files)?.0, side: Side::Outside });
         return Ok(around);
+    } else if let Some(along) = &job.along {
+        let what = format!("physics in a tube along {}", along.name());
+        return Err(unsupported(&what, "fill a mesh of the tube with --inside, or leave physics out"));
+    } else if !job.avoid.is_empty() {
+        return Err(unsupported("physics together with avoid", "leave one of them out"));
     } else if border == Border::Inside {
         around = around.inside_box(&bounds);
     } else {
         around.middles = Some(bounds);
     }
-    Ok(if request.ground.is_some() { around.floor(bounds.min[1]) } else { around })
+    Ok(if request.ground.is_some() { around.floor(job.up.axis(), bounds.min[job.up.axis()]) } else { around })
 }
 
 fn summary(run: &Run) -> PhysicsSummary {

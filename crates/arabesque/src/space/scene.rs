@@ -4,10 +4,12 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{
     Bounds, Budget, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Solid, TriangleMesh,
-    Vector, Warning, point_lattice,
+    Vector, Warning, point_lattice, suggest::did_you_mean,
 };
-use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode, read_scene};
+use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode};
 use arabesque_surface::{MeshIndex, scatter};
+
+use crate::recipe::Constraint;
 
 /// Points that are scattered over a mesh, and corners that are added to them, at most.
 const SCATTERED: f64 = 40.0;
@@ -18,8 +20,6 @@ const ACROSS: f64 = 8.0;
 const ALONG: f64 = 64.0;
 const MARGIN: f64 = 3.0;
 const THINNEST: f64 = 12.0;
-/// The axis that is up.
-pub(super) const UP: usize = 1;
 /// What is nearer to the floor than this share of its size stands on it.
 const NEAR: f64 = 0.12;
 /// A frame is made wider by no more than this factor.
@@ -48,12 +48,11 @@ struct Body {
 }
 
 impl Bodies {
-    /// Reads a scene.
+    /// Takes a scene for an exemplar; `up` is the axis that is up.
     ///
     /// # Errors
-    /// As [`read_scene`]; [`Error::Input`] for a scene without meshes and for a mesh without area.
-    pub(crate) fn read(name: &str, bytes: &[u8], budget: &Budget) -> Result<(Self, Vec<Warning>)> {
-        let mut scene = read_scene(name, bytes, budget)?;
+    /// [`Error::Input`] for a scene without meshes and for a mesh without area.
+    pub(crate) fn read(name: &str, mut scene: Scene, up: usize, budget: &Budget) -> Result<(Self, Vec<Warning>)> {
         let mut warnings = std::mem::take(&mut scene.warnings);
         if scene.nodes.is_empty() {
             let advice = "give a scene of meshes, or use --method structures for points";
@@ -88,21 +87,38 @@ impl Bodies {
             });
         }
         let mut exemplar = framed(name, elements, classes, scene.frame)?;
+        exemplar.up = up;
         exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[node.mesh].solid)).collect();
         Ok((Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar), floor: None }, warnings))
     }
 
-    /// The same with a floor at its lowest place: what stands on it is a class of its own.
-    pub(crate) fn on_floor(&self) -> Self {
+    /// The same with a floor at its lowest place: what stands on it is a class of its own. Of classes with a rule that
+    /// decides; of others what stands on it does where `others` is true.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a rule for a class that is not there.
+    pub(crate) fn on_floor(&self, others: bool, rules: &BTreeMap<String, Constraint>) -> Result<Self> {
         let mut exemplar = (*self.exemplar).clone();
-        let lowest = |e: &Element<3>| e.outline.points().map(|p| p[UP]).fold(f64::INFINITY, f64::min);
+        let up = exemplar.up;
+        let names: Vec<_> = exemplar.classes.iter().map(|class| class.name.as_str()).collect();
+        if let Some(unknown) = rules.keys().find(|name| !names.contains(&name.as_str())) {
+            let hint = did_you_mean(unknown, names.iter().copied());
+            return Err(Error::parameter(
+                "constrain",
+                unknown,
+                format!("a class of the exemplar: {}{hint}", list(&names)),
+            ));
+        }
+        let bound: Vec<bool> =
+            names.iter().map(|name| rules.get(*name).map_or(others, |rule| *rule == Constraint::Floor)).collect();
+        let lowest = |e: &Element<3>| e.outline.points().map(|p| p[up]).fold(f64::INFINITY, f64::min);
         let floor = exemplar.elements.iter().map(lowest).fold(f64::INFINITY, f64::min);
         let mut number_of = BTreeMap::new();
         let (mut heights, mut classes) = (Vec::new(), exemplar.classes.clone());
         for element in &mut exemplar.elements {
             let size = 2.0 * element.outline.radius(element.centre);
-            let stands = lowest(element) - floor <= NEAR * size;
-            heights.push(stands.then_some(element.centre[UP] - floor));
+            let stands = bound[element.class] && lowest(element) - floor <= NEAR * size;
+            heights.push(stands.then_some(element.centre[up] - floor));
             if stands {
                 let old = element.class;
                 element.class = *number_of.entry(old).or_insert_with(|| {
@@ -112,15 +128,14 @@ impl Bodies {
             }
         }
         (exemplar.heights, exemplar.classes) = (heights, classes);
-        Self { scene: Arc::clone(&self.scene), exemplar: Arc::new(exemplar), floor: Some(floor) }
+        Ok(Self { scene: Arc::clone(&self.scene), exemplar: Arc::new(exemplar), floor: Some(floor) })
     }
 
     /// The elements of another scene, each as a copy of one with the same mesh.
     ///
     /// # Errors
-    /// As [`read_scene`]; [`Error::Input`] for a mesh that the exemplar does not have.
-    pub(crate) fn kept(&self, name: &str, bytes: &[u8], budget: &Budget) -> Result<Vec<Placement<3>>> {
-        let kept = read_scene(name, bytes, budget)?;
+    /// [`Error::Input`] for a mesh that the exemplar does not have.
+    pub(crate) fn kept(&self, name: &str, kept: &Scene, budget: &Budget) -> Result<Vec<Placement<3>>> {
         let source_of = |mesh: &SceneMesh| {
             let is_same = |own: &SceneMesh| {
                 own.mesh.positions == mesh.mesh.positions && own.mesh.triangles == mesh.mesh.triangles
@@ -255,4 +270,11 @@ fn colour(mesh: &TriangleMesh) -> [f64; 3] {
             std::array::from_fn(|k| (list.iter().map(|c| c[k]).sum::<f64>() / list.len() as f64).clamp(0.0, 1.0))
         }
     }
+}
+
+/// The first names of a list.
+fn list(names: &[&str]) -> String {
+    const SHOWN: usize = 8;
+    let more = if names.len() > SHOWN { ", ..." } else { "" };
+    format!("{}{more}", names[..names.len().min(SHOWN)].join(", "))
 }

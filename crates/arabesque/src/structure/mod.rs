@@ -21,7 +21,7 @@ use crate::{
     surface::SurfaceMade,
 };
 use made::{PlanePoints, SpacePoints};
-pub(crate) use place::{covered, directions, filled};
+pub(crate) use place::{directions, filled, lines, surface};
 use scene::{SceneMade, beside};
 use shapes::{Shapes, exemplar};
 

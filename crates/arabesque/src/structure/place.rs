@@ -118,13 +118,29 @@ pub(crate) fn covered(
     direction: &mut Option<Direction>,
     context: &mut RunContext<'_>,
 ) -> Result<(MeshIndex, DirectionField)> {
+    let index = surface(input, context)?;
+    let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
+    context.warnings.extend(field.warnings().iter().cloned());
+    Ok((index, field))
+}
+
+/// A mesh to cover; the file is embedded.
+pub(crate) fn surface(input: &mut Input, context: &mut RunContext<'_>) -> Result<MeshIndex> {
     let (index, warnings) = indexed_mesh(input, context.files)?;
     context.warnings.extend(warnings);
     let report = MeshReport::new(&index, context.budget())?;
     context.warnings.extend(report.surface_of(input.name())?);
-    let field = DirectionField::new(&index, &directions(direction, context)?, context.budget())?;
-    context.warnings.extend(field.warnings().iter().cloned());
-    Ok((index, field))
+    Ok(index)
+}
+
+/// Lines in space, as polylines; the file is embedded. `option` is what they are for.
+pub(crate) fn lines(option: &str, input: &mut Input, context: &mut RunContext<'_>) -> Result<Vec<Vec<Vector<3>>>> {
+    match curves(input, context)? {
+        Curves::Space(paths) => {
+            Ok(paths.iter().map(|path| path.flatten(CHORD * path.bounds().size().norm())).collect())
+        }
+        Curves::Plane(_) => Err(elsewhere(option, "in the plane", "elements in space", "give lines of an OBJ file")),
+    }
 }
 
 /// A closed mesh to fill, with what is known of it; the file is embedded.

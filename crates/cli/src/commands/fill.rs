@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
-    Border, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters, Physics,
-    Recipe, Redo, Region, Resources, Space, Structures,
+    Border, Constraint, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters,
+    Physics, Recipe, Redo, Region, Resources, Space, Structures, Unit, Up,
     core::options::{Choice, help_list, preset_list},
     is_scene_of_meshes,
     patterns::Params,
@@ -61,18 +61,27 @@ struct Place {
     /// Fill a box in space, in the units of the exemplar: curves (OBJ) or points (CSV with a column z)
     #[arg(long = "box", value_name = "XxYxZ", group = "where")]
     cuboid: Option<String>,
-    /// Structures: follow the lines of an OBJ file, or the paths of an SVG file
+    /// Structures and scenes of meshes: follow the lines of an OBJ file; structures in the plane the paths of an SVG file
     #[arg(long, value_name = "CURVE[#ID]", group = "where")]
     along: Option<String>,
-    /// Structures: cover a mesh
+    /// Structures and scenes of meshes: cover a mesh
     #[arg(long, value_name = "MESH", group = "where")]
     on: Option<String>,
-    /// Structures: fill a closed mesh
+    /// Structures and scenes of meshes: fill a closed mesh
     #[arg(long, value_name = "MESH", group = "where")]
     inside: Option<String>,
     /// Scenes of meshes: what lies on the floor in the exemplar (its lowest place) lies on the floor of the result
     #[arg(long)]
     floor: bool,
+    /// Scenes of meshes: where the elements of a class may lie: floor as with --floor, free anywhere; may be given several times
+    #[arg(long, value_name = "CLASS=RULE", value_parser = pair)]
+    constrain: Vec<(String, String)>,
+    /// Scenes of meshes: the axis that is up in the files that are read; results have the same, GLB always y
+    #[arg(long, value_name = "AXIS", default_value = Up::default().name(), value_parser = choice::<Up>())]
+    up: Up,
+    /// Scenes of meshes: length of a unit of the files that are read; results have the same, GLB always m
+    #[arg(long, value_name = "UNIT", default_value = Unit::default().name(), value_parser = choice::<Unit>())]
+    unit: Unit,
     /// Scenes of meshes: elements push one another apart, fall and come to rest: so many steps of physics after each iteration, or settle
     /// for the end alone [a value needs =; without one: 5]
     #[arg(long, value_name = "N|settle", num_args = 0..=1, require_equals = true, default_missing_value = "5",
@@ -84,7 +93,7 @@ struct Place {
     /// With --physics: friction between elements and with what is around them, from 0 to 2 [default: 0.5]
     #[arg(long, value_name = "F", requires = "physics")]
     friction: Option<f64>,
-    /// Keep these shapes free; structures also what is dark in a PNG picture; may be given several times
+    /// Keep these shapes free; structures also what is dark in a PNG picture; scenes of meshes closed meshes; may be given several times
     #[arg(long, value_name = "SHAPE.svg[#ID]")]
     avoid: Vec<String>,
     /// Elements and strokes, or points, that stay exactly where this file has them; the rest is fitted around them and joined to them
@@ -124,10 +133,10 @@ struct Fields {
     /// Along curves: size from start to end, as 1..0.5, or at shares of the length, as 0:1,0.5:2,1:1
     #[arg(long, value_name = "FACTORS")]
     taper: Option<String>,
-    /// Along curves: degrees by which the structure turns about the curve from start to end
+    /// Along curves: degrees by which the pattern turns about the curve from start to end
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
     twist: Option<f64>,
-    /// Along curves: how far from the curve points may lie that repeat across it too
+    /// Along curves: how far from the curve elements, or points that repeat across it too, may lie
     #[arg(long, value_name = "R")]
     tube: Option<f64>,
 }
@@ -174,6 +183,12 @@ struct Writing {
     /// PNG of a structure in space: azimuth and elevation of the eye in degrees [default: -60,30]
     #[arg(long, value_name = "A,E", allow_hyphen_values = true)]
     view: Option<String>,
+    /// GLB of a scene of meshes: a list of places for each mesh (EXT_mesh_gpu_instancing) instead of a node for each element
+    #[arg(long)]
+    instancing: bool,
+    /// PLY of a scene of meshes: the centres of the elements instead of their meshes
+    #[arg(long)]
+    centres: bool,
     /// Structures: write the surface of the points instead of the points
     #[arg(long)]
     mesh: bool,
@@ -192,7 +207,7 @@ fn triple(text: &str) -> Result<[f64; 3], Error> {
 impl Place {
     /// Whether it is a part of space that elements can fill.
     fn is_in_space(&self) -> bool {
-        self.cuboid.is_some() || self.inside.is_some() || self.on.is_some()
+        self.cuboid.is_some() || self.inside.is_some() || self.on.is_some() || self.along.is_some()
     }
 }
 
@@ -233,11 +248,13 @@ impl Fill {
         let is_structure = match self.engine.method {
             Method::Structures => true,
             Method::Auto => {
-                is_structure(&self.exemplar) && !(self.place.is_in_space() && is_scene_of_elements(&exemplar)?)
+                is_structure(&self.exemplar)
+                    && !(self.place.is_in_space() && is_scene_of_meshes(&exemplar, &Resources::default())?)
             }
             Method::Elements | Method::Curves => false,
         };
-        if self.place.physics.is_some() && (is_structure || !is_scene(&self.exemplar)) {
+        let is_scene = !is_structure && self.place.is_in_space() && is_scene(&exemplar)?;
+        if self.place.physics.is_some() && !is_scene {
             let advice =
                 "leave it out, or give a scene of meshes as GLB, with --method elements where there are points in it";
             return Err(Error::Unsupported {
@@ -248,8 +265,8 @@ impl Fill {
         }
         let job = if is_structure {
             structures(self.place, self.fields, self.engine, &writing)?
-        } else if is_scene(&self.exemplar) {
-            not_for_scenes(&self.place, &self.fields, &writing)?;
+        } else if is_scene {
+            not_for_scenes(&self.fields, &writing)?;
             job(self.place, self.fields, self.engine)?
         } else {
             not_for_structures(&self.place, &self.fields, &writing)?;
@@ -261,29 +278,22 @@ impl Fill {
         recipe.output.dpi = writing.dpi;
         recipe.output.pixels_per_unit = writing.pixels_per_unit;
         recipe.output.view = writing.view;
+        recipe.output.instancing = writing.instancing;
+        recipe.output.centres = writing.centres;
         produce(recipe, None, &path, &run)
     }
 }
 
-/// Whether a file holds a scene of meshes alone: elements, unless somebody says otherwise.
-fn is_scene_of_elements(exemplar: &Input) -> Result<bool, Error> {
-    if is_scene(exemplar.name()) { is_scene_of_meshes(exemplar, &Resources::default()) } else { Ok(false) }
-}
-
-/// Whether a file holds a scene of meshes, by its ending.
-fn is_scene(exemplar: &str) -> bool {
-    exemplar.to_ascii_lowercase().ends_with(".glb")
+/// Whether a file holds a scene of meshes: by its ending, or an OBJ file that has faces.
+fn is_scene(exemplar: &Input) -> Result<bool, Error> {
+    let lower = exemplar.name().to_ascii_lowercase();
+    let by_ending = [".glb", ".gltf"].iter().any(|ending| lower.ends_with(ending));
+    Ok(by_ending || lower.ends_with(".obj") && is_scene_of_meshes(exemplar, &Resources::default())?)
 }
 
 /// Refuses what scenes of meshes do not have.
-fn not_for_scenes(place: &Place, fields: &Fields, writing: &Writing) -> Result<(), Error> {
-    let given = [
-        ("along", place.along.is_some()),
-        ("taper", fields.taper.is_some()),
-        ("twist", fields.twist.is_some()),
-        ("tube", fields.tube.is_some()),
-        ("mesh", writing.mesh),
-    ];
+fn not_for_scenes(fields: &Fields, writing: &Writing) -> Result<(), Error> {
+    let given = [("taper", fields.taper.is_some()), ("mesh", writing.mesh)];
     match given.into_iter().find(|(_, is_given)| *is_given) {
         None => Ok(()),
         Some((name, _)) => Err(Error::Unsupported {
@@ -296,7 +306,7 @@ fn not_for_scenes(place: &Place, fields: &Fields, writing: &Writing) -> Result<(
 /// Whether a file holds points with attributes, by its ending.
 fn is_structure(exemplar: &str) -> bool {
     let lower = exemplar.to_ascii_lowercase();
-    [".ply", ".xyz", ".glb"].iter().any(|ending| lower.ends_with(ending))
+    [".ply", ".xyz", ".glb", ".gltf"].iter().any(|ending| lower.ends_with(ending))
 }
 
 /// Refuses what drawings and elements do not have.
@@ -384,18 +394,22 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
             advice: advice.into(),
         });
     }
-    let Fields { orient, scale, density, direction, .. } = fields;
-    if place.cuboid.is_some() || place.inside.is_some() || place.on.is_some() {
-        if !place.avoid.is_empty() {
-            let advice = "leave it out, or fill a page, a shape or a tile";
-            return Err(Error::Unsupported { what: "avoid for a part of space".into(), advice: advice.into() });
-        }
+    let Fields { orient, scale, density, direction, tube, twist, .. } = fields;
+    if place.is_in_space() {
+        let rule = |(class, rule): &(String, String)| Ok::<_, Error>((class.clone(), rule.parse::<Constraint>()?));
         return Ok(Job::from(Space {
             cuboid: place.cuboid.map(|text| text.parse()).transpose()?,
             inside: place.inside.map(Input::file),
             on: place.on.map(Input::file),
             keep: place.keep.map(Input::file),
             direction: direction.as_deref().map(Direction::parse),
+            along: place.along.map(Input::file),
+            tube,
+            twist,
+            avoid,
+            constrain: place.constrain.iter().map(rule).collect::<Result<_, _>>()?,
+            up: place.up,
+            unit: place.unit,
             floor: place.floor,
             physics: place.physics,
             gravity: place.gravity,

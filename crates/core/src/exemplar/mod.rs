@@ -106,6 +106,8 @@ pub struct Exemplar<const D: usize> {
     /// For each element that stands on the ground, the height of its centre over it, which it keeps; such elements are classes of their
     /// own. Empty where there is no ground.
     pub heights: Vec<Option<f64>>,
+    /// The axis along which heights are: 1, y, unless somebody says otherwise.
+    pub up: usize,
 }
 
 /// What an exemplar holds, not yet checked.
@@ -183,6 +185,7 @@ impl<const D: usize> Exemplar<D> {
             period: None,
             solids: Vec::new(),
             heights: Vec::new(),
+            up: 1,
         })
     }
 

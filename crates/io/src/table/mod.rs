@@ -4,4 +4,5 @@ pub mod centres;
 pub mod csv;
 pub mod points;
 pub(crate) mod records;
+pub mod values;
 pub mod xyz;

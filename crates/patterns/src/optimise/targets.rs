@@ -4,9 +4,6 @@ use arabesque_core::{Border, Exemplar, Numbered, Request, Result};
 
 use crate::{border::Extent, exemplar::library::Library};
 
-/// The axis along which heights of the exemplar are.
-const UP: usize = 1;
-
 /// Cells along the longest side of the grid that measures the output.
 const CELLS: f64 = 96.0;
 
@@ -82,8 +79,9 @@ fn slab<const D: usize>(exemplar: &Exemplar<D>, library: &Library<D>) -> Option<
         return None;
     }
     let mean = standing.iter().sum::<f64>() / standing.len() as f64;
-    let floors = exemplar.elements.iter().zip(&exemplar.heights).find_map(|(e, h)| Some(e.centre[UP] - (*h)?));
-    let (low, high) = (exemplar.window.min[UP], exemplar.window.max[UP]);
+    let up = exemplar.up.min(D - 1);
+    let floors = exemplar.elements.iter().zip(&exemplar.heights).find_map(|(e, h)| Some(e.centre[up] - (*h)?));
+    let (low, high) = (exemplar.window.min[up], exemplar.window.max[up]);
     let everything = exemplar.heights.iter().all(Option::is_some);
     let thickness = if everything { f64::INFINITY } else { 2.0 * mean };
     let is_standing = |c: u32| library.members(c).iter().any(|&e| exemplar.heights[e as usize].is_some());

@@ -90,6 +90,52 @@ impl<const D: usize> Tube<D> {
     }
 }
 
+/// Where the nearest of the lines runs by a place, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Foot<const D: usize> {
+    /// The nearest point.
+    pub point: Vector<D>,
+    /// From the pattern, whose x runs along the line, to its frame there.
+    pub rotation: Matrix<D>,
+    /// How far away it is.
+    pub distance: f64,
+    /// How far beyond an end of an open line the place lies along it; 0 for most.
+    pub beyond: f64,
+}
+
+impl<const D: usize> Tube<D> {
+    /// The nearest point of the lines to `p`.
+    pub fn foot(&self, p: Vector<D>) -> Foot<D> {
+        let of = |traced: &Traced<D>| {
+            let (s, offset) = traced.nearest(p);
+            (offset.norm(), s, offset)
+        };
+        let mut best = (0, of(&self.threads[0]));
+        for (n, traced) in self.threads.iter().enumerate().skip(1) {
+            let found = of(traced);
+            if found.0 < best.1.0 {
+                best = (n, found);
+            }
+        }
+        let (traced, (distance, s, offset)) = (&self.threads[best.0], best.1);
+        let (_, rotation, _) = traced.at(s, 0);
+        let is_end = !traced.thread.closed && (s <= 0.0 || s >= traced.length());
+        let tangent = Vector(std::array::from_fn(|r| rotation.0[r][0]));
+        let beyond = if is_end { (offset.dot(tangent) * if s <= 0.0 { -1.0 } else { 1.0 }).max(0.0) } else { 0.0 };
+        Foot { point: p - offset, rotation, distance, beyond }
+    }
+
+    /// The smallest box around the lines.
+    pub fn bounds(&self) -> Bounds<D> {
+        Bounds::around(self.threads.iter().flat_map(|t| t.thread.corners.iter().copied()))
+    }
+
+    /// Length of all lines.
+    pub fn length(&self) -> f64 {
+        self.threads.iter().map(Traced::length).sum()
+    }
+}
+
 impl<const D: usize> Traced<D> {
     fn new(n: usize, thread: Thread<D>) -> Result<Self> {
         let lengths = arc_lengths(&thread.corners);

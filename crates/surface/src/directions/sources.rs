@@ -12,6 +12,8 @@ use crate::mesh::MeshIndex;
 const FAR: f64 = 0.1;
 /// Over which length directions of curvature are smoothed at least, as a share of the diagonal, and in edges.
 const SMOOTHING: (f64, f64) = (0.03, 2.0);
+/// A surface that bends so little more one way than the other is round.
+const ROUND: f64 = 0.08;
 /// What is known everywhere, so that every place has some direction.
 const FAINT: f64 = 1e-6;
 
@@ -63,8 +65,9 @@ fn bent(index: &MeshIndex, planes: &Planes, bend: Bend, budget: &Budget) -> Resu
         let [most, least] = curvature.values.map(f64::abs);
         let (strong, weak) = if most >= least { (0, 1) } else { (1, 0) };
         let wanted = curvature.directions[if bend == Bend::Most { strong } else { weak }];
-        // How much more it bends one way than the other; flat parts say nothing.
+        // How much more it bends one way than the other; flat parts say nothing, nor do round ones, which only their triangles bend.
         let told = (most - least).abs() / (most + least + 1.0 / diagonal);
+        let told = ((told - ROUND) / (1.0 - ROUND)).max(0.0);
         let weight = told * planes.areas[v] / (smoothing * smoothing);
         let (direction, _) = planes.number(v, wanted, 2);
         let (fallback, share) = planes.number(v, longest, 2);

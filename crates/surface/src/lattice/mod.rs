@@ -25,6 +25,9 @@ const SAME_SIDE: f64 = 0.3;
 /// Axes that differ by more than this cosine meet in a seam.
 const SAME_WAY: f64 = 0.5;
 
+/// Phases that are off by this share of the shorter vector break the lattice.
+const BROKEN: f64 = 0.3;
+
 /// The two axes of a pattern at a point of a surface, of length 1.
 pub type Axes = [Vector<3>; 2];
 
@@ -109,6 +112,21 @@ impl SurfaceLattice {
         let links = links((&points, &normals, &axes), REACH * spacing, budget)?;
         let phases = phases(&links, &cell, seed, budget)?;
         Ok(Self { points, axes, links, phases, cell, spacing, height })
+    }
+
+    /// The share of the surface on which the lattice does not go on as it should: 0 on a flat mesh, 1 where nothing fits.
+    pub fn broken(&self) -> f64 {
+        let usual = self.links.iter().map(Vec::len).max().unwrap_or(0).max(1) as f64;
+        let of_point = |(i, own): (usize, &Vec<Link>)| {
+            let off = |link: &Link| {
+                let way = self.phases[link.to as usize] - link.way - self.phases[i];
+                (self.cell.folded(way).norm() / (BROKEN * self.cell.shorter)).min(1.0).powi(2)
+            };
+            let (sum, count) = own.iter().fold((0.0, 0.0), |(sum, count), link| (sum + off(link), count + 1.0));
+            // Where axes turn over there are no links at all.
+            (sum + (0.25 * usual - count).max(0.0)) / count.max(0.25 * usual)
+        };
+        self.links.iter().enumerate().map(of_point).sum::<f64>() / self.links.len().max(1) as f64
     }
 }
 

@@ -35,7 +35,10 @@ impl Job {
             Self::Space(job) => {
                 wanted.extend(job.inside.iter().map(|input| ("--inside", input)));
                 wanted.extend(job.on.iter().map(|input| ("--on", input)));
+                wanted.extend(job.along.iter().map(|input| ("--along", input)));
                 wanted.extend(job.keep.iter().map(|input| ("--keep", input)));
+                wanted.extend(avoided(&job.avoid));
+                wanted.extend(field("--orient", job.orient.as_ref()));
                 if let Some(Direction::Strokes(input)) = &job.direction {
                     wanted.push(("--direction", input));
                 }

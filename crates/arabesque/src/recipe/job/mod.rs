@@ -1,5 +1,6 @@
 //! What is to be made of an exemplar.
 
+mod convention;
 mod fill;
 mod inputs;
 mod parameters;
@@ -11,13 +12,14 @@ mod space;
 mod structures;
 mod surface;
 
+pub use convention::{Unit, Up};
 pub use fill::{ExemplarTile, Fill, Method, Reading};
 pub use parameters::Parameters;
 pub use physics::Physics;
 pub use redo::Redo;
 pub use relief::Relief;
 pub use ribbon::{Ribbon, WidthSource, ribbon_options};
-pub use space::Space;
+pub use space::{Constraint, Space};
 pub use structures::{Direction, Structures};
 pub use surface::Surface;
 

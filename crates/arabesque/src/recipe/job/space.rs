@@ -1,6 +1,8 @@
 //! Filling a part of space.
 
-use arabesque_core::{Border, Error, Result};
+use std::collections::BTreeMap;
+
+use arabesque_core::{Border, Error, Result, choices};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +10,7 @@ use crate::recipe::{
     field::FieldSource,
     input::Input,
     job::{
+        convention::{Unit, Up},
         fill::Method,
         parameters::{self, Parameters},
         physics::Physics,
@@ -16,8 +19,18 @@ use crate::recipe::{
     size::Cuboid,
 };
 
+choices! {
+    /// Where elements of a class may lie.
+    pub enum Constraint {
+        /// Those that lie on the floor in the exemplar lie on it at the same height, and no others do.
+        Floor = "floor",
+        /// Anywhere.
+        Free = "free",
+    }
+}
+
 /// A part of space that is filled from an exemplar in space: a scene of meshes (GLB), curves (OBJ) or points (CSV with a column z). One of
-/// `box`, `inside` and `on` is given.
+/// `box`, `inside`, `on` and `along` is given.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Space {
@@ -30,6 +43,18 @@ pub struct Space {
     /// A file with the mesh to cover: the exemplar lies on it as it lies on its floor, y along the normal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<Input>,
+    /// A file with curves in space (OBJ), around which the exemplar goes on in a tube, its x along them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<Input>,
+    /// Along curves: radius of the tube. Default: half of the lesser side of the exemplar across x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tube: Option<f64>,
+    /// Along curves: degrees by which the pattern turns about the curve from start to end. Default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub twist: Option<f64>,
+    /// Files with closed meshes that stay empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub avoid: Vec<Input>,
     /// Elements that stay exactly where they are: a scene with the meshes of the exemplar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<Input>,
@@ -39,23 +64,34 @@ pub struct Space {
     /// What open strokes are taken for. Default: auto.
     #[serde(default)]
     pub method: Method,
-    /// Degrees by which the pattern is turned about y, or about the normal of a mesh: a number. Default: 0.
+    /// Degrees by which the pattern is turned about what is up, about the normal of a mesh or about a curve; or the lines of an OBJ file, along
+    /// which the x axis of the exemplar runs, in a box or a mesh that is filled. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orient: Option<FieldSource>,
     /// Where the x axis of the exemplar runs on a mesh: `least` or `most`, along which the mesh bends least or most; a direction in space such
     /// as `0,0,1`; or the lines of an OBJ file as strokes on the mesh. Default: least.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<Direction>,
-    /// Size of the pattern relative to the exemplar, elements and gaps alike: a number. Default: 1.
+    /// Size of the pattern relative to the exemplar, elements and gaps alike: a number, or a table of places (CSV with x, y, z, value), between
+    /// which it changes smoothly. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<FieldSource>,
-    /// Elements per volume relative to the exemplar: a number. Default: 1.
+    /// Elements per volume relative to the exemplar: a number, or a table of places as for scale. Default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<FieldSource>,
     /// Whether the exemplar stands on a floor, its lowest place, and so does the result: what lies on the floor in the exemplar lies on it
     /// at the same height, and nothing else does. Default: false; on a mesh always.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub floor: bool,
+    /// For elements of these classes, where they may lie: `floor` as with floor, `free` anywhere. Classes without a rule follow floor.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub constrain: BTreeMap<String, Constraint>,
+    /// The axis that is up in the files that are read. Results have the same; GLB always y. Default: y.
+    #[serde(default, skip_serializing_if = "Up::is_usual")]
+    pub up: Up,
+    /// Length of a unit of the files that are read: mm, cm, m, in or ft. Results have the same; GLB always metres. Default: m.
+    #[serde(default, skip_serializing_if = "Unit::is_usual")]
+    pub unit: Unit,
     /// Scenes of meshes: elements push one another apart, fall and come to rest. A number of steps of physics after each iteration of the
     /// engine, or `settle` for the end alone. Default: no physics.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -84,6 +120,16 @@ impl Space {
         Self { inside: Some(mesh), ..Self::default() }
     }
 
+    /// Follows the curves of a file.
+    pub fn along(curves: Input) -> Self {
+        Self { along: Some(curves), ..Self::default() }
+    }
+
+    /// Whether elements stand on a floor.
+    pub(crate) fn stands(&self) -> bool {
+        self.floor || self.on.is_some() || self.constrain.values().any(|rule| *rule == Constraint::Floor)
+    }
+
     /// Covers the mesh of a file.
     pub fn on(mesh: Input) -> Self {
         Self { on: Some(mesh), ..Self::default() }
@@ -94,6 +140,8 @@ impl Space {
             method: self.method,
             params: self.params.clone(),
             floor: self.floor || self.on.is_some(),
+            constrain: self.constrain.clone(),
+            up: self.up,
             ..Self::default()
         }
     }
@@ -115,11 +163,16 @@ impl Space {
     /// # Errors
     /// [`Error::Parameter`] for none or several.
     pub(crate) fn place(&self) -> Result<&'static str> {
-        let given = [("box", self.cuboid.is_some()), ("inside", self.inside.is_some()), ("on", self.on.is_some())];
+        let given = [
+            ("box", self.cuboid.is_some()),
+            ("inside", self.inside.is_some()),
+            ("on", self.on.is_some()),
+            ("along", self.along.is_some()),
+        ];
         let names: Vec<_> = given.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
         match names.as_slice() {
             [one] => Ok(one),
-            [] => Err(Error::parameter("place", "none", "one of box, inside and on")),
+            [] => Err(Error::parameter("place", "none", "one of box, inside, on and along")),
             several => Err(Error::parameter("place", several.join(" and "), "one of them")),
         }
     }

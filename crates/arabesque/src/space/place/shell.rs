@@ -1,0 +1,147 @@
+//! A layer on a mesh.
+
+use std::sync::Arc;
+
+use arabesque_core::{Bounds, Budget, Ground, Matrix, Region, Result, Rotations, Vector};
+use arabesque_surface::{Bend, Closest, DirectionField, Directions, MeshIndex};
+
+use crate::space::layer::Layer;
+
+/// A lattice that breaks in less than this share of the places in which the usual one breaks is better.
+const BETTER: f64 = 0.85;
+
+/// A layer on a mesh: what lies between two heights over it.
+#[derive(Debug)]
+pub(in crate::space) struct Shell {
+    pub(in crate::space) index: Arc<MeshIndex>,
+    field: DirectionField,
+    /// Radians by which the pattern is turned about the normal.
+    turned: f64,
+    heights: [f64; 2],
+    /// The axis of the exemplar that runs along the normal, and what lies on the mesh along it.
+    across: usize,
+    pub(in crate::space) under: f64,
+}
+
+/// How the exemplar lies over a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lying {
+    /// Degrees by which the pattern is turned about the normal.
+    pub(super) turned: f64,
+    pub(super) heights: [f64; 2],
+    pub(super) across: usize,
+    pub(super) under: f64,
+}
+
+/// A direction along a mesh, and the degrees by which the pattern is turned from it.
+type Way = (Directions, f64);
+
+impl Shell {
+    pub(super) fn new(index: &Arc<MeshIndex>, field: DirectionField, lying: Lying) -> Self {
+        let Lying { turned, heights, across, under } = lying;
+        Self { index: Arc::clone(index), field, turned: turned.to_radians(), heights, across, under }
+    }
+
+    /// The layer in which the lattice of a drawing breaks least, where nobody says which way it runs: level, along the longest side, or as the
+    /// mesh bends.
+    pub(super) fn suiting(
+        index: &Arc<MeshIndex>,
+        lying: Lying,
+        (layer, up, scale): (&Layer, usize, f64),
+        budget: &Budget,
+    ) -> Result<Self> {
+        let mut best: Option<(f64, Self)> = None;
+        for (directions, more) in ways(&index.bounds(), up) {
+            let field = DirectionField::new(index, &directions, budget)?;
+            let shell = Self::new(index, field, Lying { turned: lying.turned + more, ..lying });
+            let broken = layer.broken(&shell, scale, budget)?;
+            // What is named first is usual, and stays unless another one is clearly better.
+            if best.as_ref().is_none_or(|(least, _)| broken < BETTER * least - 1e-3) {
+                best = Some((broken, shell));
+            }
+        }
+        match best {
+            Some((_, shell)) => Ok(shell),
+            None => {
+                Ok(Self::new(index, DirectionField::new(index, &Directions::Curvature(Bend::Least), budget)?, lying))
+            }
+        }
+    }
+
+    /// The rotation of the exemplar at a point of the mesh.
+    pub(in crate::space) fn rotation(&self, at: &Closest) -> Matrix<3> {
+        let frame = self.field.frame(&self.index, at);
+        let (sin, cos) = self.turned.sin_cos();
+        let (first, normal) = (frame.tangent * cos + frame.bitangent() * sin, frame.normal);
+        let columns = match self.across {
+            0 => [normal, normal.cross(first), -first],
+            1 => [first, normal, first.cross(normal)],
+            _ => [first, normal.cross(first), normal],
+        };
+        Matrix(std::array::from_fn(|r| columns.map(|c| c[r])))
+    }
+}
+
+impl Shell {
+    /// The height over the mesh, and the distance to where the layer ends sideways, at the edge of an open mesh.
+    fn foot(&self, p: Vector<3>) -> (f64, Closest) {
+        let foot = self.index.closest(p);
+        (self.index.height(&foot, p), foot)
+    }
+}
+
+impl Region<3> for Shell {
+    fn bounds(&self) -> Bounds<3> {
+        self.index.bounds().grown(self.heights[0].abs().max(self.heights[1].abs()))
+    }
+
+    fn measure(&self) -> f64 {
+        self.index.area() * (self.heights[1] - self.heights[0])
+    }
+
+    fn signed_distance(&self, p: Vector<3>) -> f64 {
+        let (height, foot) = self.foot(p);
+        // Beyond the edge of an open mesh the way to the foot leaves the normal.
+        let away = p - foot.point;
+        let beside = (away.norm2() - height * height).max(0.0).sqrt();
+        let within = (height - self.heights[0]).min(self.heights[1] - height);
+        if beside > 1e-6 * (1.0 + away.norm()) { within.min(-beside) } else { within }
+    }
+
+    fn nearest_boundary(&self, p: Vector<3>) -> Vector<3> {
+        let (height, foot) = self.foot(p);
+        let [low, high] = self.heights;
+        let to = if height - low < high - height { low } else { high };
+        foot.point + foot.normal * to
+    }
+}
+
+impl Ground<3> for Shell {
+    fn height(&self, p: Vector<3>) -> f64 {
+        Self::foot(self, p).0
+    }
+
+    fn at_height(&self, p: Vector<3>, height: f64) -> Vector<3> {
+        let foot = self.index.closest(p);
+        foot.point + foot.normal * height
+    }
+}
+
+impl Rotations<3> for Shell {
+    fn at(&self, p: Vector<3>) -> Matrix<3> {
+        self.rotation(&self.index.closest(p))
+    }
+}
+
+/// Which way a pattern may run, the usual way first.
+fn ways(bounds: &Bounds<3>, up: usize) -> [Way; 4] {
+    let size = bounds.size();
+    let longest = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
+    let axis = |k: usize| Directions::Constant(Vector(std::array::from_fn(|r| if r == k { 1.0 } else { 0.0 })));
+    [
+        (axis(up), -90.0),
+        (axis(longest), 0.0),
+        (Directions::Curvature(Bend::Least), 0.0),
+        (Directions::Curvature(Bend::Most), 0.0),
+    ]
+}

@@ -17,6 +17,9 @@ const SOURCES: Stage = Stage::new(462);
 /// Centres of a layer differ by less than this share of what its elements measure across it.
 const SINGLE: f64 = 0.5;
 
+/// Elements may be wider than their row by this factor.
+const ROOM: f64 = 1.02;
+
 /// A layer as a drawing.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
@@ -29,6 +32,8 @@ pub(super) struct Layer {
     engine: Engine<2>,
     /// Height of the middle of the exemplar's window across.
     middle: f64,
+    /// The direction of rows that can slip along one another.
+    rows: Option<Vector<2>>,
     centres: Vec<Vector<3>>,
 }
 
@@ -66,7 +71,8 @@ impl Layer {
         let engine = Engine::new(Arc::clone(&drawing), params, budget)?;
         let middle = exemplar.window.centre()[across];
         let centres = exemplar.elements.iter().map(|e| e.centre).collect();
-        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, centres }))
+        let rows = engine.repeating().and_then(|regular| rows(&drawing, regular.repeat().lattice.vectors));
+        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, rows, centres }))
     }
 
     /// Fills a box, in the middle of which the layer lies; `None` where that turns it about another axis.
@@ -130,7 +136,7 @@ impl Layer {
         SurfaceLattice::new(
             &shell.index,
             &|at| self.along(shell, at),
-            vectors.map(|v| v * wider),
+            (vectors.map(|v| v * wider), self.rows),
             height,
             (seed, budget),
         )
@@ -221,6 +227,23 @@ fn is_single(exemplar: &Exemplar<3>, axis: usize) -> bool {
         exemplar.elements.iter().map(|e| range(&mut e.outline.points().map(|p| p[axis]))).collect();
     sizes.sort_by(f64::total_cmp);
     spread < SINGLE * sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The direction of rows of a lattice that lie beside one another, so that they could slip: a short vector of it, x rather than y.
+fn rows(drawing: &Exemplar<2>, [a, b]: [Vector<2>; 2]) -> Option<Vector<2>> {
+    let cell = a.cross(b).abs();
+    let combinations = (-2_i8..=2).flat_map(|i| (-2_i8..=2).map(move |j| (f64::from(i), f64::from(j))));
+    let mut ways: Vec<Vector<2>> = combinations.map(|(i, j)| a * i + b * j).filter(|v| v.norm() > 0.0).collect();
+    ways.sort_by(|v, w| v[1].abs().total_cmp(&w[1].abs()).then(v.norm().total_cmp(&w.norm())));
+    let fit = |(way, apart): &(Vector<2>, f64)| {
+        let mut widths = drawing.elements.iter().map(|e| {
+            let across = e.outline.points().map(|p| way.cross(p));
+            let (low, high) = across.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+            high - low
+        });
+        widths.all(|width| width <= apart * ROOM)
+    };
+    ways.into_iter().map(|way| (way.unit_or_zero(), cell / way.norm())).find(fit).map(|(way, _)| way)
 }
 
 /// The convex hull of points of the plane, counter-clockwise.

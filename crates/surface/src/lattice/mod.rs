@@ -5,15 +5,17 @@
 //! one to the other, seen in their axes [Jakob 2015; Knoppel 2015]. Phases spread from one point over the whole surface, and are then
 //! evened out. Where the surface bends or the axes turn so that no lattice can follow, it breaks, in as few places as that needs.
 
+mod cell;
 mod phases;
 mod places;
 
-use arabesque_core::{Budget, Domain, Error, GridIndex, Result, Vector};
+use arabesque_core::{Budget, Domain, GridIndex, Result, Vector};
 
 use crate::{
     mesh::{Closest, MeshIndex},
     spread::scatter,
 };
+use cell::Cell;
 use phases::phases;
 pub use places::LatticePlace;
 
@@ -25,7 +27,7 @@ const SAME_SIDE: f64 = 0.3;
 /// Axes that differ by more than this cosine meet in a seam.
 const SAME_WAY: f64 = 0.5;
 
-/// Phases that are off by this share of the shorter vector break the lattice.
+/// Phases that are off by this share of a cell break the lattice.
 const BROKEN: f64 = 0.3;
 
 /// The two axes of a pattern at a point of a surface, of length 1.
@@ -52,57 +54,21 @@ pub struct SurfaceLattice {
     height: f64,
 }
 
-/// The vectors of a lattice.
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    vectors: [Vector<2>; 2],
-    shorter: f64,
-}
-
-impl Cell {
-    fn new(vectors: [Vector<2>; 2]) -> Result<Self> {
-        let [a, b] = vectors;
-        let shorter = a.norm().min(b.norm());
-        let is_sound = a.is_finite() && b.is_finite() && a.cross(b).abs() > 1e-6 * a.norm() * b.norm();
-        if !is_sound || shorter <= 0.0 {
-            return Err(Error::parameter("lattice", format!("{a:?}, {b:?}"), "two vectors that are not parallel"));
-        }
-        Ok(Self { vectors, shorter })
-    }
-
-    /// The shortest vector that differs from `v` by one of the lattice.
-    fn folded(&self, v: Vector<2>) -> Vector<2> {
-        let [a, b] = self.vectors;
-        let measure = a.cross(b);
-        let (s, t) = ((v.cross(b) / measure).round(), (a.cross(v) / measure).round());
-        let rest = v - a * s - b * t;
-        let mut best = rest;
-        for (i, j) in
-            [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0)]
-        {
-            let other = rest + a * i + b * j;
-            if other.norm2() < best.norm2() {
-                best = other;
-            }
-        }
-        best
-    }
-}
-
 impl SurfaceLattice {
     /// Lays a lattice of these two vectors on a mesh. `axes` tells how the pattern lies at a point; distances are those at `height`
-    /// over the mesh. The seed chooses where it begins.
+    /// over the mesh. Where the pattern has rows that can slip along one another, they run along `rows`: then rows stay whole where the mesh
+    /// bends, and slip. The seed chooses where the lattice begins.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for vectors that are parallel; as [`scatter`].
+    /// [`arabesque_core::Error::Parameter`] for vectors that are parallel; as [`scatter`].
     pub fn new(
         index: &MeshIndex,
         axes: &dyn Fn(&Closest) -> Axes,
-        vectors: [Vector<2>; 2],
+        (vectors, rows): ([Vector<2>; 2], Option<Vector<2>>),
         height: f64,
         (seed, budget): (u64, &Budget),
     ) -> Result<Self> {
-        let cell = Cell::new(vectors)?;
+        let cell = Cell::new(vectors, rows)?;
         let spacing = SPACING * cell.shorter;
         let found = scatter(index, spacing, seed, budget)?;
         budget.spend(2000 * found.len() as u64)?;
@@ -120,7 +86,7 @@ impl SurfaceLattice {
         let of_point = |(i, own): (usize, &Vec<Link>)| {
             let off = |link: &Link| {
                 let way = self.phases[link.to as usize] - link.way - self.phases[i];
-                (self.cell.folded(way).norm() / (BROKEN * self.cell.shorter)).min(1.0).powi(2)
+                (self.cell.misfit(way, link.way) / BROKEN).min(1.0).powi(2)
             };
             let (sum, count) = own.iter().fold((0.0, 0.0), |(sum, count), link| (sum + off(link), count + 1.0));
             // Where axes turn over there are no links at all.

@@ -80,15 +80,8 @@ fn mean_change(
     of: impl Fn(usize) -> Option<Vector<2>>,
     cell: &Cell,
 ) -> Option<Vector<2>> {
-    let (mut sum, mut weights) = (Vector::ZERO, 0.0);
-    for link in links {
-        let Some(other) = of(link.to as usize) else { continue };
-        let off = cell.folded(other - link.way - phase);
-        // What is off by half a cell says nothing.
-        let agrees = 1.0 - (off.norm() / (0.5 * cell.shorter)).min(1.0);
-        let weight = agrees * agrees + 1e-3;
-        sum += off * weight;
-        weights += weight;
-    }
-    (weights > 0.0).then(|| sum * (1.0 / weights))
+    cell.mean(links.iter().filter_map(|link| {
+        let other = of(link.to as usize)?;
+        Some(cell.change(other - link.way - phase, link.way))
+    }))
 }

@@ -19,7 +19,7 @@ fn places(index: &MeshIndex, direction: Vector<3>, vectors: [Vector<2>; 2], seed
         let frame = field.frame(index, at);
         [frame.tangent, frame.bitangent()]
     };
-    let lattice = SurfaceLattice::new(index, &axes, vectors, 0.0, (seed, &budget)).unwrap();
+    let lattice = SurfaceLattice::new(index, &axes, (vectors, None), 0.0, (seed, &budget)).unwrap();
     lattice.places(index, Vector::ZERO, &budget).unwrap()
 }
 
@@ -85,6 +85,32 @@ fn parallel_vectors_are_no_lattice() {
     let flat = index(&grid(3, 3, [false; 2], |a, b| Vector([a, b, 0.0])));
     let axes = |_: &Closest| [Vector([1.0, 0.0, 0.0]), Vector([0.0, 1.0, 0.0])];
     let vectors = [Vector::xy(0.1, 0.0), Vector::xy(0.2, 0.0)];
-    let error = SurfaceLattice::new(&flat, &axes, vectors, 0.0, (0, &Budget::default())).unwrap_err();
+    let error = SurfaceLattice::new(&flat, &axes, (vectors, None), 0.0, (0, &Budget::default())).unwrap_err();
     assert!(error.to_string().contains("not parallel"));
+}
+
+#[test]
+fn rows_of_a_dome_stay_level_and_slip() {
+    let ball = index(&ball(48, Vector::ZERO, 1.0));
+    let budget = Budget::default();
+    let field = DirectionField::new(&ball, &Directions::Constant(Vector([0.0, 0.0, 1.0])), &budget).unwrap();
+    let axes = |at: &Closest| -> Axes {
+        let frame = field.frame(&ball, at);
+        [-frame.bitangent(), frame.tangent]
+    };
+    let row = 0.1;
+    let vectors = [Vector::xy(2.0 * row, 0.0), Vector::xy(row, row)];
+    let lattice = SurfaceLattice::new(&ball, &axes, (vectors, Some(Vector::xy(1.0, 0.0))), 0.0, (1, &budget)).unwrap();
+    assert!(lattice.broken() < 0.1, "{}", lattice.broken());
+    let found = lattice.places(&ball, Vector::ZERO, &budget).unwrap();
+    // Away from the poles each place lies on a row, which are as far apart as they should be.
+    let latitudes: Vec<f64> = found.iter().map(|p| p.at.point[2].asin()).filter(|l| l.abs() < 1.1).collect();
+    let turn = latitudes.iter().fold(Vector::ZERO, |sum, l| {
+        let phase = l / row * std::f64::consts::TAU;
+        sum + Vector::xy(phase.cos(), phase.sin())
+    });
+    let order = turn.norm() / latitudes.len() as f64;
+    assert!(order > 0.9, "places lie on rows: {order}");
+    let share = found.len() as f64 * 2.0 * row * row / ball.area();
+    assert!((0.9..1.1).contains(&share), "{share}");
 }

@@ -18,6 +18,8 @@ const TOLERANCE: f64 = 0.05;
 const CONVEX: f64 = 1.0 - 2.0 * TOLERANCE;
 /// Most corners of a hull; more are as good as invisible and slow.
 const MOST_CORNERS: usize = 64;
+/// How far corners are drawn in on which a face does not stand, relative to the radius.
+const DRAWN_IN: f32 = 0.01;
 /// Most hulls for one mesh.
 const MOST_PARTS: usize = 32;
 /// Most triangles of a mesh that is cut into hulls.
@@ -247,8 +249,18 @@ fn solid(
     Ok((Solid::Hulls(hulls), kind))
 }
 
-/// The hull of points, of at most [`MOST_CORNERS`] corners; `None` where they lie in a plane.
+/// The hull of points, of at most [`MOST_CORNERS`] corners, standing on four corners of each face; `None` where they lie in a plane.
 fn hull(points: &[Vec3]) -> Option<ConvexPolyhedron> {
+    let hull = plain_hull(points)?;
+    let corners = on_four_corners(&hull);
+    if corners == hull.points() {
+        return Some(hull);
+    }
+    let (corners, faces) = rapier3d::parry::transformation::try_convex_hull(&corners).ok()?;
+    ConvexPolyhedron::from_convex_mesh(corners, &faces).or(Some(hull))
+}
+
+fn plain_hull(points: &[Vec3]) -> Option<ConvexPolyhedron> {
     let (corners, faces) = rapier3d::parry::transformation::try_convex_hull(points).ok()?;
     if corners.len() <= MOST_CORNERS {
         return ConvexPolyhedron::from_convex_mesh(corners, &faces);
@@ -267,6 +279,36 @@ fn hull(points: &[Vec3]) -> Option<ConvexPolyhedron> {
     let kept: Vec<_> = kept.into_iter().map(|k| corners[k]).collect();
     let (corners, faces) = rapier3d::parry::transformation::try_convex_hull(&kept).ok()?;
     ConvexPolyhedron::from_convex_mesh(corners, &faces)
+}
+
+/// The corners of a hull, those of faces with more than four drawn in a little except for the four that span most: contacts look at four
+/// corners of a face, the first ones it has, and a can would stand on a sliver of its bottom.
+fn on_four_corners(hull: &ConvexPolyhedron) -> Vec<Vec3> {
+    let mut corners = hull.points().to_vec();
+    for face in hull.faces() {
+        let first = face.first_vertex_or_edge as usize;
+        let ring = &hull.vertices_adj_to_face()[first..first + face.num_vertices_or_edges as usize];
+        if ring.len() <= 4 {
+            continue;
+        }
+        let n = ring.len();
+        let area = |four: [usize; 4]| {
+            let [a, b, c, d] = four.map(|k| hull.points()[ring[k] as usize]);
+            (c - a).cross(d - b).length()
+        };
+        let fours = (0..n).flat_map(|k| {
+            // About a quarter of the way around from one to the next.
+            [0, 1]
+                .map(|more| [k, (k + n / 4 + more * usize::from(n % 4 > 1)) % n, (k + n / 2) % n, (k + 3 * n / 4) % n])
+        });
+        let best = fours.max_by(|a, b| area(*a).total_cmp(&area(*b))).unwrap_or([0, 1, 2, 3]);
+        for (k, &corner) in ring.iter().enumerate() {
+            if !best.contains(&k) {
+                corners[corner as usize] -= face.normal * DRAWN_IN;
+            }
+        }
+    }
+    corners
 }
 
 /// The faces of a hull, as fans of triangles.

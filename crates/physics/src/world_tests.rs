@@ -33,7 +33,7 @@ fn stack() -> World {
     let shape = Arc::new(Shape::new(&brick([2.0, 0.5, 1.0]), "brick", &Budget::default()).unwrap());
     assert_eq!(shape.collider(), Collider::Cuboid);
     let bodies = (0..4).map(|k| body(&shape, [0.0, 0.2 + 0.7 * f64::from(k), 0.0])).collect();
-    world(Surroundings::default().floor(0.0), DOWN, bodies)
+    world(Surroundings::default().floor(1, 0.0), DOWN, bodies)
 }
 
 #[test]
@@ -204,5 +204,42 @@ fn each_body_may_fall_its_own_way_and_turns_no_farther_than_it_may() {
         let [a, b] = [now, then].map(|b| b.pose.rotation.apply(Vector([1.0, 0.0, 0.0])));
         let angle = a.dot(b).clamp(-1.0, 1.0).acos().to_degrees();
         assert!(angle < 1.05, "{angle}");
+    }
+}
+
+/// A prism of `sides` around y, from the floor upwards; a cone where its top is no wider than nothing.
+fn prism(sides: u32, radius: f64, height: f64, top: f64) -> TriangleMesh {
+    let ring = |y: f64, r: f64| {
+        (0..sides).map(move |k| {
+            let (sin, cos) = (f64::from(k) / f64::from(sides) * std::f64::consts::TAU).sin_cos();
+            Vector([r * cos, y, r * sin])
+        })
+    };
+    let positions = ring(0.0, radius).chain(ring(height, top)).collect();
+    let side = |k: u32| {
+        let next = (k + 1) % sides;
+        [[k, k + sides, next], [next, k + sides, next + sides]]
+    };
+    let caps = (1..sides - 1).flat_map(|k| [[0, k, k + 1], [sides, sides + k + 1, sides + k]]);
+    let triangles = (0..sides).flat_map(side).chain(caps).collect();
+    TriangleMesh { positions, triangles, ..TriangleMesh::default() }
+}
+
+#[test]
+fn cans_cones_and_coins_stand_where_they_stand() {
+    for (sides, height, top) in
+        [(7, 1.5, 0.4), (8, 1.5, 0.4), (12, 1.5, 0.4), (16, 1.5, 0.1), (24, 1.5, 0.4), (16, 0.2, 0.4), (48, 0.1, 0.4)]
+    {
+        let mesh = prism(sides, 0.4, height, top);
+        let shape = Arc::new(Shape::new(&mesh, "can", &Budget::default()).unwrap());
+        let bodies = vec![body(&shape, [0.0, 0.0, 0.0]), body(&shape, [1.0, 0.02, 0.3])];
+        let mut world = world(Surroundings::default().floor(1, 0.0), DOWN, bodies);
+        world.settle(&Budget::default()).unwrap();
+        for body in world.bodies() {
+            let up = body.pose.rotation.apply(Vector([0.0, 1.0, 0.0]))[1];
+            let low = mesh.positions.iter().map(|p| body.pose.apply(*p)[1]).fold(f64::INFINITY, f64::min);
+            assert!(up > 0.998, "{sides} sides, {height} high: leans {up}");
+            assert!(low.abs() < 0.015, "{sides} sides, {height} high: stands at {low}");
+        }
     }
 }

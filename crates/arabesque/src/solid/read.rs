@@ -1,10 +1,10 @@
 //! Points and meshes as inputs.
 
 use arabesque_core::{PointSet, Result, TriangleMesh, Warning};
-use arabesque_io::geometry::{Cloud, Geometry, read_geometry};
+use arabesque_io::geometry::{Cloud, Geometry, Kind, kind_of, read_geometry};
 use arabesque_surface::MeshIndex;
 
-use crate::{recipe::Input, resources::Files};
+use crate::{recipe::Input, resources::Files, solid::scene::scene_of};
 
 /// The points of a file, with normals only where all of them have a length, and what is to be told of it.
 pub(crate) fn cloud(name: &str, bytes: &[u8], files: &Files) -> Result<(Cloud, Vec<Warning>)> {
@@ -47,7 +47,12 @@ pub(crate) fn raised(points: Cloud) -> PointSet<3> {
 /// The mesh of a file that a request reads; the file is embedded.
 pub(crate) fn mesh(input: &mut Input, files: &Files) -> Result<(TriangleMesh, Vec<Warning>)> {
     let bytes = files.embed(input)?;
-    let mut found = read_geometry(input.name(), &bytes, files.budget())?;
+    let name = input.name();
+    let mut found = match kind_of(name, &bytes) {
+        // What a glTF file names lies beside it.
+        Some(Kind::Glb) => scene_of(input, &bytes, files)?.into_geometry(name),
+        _ => read_geometry(name, &bytes, files.budget())?,
+    };
     let warnings = std::mem::take(&mut found.warnings);
     Ok((found.into_mesh(input.name())?, warnings))
 }

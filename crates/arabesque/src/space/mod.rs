@@ -1,6 +1,5 @@
 //! Parts of space: scenes of meshes, networks of curves and clouds of points.
 
-mod file;
 mod layer;
 mod made;
 #[cfg(feature = "physics")]
@@ -10,6 +9,7 @@ mod physics;
 mod physics;
 #[cfg(all(test, feature = "physics"))]
 mod physics_tests;
+mod pile;
 mod place;
 mod scene;
 #[cfg(test)]
@@ -31,12 +31,14 @@ use crate::{
     plane::{in_exemplar, snapshot},
     recipe::{Input, Job, Recipe, Space},
     resources::{Files, Resources},
+    solid::scene::{may_be_scene, scene_of},
     spacing::spacing,
 };
-use file::{may_be_scene, scene_of};
+
 use layer::{Layer, layer};
 use made::VolumeMade;
 use physics::Physical;
+use pile::Pile;
 use place::{Filling, Shell, place};
 use scene::Bodies;
 
@@ -48,6 +50,8 @@ pub(crate) struct Volume {
     bodies: Option<Arc<Bodies>>,
     /// The same as a drawing, where it is a single layer.
     layer: Option<Arc<Layer>>,
+    /// The same as a lattice of space, where it is one.
+    pile: Option<Arc<Pile>>,
     engine: Engine<3>,
 }
 
@@ -67,7 +71,8 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
         let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
         let layer = layer(&exemplar, &params, budget)?;
-        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), layer, engine });
+        let pile = if layer.is_none() { Pile::of(&exemplar, budget)?.map(Arc::new) } else { None };
+        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), layer, pile, engine });
     }
     let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, budget)? {
         LoadedExemplar::Space(exemplar, warnings) => {
@@ -86,7 +91,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let exemplar = Arc::new(exemplar);
     let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
         .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
-    Ok(Volume { exemplar, bodies: None, layer: None, engine })
+    Ok(Volume { exemplar, bodies: None, layer: None, pile: None, engine })
 }
 
 impl Volume {
@@ -161,10 +166,14 @@ impl Ready for Volume {
         };
         let make = |snapshot| VolumeMade::of_snapshot(kind, (frame, convention), snapshot);
         let mut show = Show { watch, origin: &origin, make };
+        let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
         let flat = match (&self.layer, shell) {
             (Some(layer), Some(shell)) => layer.cover((&shell, &self.engine), &request)?,
             (Some(layer), None) => layer.run(&request, &mut show)?,
-            (None, _) => None,
+            (None, _) => match &self.pile {
+                Some(pile) => pile.fill((&self.exemplar, floor), &request)?,
+                None => None,
+            },
         };
         let mut outcome = match flat {
             Some(outcome) => outcome,
@@ -221,7 +230,8 @@ fn settle(
 /// Refuses a box that is too large or too small for the pattern.
 fn check_volume(exemplar: &Exemplar<3>, volume: f64, budget: &Budget) -> Result<()> {
     let spacing = spacing(exemplar);
-    let expected = volume / spacing.powi(3);
+    let shown = exemplar.elements.len() as f64;
+    let expected = if shown > 0.0 { volume * shown / exemplar.window.measure() } else { volume / spacing.powi(3) };
     if expected.is_nan() || expected > budget.limits().output_elements as f64 {
         return Err(Error::Limit {
             what: "size of the box".into(),

@@ -22,6 +22,8 @@ const MARGIN: f64 = 3.0;
 const THINNEST: f64 = 12.0;
 /// What is nearer to the floor than this share of its size stands on it.
 const NEAR: f64 = 0.12;
+/// A frame that is thinner than its elements by this factor is flat.
+const FLAT: f64 = 0.2;
 /// A frame is made wider by no more than this factor.
 const WIDEST: f64 = 1.6;
 /// Points are scattered so that so many are in a square of their spacing.
@@ -180,17 +182,42 @@ impl Bodies {
 /// The exemplar in its frame, if the file has one. A lattice that fits its frame tightly shows more elements than there are elsewhere, so that
 /// the frame must be as much wider.
 fn framed(name: &str, elements: Vec<Element<3>>, classes: Vec<Class>, frame: Option<Bounds<3>>) -> Result<Exemplar<3>> {
-    let Some(frame) = frame else { return Exemplar::unframed(name, elements, classes) };
+    let Some(frame) = frame else { return Ok(thickened(Exemplar::unframed(name, elements, classes)?)) };
+    let flat = |e: Exemplar<3>| Ok(thickened(e));
     let centres: Vec<_> = elements.iter().map(|e| e.centre).collect();
     let tight = Exemplar::new(name, elements, classes, frame)?;
-    let Some(cell) = point_lattice(&centres).and_then(|lattice| lattice.cell) else { return Ok(tight) };
+    let Some(cell) = point_lattice(&centres).and_then(|lattice| lattice.cell) else { return flat(tight) };
     let factor = cell * centres.len() as f64 / frame.measure();
     if !(1.0..=WIDEST).contains(&factor) {
-        return Ok(tight);
+        return flat(tight);
     }
     let grow = frame.size() * (0.5 * (factor.cbrt() - 1.0));
     let window = Bounds::new(frame.min - grow, frame.max + grow);
     Ok(Exemplar { window, ..tight })
+}
+
+/// The exemplar in a frame at least as thick as its elements: the centres of tiles on a floor all lie at one height, which is no reason for
+/// nothing to have room there.
+fn thickened(mut exemplar: Exemplar<3>) -> Exemplar<3> {
+    for axis in 0..3 {
+        let mut sizes: Vec<f64> = exemplar
+            .elements
+            .iter()
+            .map(|e| {
+                let along = e.outline.points().map(|p| p[axis]);
+                let (low, high) = along.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+                high - low
+            })
+            .collect();
+        sizes.sort_by(f64::total_cmp);
+        let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+        let (low, high) = (exemplar.window.min[axis], exemplar.window.max[axis]);
+        if high - low < FLAT * usual {
+            let middle = 0.5 * (low + high);
+            (exemplar.window.min[axis], exemplar.window.max[axis]) = (middle - 0.5 * usual, middle + 0.5 * usual);
+        }
+    }
+    exemplar
 }
 
 fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>> {

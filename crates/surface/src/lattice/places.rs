@@ -9,8 +9,9 @@ use crate::mesh::{Closest, MeshIndex};
 const NEAR: f64 = 1.5;
 /// Points mean one node when it is off by less than this share of the shorter vector.
 const ONE: f64 = 0.25;
-/// A node lies beyond the edge of an open mesh when it is off the mesh by this share of the shorter vector.
-const BEYOND: f64 = 0.02;
+/// A node lies beyond the edge of an open mesh when it is off the mesh by this share of the shorter vector, and by this share of its height:
+/// normals that are smooth lean on coarse triangles.
+const BEYOND: (f64, f64) = (0.04, 0.3);
 
 /// A node of a lattice on a surface.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +57,7 @@ impl SurfaceLattice {
             let at = index.closest(wanted);
             let away = wanted - at.point;
             let beside = away - at.normal * away.dot(at.normal);
-            if beside.norm() <= BEYOND * self.cell.shorter + 0.02 * self.height.abs() {
+            if beside.norm() <= BEYOND.0 * self.cell.shorter + BEYOND.1 * self.height.abs() {
                 found.push(LatticePlace { at, support: weight });
             }
         }

@@ -17,6 +17,8 @@ use things::Things;
 
 /// Elements may differ from the number that there should be by this share.
 const SLACK: f64 = 0.015;
+/// Thin things that a surface bends apart may reach into one another by this share of their radius.
+const BENT: f64 = 0.06;
 /// Rounds of taking out, putting in and moving.
 const ROUNDS: usize = 4;
 
@@ -40,7 +42,7 @@ pub(crate) fn take_apart<const D: usize>(
     let mended = things
         .thin(&any, SLACK, &budget)
         .and_then(|()| things.relax(&budget))
-        .and_then(|()| things.thin(&any, SLACK, &budget));
+        .and_then(|()| things.thin(&any, (SLACK, BENT), &budget));
     *placements = things.into_placements();
     placements.retain(|p| p.frozen.is_some() || extent.keeps_rule(p));
     mended
@@ -65,7 +67,7 @@ pub(crate) fn mend<const D: usize>(
     let mut things = Things::new(placements, exemplar, library, extent, &allowed);
     let mended = (0..ROUNDS).try_for_each(|round| {
         things.relax(&budget)?;
-        things.thin(targets, SLACK, &budget)?;
+        things.thin(targets, (SLACK, 0.0), &budget)?;
         if round + 1 < ROUNDS { things.fill(targets, SLACK, round as u64, &budget) } else { Ok(()) }
     });
     *placements = things.into_placements();

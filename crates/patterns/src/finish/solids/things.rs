@@ -101,8 +101,8 @@ impl<'a, const D: usize> Things<'a, D> {
         Ok(sums)
     }
 
-    /// Takes out what lies too deep in others, worst first, and what is too much of its class.
-    pub(super) fn thin(&mut self, targets: &Numbered<f64>, slack: f64, budget: &Budget) -> Result<()> {
+    /// Takes out what lies too deep in others, worst first, and what is too much of its class. Overlaps up to `deep` of the radius stay.
+    pub(super) fn thin(&mut self, targets: &Numbered<f64>, (slack, deep): (f64, f64), budget: &Budget) -> Result<()> {
         let excess = self.excess(budget)?;
         let mut left = Numbered::filled(0.0, targets.len());
         (0..self.bodies.len()).for_each(|i| left[self.class(i)] += 1.0);
@@ -127,7 +127,7 @@ impl<'a, const D: usize> Things<'a, D> {
                 }
             }
             let too_many = left[class] > targets[class] * (1.0 + slack) && now > WORSE * inner;
-            if now > TOO_DEEP * inner || too_many {
+            if now > TOO_DEEP * inner + deep * body.radius || too_many {
                 gone[i] = true;
                 left[class] -= 1.0;
             }

@@ -7,6 +7,7 @@
 //! | which way does a pattern run along it | [`DirectionField`] of [`Directions`], [`curvatures`] |
 //! | where do the nodes of a lattice lie that is laid on it | [`SurfaceLattice`] |
 //! | points spread on it, in a shell around it, inside of it | [`scatter`], [`shell_grid`], [`inside_grid`] |
+//! | does a mesh have a centre line, which balls stand for it, where is it once samples of it have moved | [`Tube`], [`balls`], [`Skin`] |
 //! | where is the nearest point of a surface that points alone stand for, where does a ray meet it, how does it bend | [`OrientedPoints`] |
 //! | the surface through points, or around balls | [`reconstruct`] with [`SurfaceParams`] |
 //!
@@ -35,6 +36,7 @@
 mod cloud;
 mod dipoles;
 mod directions;
+mod flexible;
 mod implicit;
 mod isosurface;
 mod lattice;
@@ -48,6 +50,7 @@ mod tests;
 mod tree;
 
 pub use directions::{Bend, Curvature, DirectionField, Directions, SurfaceFrame, curvatures};
+pub use flexible::{Skin, Tube, balls};
 pub use lattice::{Axes, LatticePlace, SurfaceLattice};
 pub use mesh::{Closest, Found, MeshIndex, MeshReport};
 pub use oriented::{EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of};

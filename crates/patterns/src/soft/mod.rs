@@ -1,0 +1,169 @@
+//! Elements that bend: ropes, noodles, bags [Ma 2011 §3.1, fig. 13].
+//!
+//! An element is several samples: of a strand along its centre line, of a bag all through it. Lines say more about such a pattern than
+//! neighbourhoods of centres do, for an element is longer than its neighbours are away. So elements are laid out one by one wherever there
+//! is most room, each as the source that lies best among those around it, and a search for similar neighbourhoods ([Ma 2011 §4.2]) only
+//! offers candidates. Then all samples move at once to where links and distances want them: lengths and bends of the sources stay, and
+//! nothing comes nearer to anything else than it does in the exemplar. Both ends of a strand are equal, and samples have no ids.
+//!
+//! | step | module |
+//! |---|---|
+//! | samples, links, pieces | `form` |
+//! | what the exemplar shows | `natural` |
+//! | lay out | `layout`, over `bodies` |
+//! | take apart | `relax` |
+
+mod bodies;
+mod form;
+mod layout;
+mod natural;
+mod relax;
+
+use arabesque_core::{
+    Border, Error, Exemplar, Matrix, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot, Watch,
+};
+
+use crate::{
+    ending::{self, heard, last_touches},
+    exemplar::checks,
+    params::{Clearance, Params},
+};
+use bodies::{Bodies, Laid};
+use form::{Form, forms};
+use layout::{Plan, empty};
+use natural::Natural;
+use relax::Relaxation;
+
+/// Share of the progress that the layout counts for.
+const LAYOUT_SHARE: f64 = 0.6;
+/// An element that should lie inside does so when every sample is so far from the border, in its radii.
+const WITHIN: f64 = 0.85;
+
+/// An exemplar of elements that bend, prepared for any number of runs.
+#[derive(Clone, Debug)]
+pub(crate) struct Softness<const D: usize> {
+    forms: Vec<Form<D>>,
+    natural: Natural,
+    is_relaxed: bool,
+}
+
+impl<const D: usize> Softness<D> {
+    /// Analyses the exemplar; `None` where nothing in it bends.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(
+        exemplar: &Exemplar<D>,
+        params: &Params,
+        budget: &arabesque_core::Budget,
+    ) -> Result<Option<Self>> {
+        if exemplar.softs.len() != exemplar.elements.len() || exemplar.softs.iter().any(|s| s.samples.is_empty()) {
+            return Ok(None);
+        }
+        let budget = &budget.stage("analysing the exemplar");
+        let forms = forms(exemplar);
+        let natural = Natural::new(exemplar, &forms, budget)?;
+        Ok(Some(Self { forms, natural, is_relaxed: params.clearance == Clearance::Repaired }))
+    }
+
+    /// Fills a domain.
+    ///
+    /// # Errors
+    /// As [`crate::Prepared::run`].
+    pub(crate) fn filled(
+        &self,
+        exemplar: &Exemplar<D>,
+        request: &Request<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<Outcome<D>> {
+        let plan = Plan::new(exemplar, &self.forms, &self.natural, request);
+        checks::expected(plan.expected(), &request.budget)?;
+        request.budget.allow_elements(plan.expected());
+        let mut laid = empty(&plan);
+        self.keep(&mut laid, request);
+        let mut cut_short = plan
+            .laid_out(&mut laid, &mut |laid, share| {
+                self.told("laying out", LAYOUT_SHARE * share, &laid.bodies, request, watch)
+            })
+            .err();
+        let mut bodies = laid.bodies;
+        if self.is_relaxed {
+            let relaxation = Relaxation { request, forms: &self.forms, natural: &self.natural };
+            let is_whole = cut_short.is_none();
+            let budget = if is_whole { request.budget.clone() } else { last_touches(&request.budget) };
+            let budget = budget.stage("taking elements apart");
+            let ended = relaxation.run(&mut bodies, &budget, &mut |bodies, share| {
+                let fraction = LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * share;
+                if is_whole { self.told("taking elements apart", fraction, bodies, request, watch) } else { Ok(()) }
+            });
+            cut_short = cut_short.or(ended.err());
+        }
+        let placements = self.placements(&bodies, request);
+        if placements.is_empty() {
+            return Err(cut_short.unwrap_or_else(|| {
+                Error::no_result(
+                    "no element fits into the domain",
+                    "make the domain larger, lower the scale, or allow elements to cross its border",
+                )
+            }));
+        }
+        let mut warnings = Vec::new();
+        let stopped = ending::reason(cut_short, &mut warnings)?;
+        let (sequence, curves, areas, energy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Outcome { placements, sequence, curves, areas, energy, warnings, stopped })
+    }
+
+    /// Puts in what the user placed.
+    fn keep(&self, laid: &mut Laid<D>, request: &Request<D>) {
+        for (n, kept) in request.frozen.iter().enumerate() {
+            let Some(form) = self.forms.get(kept.source) else { continue };
+            let own = &form.soft.samples;
+            let samples: Vec<_> = if kept.control.len() == own.len() {
+                kept.control.iter().map(|(_, to)| *to).collect()
+            } else {
+                own.iter().map(|p| kept.transform.apply(*p)).collect()
+            };
+            laid.push(kept.source, form, &samples, kept.transform.scale, Some(n));
+        }
+    }
+
+    fn told(
+        &self,
+        stage: &'static str,
+        fraction: f64,
+        bodies: &Bodies<D>,
+        request: &Request<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<()> {
+        let (done, count) = ((100.0 * fraction) as usize, bodies.list.len());
+        let progress = Progress { stage: stage.into(), done, total: 100, fraction, energy: None, count };
+        let preview = || Snapshot { placements: self.placements(bodies, request), ..Snapshot::default() };
+        heard(watch.step(&progress, &preview), &progress)
+    }
+
+    /// Those that are part of the result.
+    fn placements(&self, bodies: &Bodies<D>, request: &Request<D>) -> Vec<Placement<D>> {
+        let one = |body: &bodies::Body| {
+            let form = &self.forms[body.source];
+            let samples = bodies.samples(body, form);
+            if let Some(n) = body.frozen {
+                return Some(Placement { frozen: Some(n), ..request.frozen[n].clone() });
+            }
+            let is_in = match request.border {
+                Border::Inside => {
+                    let mut all = samples.iter().zip(&form.soft.radii);
+                    all.all(|(p, r)| request.domain.signed_distance(*p) >= WITHIN * r * body.scale)
+                }
+                _ => request.domain.contains(form.soft.middle(samples)),
+            };
+            let own = &form.soft.samples;
+            is_in.then(|| Placement {
+                source: body.source,
+                transform: Similarity::fit(own, samples, body.scale, Matrix::identity()),
+                control: own.iter().copied().zip(samples.iter().copied()).collect(),
+                frozen: None,
+            })
+        };
+        bodies.list.iter().filter_map(one).collect()
+    }
+}

@@ -1,8 +1,8 @@
 //! Elements in their places while they are laid out and moved.
 
-use arabesque_core::{Bounds, Buckets, Domain, Fields, Matrix, Vector};
+use arabesque_core::{Bounds, Buckets, Build, Domain, Matrix, Request, Vector};
 
-use super::form::Form;
+use super::{form::Form, wall};
 
 /// Elements, each as samples in a row.
 #[derive(Clone, Debug, Default)]
@@ -84,31 +84,61 @@ pub(super) fn nearest<const D: usize>(first: [Vector<D>; 2], second: [Vector<D>;
     }
 }
 
-/// Samples of a source with sample `at` at a place, each step turned by the field where it starts.
+/// Samples of a source with sample `at` at a place. A strand goes on from there step by step, each turned by the field where it starts, and
+/// along walls that are in its way. Returns its scale.
 pub(super) fn walked<const D: usize>(
     form: &Form<D>,
     (at, place): (usize, Vector<D>),
-    fields: &Fields<D>,
+    request: &Request<D>,
     into: &mut Vec<Vector<D>>,
 ) -> f64 {
     let samples = &form.soft.samples;
+    let fields = &request.fields;
     let scale = fields.scale.at(place);
     let turn = |p: Vector<D>| fields.orientation.as_ref().map_or_else(Matrix::identity, |o| o.at(p));
     into.clear();
-    let is_whole = form.soft.build != arabesque_core::Build::Strand || fields.orientation.is_none();
-    if is_whole {
+    let has_walls = wall::is_there(request);
+    if form.soft.build != Build::Strand || (fields.orientation.is_none() && !has_walls) {
         let turn = turn(place);
         into.extend(samples.iter().map(|p| place + turn.apply(*p - samples[at]) * scale));
         return scale;
     }
     into.resize(samples.len(), place);
-    for k in at + 1..samples.len() {
-        into[k] = into[k - 1] + turn(into[k - 1]).apply(samples[k] - samples[k - 1]) * scale;
-    }
-    for k in (0..at).rev() {
-        into[k] = into[k + 1] + turn(into[k + 1]).apply(samples[k] - samples[k + 1]) * scale;
+    let ways: [Vec<usize>; 2] = [(at..samples.len()).collect(), (0..=at).rev().collect()];
+    for way in &ways {
+        let mut carried = Matrix::identity();
+        for pair in way.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let here = into[from];
+            let mut step = carried.apply(turn(here).apply(samples[to] - samples[from])) * scale;
+            if has_walls {
+                let kept = wall::within(request, here + step, form.soft.radii[to] * scale);
+                if kept != here + step {
+                    let along = (kept - here).unit_or_zero() * step.norm();
+                    carried = turning(step, along).compose(&carried);
+                    step = along;
+                }
+            }
+            into[to] = here + step;
+        }
     }
     scale
+}
+
+/// The rotation that takes the direction of one offset to that of another and leaves what is across both.
+fn turning<const D: usize>(from: Vector<D>, to: Vector<D>) -> Matrix<D> {
+    let (u, v) = (from.unit_or_zero(), to.unit_or_zero());
+    let both = 1.0 + u.dot(v);
+    if both < 1e-6 {
+        return Matrix::identity();
+    }
+    let column = |c: usize| {
+        let mut x = Vector::ZERO;
+        x[c] = 1.0;
+        x - (u + v) * (x.dot(u + v) / both) + v * (2.0 * x.dot(u))
+    };
+    let columns: [Vector<D>; D] = std::array::from_fn(column);
+    Matrix(std::array::from_fn(|r| std::array::from_fn(|c| columns[c][r])))
 }
 
 /// The pieces that are laid out so far, by place.

@@ -6,12 +6,13 @@
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use arabesque_core::{Border, Bounds, Domain, Matrix, Request, Result, Stage, Stream, Vector};
+use arabesque_core::{Border, Bounds, Build, Domain, Matrix, Request, Result, Stage, Stream, Vector};
 
 use super::{
     bodies::{Laid, walked},
     form::Form,
     natural::{LOOK, Natural, laid, quantile, sizes},
+    wall,
 };
 
 const PLACES: Stage = Stage::new(451);
@@ -29,6 +30,9 @@ const RANDOM: usize = 24;
 /// A candidate that is worse than this is not taken, and how often a place is tried.
 const WORST: f64 = 0.06;
 const TRIES: u8 = 3;
+/// What it costs to lie beyond a wall, beside lying in others, and to be bent by one.
+const OUT: f64 = 0.25;
+const BENT: f64 = 0.6;
 /// What a candidate that goes on from others has in advance.
 const ADVANCE: f64 = 0.004;
 /// Elements reach out of the domain as far as this share of them do in the exemplar.
@@ -120,7 +124,8 @@ impl<'a, const D: usize> Plan<'a, D> {
             meter.spend(SAMPLE)?;
             let middle = bounds.cell_centre(n, &counts);
             let place = middle.zip(cell, |m, c| m + c * random.range(-0.5, 0.5));
-            if self.room.contains(place) {
+            let is_above = self.request.ground.as_ref().is_none_or(|ground| ground.height(place) > 0.0);
+            if is_above && self.room.contains(place) {
                 found.push(place);
             }
         }
@@ -197,7 +202,7 @@ impl<'a, const D: usize> Plan<'a, D> {
             if form.class != class || !form.copyable {
                 continue;
             }
-            let scale = walked(form, (at, place), &self.request.fields, &mut samples);
+            let scale = walked(form, (at, place), self.request, &mut samples);
             meter.spend(SAMPLE * samples.len() as u64)?;
             if !self.room.contains(form.soft.middle(&samples)) {
                 continue;
@@ -274,9 +279,9 @@ impl<'a, const D: usize> Plan<'a, D> {
         most: f64,
         meter: &mut arabesque_core::Meter<'_>,
     ) -> Result<Option<f64>> {
-        let mut sum = 0.0;
+        let mut sum = BENT * bent(form, samples, scale);
         let share = 1.0 / samples.len() as f64;
-        let must_fit = self.request.border == Border::Inside;
+        let has_walls = wall::is_there(self.request);
         for (p, r) in samples.iter().zip(&form.soft.radii) {
             let r = r * scale;
             let reach = r + laid.thickest + self.natural.widest().max(0.0) * scale;
@@ -287,16 +292,29 @@ impl<'a, const D: usize> Plan<'a, D> {
             });
             meter.spend(LOOK * looked)?;
             sum += deepest * deepest * share;
-            if must_fit {
-                let out = (1.0 - self.request.domain.signed_distance(*p) / r.max(1e-12)).max(0.0);
-                sum += 0.25 * out * out * share;
+            if has_walls {
+                sum += OUT * wall::beyond(self.request, *p, r).powi(2) * share;
             }
             if sum >= most {
                 return Ok(None);
             }
         }
-        Ok(Some(sum))
+        Ok((sum < most).then_some(sum))
     }
+}
+
+/// How much a strand is bent more than its source: mean square of what its long links have become shorter by.
+fn bent<const D: usize>(form: &Form<D>, samples: &[Vector<D>], scale: f64) -> f64 {
+    if form.soft.build != Build::Strand {
+        return 0.0;
+    }
+    let long = form.links.iter().filter(|link| link.b - link.a > 2);
+    let lost = long.map(|link| {
+        let length = (samples[link.a as usize] - samples[link.b as usize]).norm();
+        (1.0 - length / (link.length * scale).max(f64::MIN_POSITIVE)).powi(2)
+    });
+    let (sum, count) = lost.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
 }
 
 /// The class that is farthest from its number, by chance; `None` where none is short of half an element.

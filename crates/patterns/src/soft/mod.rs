@@ -12,12 +12,14 @@
 //! | what the exemplar shows | `natural` |
 //! | lay out | `layout`, over `bodies` |
 //! | take apart | `relax` |
+//! | borders and ground | `wall` |
 
 mod bodies;
 mod form;
 mod layout;
 mod natural;
 mod relax;
+mod wall;
 
 use arabesque_core::{
     Border, Error, Exemplar, Matrix, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot, Watch,

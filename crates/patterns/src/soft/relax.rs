@@ -1,12 +1,13 @@
 //! Taking apart what lies too near, while lengths and shapes stay: positions are moved to where each link and each pair of pieces wants
 //! them, in turn, many times [Müller 2007].
 
-use arabesque_core::{Border, Budget, Domain, GridIndex, Request, Result, Vector};
+use arabesque_core::{Budget, Domain, GridIndex, Request, Result, Vector};
 
 use super::{
     bodies::{Bodies, Piece, nearest, pieces_of},
     form::Form,
     natural::{LOOK, Natural},
+    wall,
 };
 
 /// Rounds, and after how many of them pairs are looked for again.
@@ -22,6 +23,8 @@ const PUSH: f64 = 0.5;
 const SELF: f64 = 4.0;
 /// How near the surfaces of one strand may come, in radii.
 const TOUCH: f64 = 0.0;
+/// How often lengths and walls are looked after in turn at the end.
+const AT_WALLS: usize = 6;
 /// Work of a pair, and of a link.
 const PAIR: u64 = 60;
 const LINK: u64 = 15;
@@ -71,8 +74,11 @@ impl<const D: usize> Relaxation<'_, D> {
                 }
             }
         }
-        for n in 0..bodies.list.len() {
-            if bodies.list[n].frozen.is_none() {
+        let again = if wall::is_there(self.request) { AT_WALLS } else { 0 };
+        for n in (0..bodies.list.len()).filter(|n| bodies.list[*n].frozen.is_none()).collect::<Vec<_>>() {
+            self.stretch(bodies, n);
+            for _ in 0..again {
+                self.confine(bodies, n);
                 self.stretch(bodies, n);
             }
         }
@@ -128,16 +134,24 @@ impl<const D: usize> Relaxation<'_, D> {
         form.soft.build == arabesque_core::Build::Strand && along > SELF * a.radius
     }
 
-    /// Links of an element, and the border.
-    fn hold(&self, bodies: &mut Bodies<D>, n: usize, is_last: bool) {
+    /// Keeps the samples of an element within the border and above the ground.
+    fn confine(&self, bodies: &mut Bodies<D>, n: usize) {
         let body = bodies.list[n];
         let form = &self.forms[body.source];
         let points = &mut bodies.points[body.first..body.first + form.len()];
-        if self.request.border == Border::Inside {
-            for (p, r) in points.iter_mut().zip(&form.soft.radii) {
-                *p = inside(&self.request.domain, *p, r * body.scale);
-            }
+        for (p, r) in points.iter_mut().zip(&form.soft.radii) {
+            *p = wall::within(self.request, *p, r * body.scale);
         }
+    }
+
+    /// Links of an element, and the border.
+    fn hold(&self, bodies: &mut Bodies<D>, n: usize, is_last: bool) {
+        if wall::is_there(self.request) {
+            self.confine(bodies, n);
+        }
+        let body = bodies.list[n];
+        let form = &self.forms[body.source];
+        let points = &mut bodies.points[body.first..body.first + form.len()];
         for link in &form.links {
             let (a, b) = (points[link.a as usize], points[link.b as usize]);
             let way = b - a;
@@ -177,36 +191,6 @@ impl<const D: usize> Relaxation<'_, D> {
             arabesque_core::Build::Bag => {}
         }
     }
-}
-
-/// A place moved so far into a domain that a ball around it lies inside, as well as one step can.
-fn inside<const D: usize>(domain: &Domain<D>, p: Vector<D>, radius: f64) -> Vector<D> {
-    let depth = domain.signed_distance(p);
-    if depth >= radius {
-        return p;
-    }
-    if let Domain::Box(bounds) = domain {
-        return bounds.grown(-radius).clamp(p);
-    }
-    let foot = domain.nearest_inside(p);
-    let out = p - foot;
-    // Beyond the border the way back leads over the foot and on.
-    let way = if depth < 0.0 { -out.unit_or_zero() } else { deeper(domain, p, radius) };
-    if depth < 0.0 { foot + way * radius } else { p + way * (radius - depth) }
-}
-
-/// The way in which it gets deeper, of length 1; zero where there is none.
-fn deeper<const D: usize>(domain: &Domain<D>, p: Vector<D>, step: f64) -> Vector<D> {
-    let mut way = Vector::ZERO;
-    for k in 0..D {
-        let at = |sign: f64| {
-            let mut q = p;
-            q[k] += sign * 0.5 * step;
-            domain.signed_distance(q)
-        };
-        way[k] = at(1.0) - at(-1.0);
-    }
-    way.unit_or_zero()
 }
 
 /// Moves the ends of two pieces apart where they are too near.

@@ -111,6 +111,16 @@ impl Volume {
             let what = "a place other than a box for points and curves in space";
             return Err(Error::Unsupported { what: what.into(), advice: "give a scene of meshes, or a box".into() });
         }
+        if !self.exemplar.softs.is_empty() {
+            let asked = [("physics", space.physics.is_some()), ("keep", space.keep.is_some())];
+            if let Some((name, _)) = asked.into_iter().find(|(_, is_given)| *is_given) {
+                let what = format!("{name} for a scene of which something bends");
+                return Err(Error::Unsupported {
+                    what,
+                    advice: "leave it out, or let nothing bend (--deform=off)".into(),
+                });
+            }
+        }
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
         let filling = Filling { exemplar: &self.exemplar, floor, layer: self.layer.as_deref() };
         let place = place(&mut space, filling, context)?;

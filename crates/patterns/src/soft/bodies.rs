@@ -29,6 +29,19 @@ impl<const D: usize> Bodies<D> {
         self.points.extend_from_slice(samples);
     }
 
+    /// Those of which something is in a domain or nearer to the box around it than `margin`.
+    pub(super) fn near(&self, forms: &[Form<D>], request: &Request<D>, margin: f64) -> Self {
+        let around = request.domain.bounds().grown(margin * request.fields.scale.range().1);
+        let mut kept = Self::default();
+        for body in &self.list {
+            let samples = self.samples(body, &forms[body.source]);
+            if body.frozen.is_some() || samples.iter().any(|p| around.contains(*p)) {
+                kept.push(body.source, samples, body.scale, body.frozen);
+            }
+        }
+        kept
+    }
+
     pub(super) fn samples(&self, body: &Body, form: &Form<D>) -> &[Vector<D>] {
         &self.points[body.first..body.first + form.len()]
     }

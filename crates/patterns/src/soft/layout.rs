@@ -47,6 +47,8 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) natural: &'a Natural,
     /// The exemplar.
     pub(super) known: Laid<D>,
+    /// The box around it.
+    shown: Bounds<D>,
     /// The elements of each class that may be copied.
     members: Vec<Vec<usize>>,
     /// Where elements may have their middle.
@@ -83,6 +85,7 @@ impl<'a, const D: usize> Plan<'a, D> {
         request: &'a Request<D>,
     ) -> Self {
         let known = laid(exemplar, forms);
+        let shown = known.bounds();
         let scale = request.fields.scale.range().1;
         let room = match &request.domain {
             Domain::Box(bounds) if request.border != Border::Inside => {
@@ -93,7 +96,7 @@ impl<'a, const D: usize> Plan<'a, D> {
         let mut members = vec![Vec::new(); natural.density.len()];
         let copyable = forms.iter().enumerate().filter(|(_, f)| f.copyable);
         copyable.for_each(|(n, f)| members[f.class].push(n));
-        Self { request, forms, natural, known, members, room }
+        Self { request, forms, natural, known, shown, members, room }
     }
 
     /// Elements of each class that there should be in the domain.
@@ -239,7 +242,7 @@ impl<'a, const D: usize> Plan<'a, D> {
             let frame = self.request.fields.frame(laid.bodies.points[ends[0] as usize]);
             let source = &self.forms[own.source].soft.samples[ends[0] as usize - own.first];
             let there = *source + frame.to_exemplar(place - laid.bodies.points[ends[0] as usize]);
-            if !self.known_at(there) {
+            if !self.shown.contains(there) {
                 continue;
             }
             let mut near = Vec::new();
@@ -256,11 +259,6 @@ impl<'a, const D: usize> Plan<'a, D> {
             }
         }
         Ok(found)
-    }
-
-    fn known_at(&self, p: Vector<D>) -> bool {
-        let bounds: Bounds<D> = self.known.bounds();
-        bounds.contains(p)
     }
 
     /// Any element of a class, and any sample of it.

@@ -88,7 +88,7 @@ impl<const D: usize> Softness<D> {
                 self.told("laying out", LAYOUT_SHARE * share, &laid.bodies, request, watch)
             })
             .err();
-        let mut bodies = laid.bodies;
+        let mut bodies = laid.bodies.near(&self.forms, request, self.natural.width);
         if self.is_relaxed {
             let relaxation = Relaxation { request, forms: &self.forms, natural: &self.natural };
             let is_whole = cut_short.is_none();

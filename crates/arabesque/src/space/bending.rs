@@ -14,12 +14,13 @@ use crate::recipe::Deform;
 
 /// From so many times longer than thick on a thing bends by itself, and one that was asked to bend does so along its line.
 const SLENDER: (f64, f64) = (6.0, 3.0);
-/// Strands of one kind are as thick as their median within this factor, and one leaves the straight way by so many radii at least.
+/// Strands of one kind are as thick as their median within this factor, and this share of them leaves the straight way by so many radii.
 const ALIKE: f64 = 1.3;
 const BENT: f64 = 1.0;
+const OFTEN: f64 = 0.25;
 /// Bags of one kind: places differ by this share of their size at least, and by so many times more than edges do.
 const PLACES: f64 = 0.04;
-const FAITHFUL: f64 = 1.5;
+const FAITHFUL: f64 = 1.35;
 /// Samples of a strand are so many radii apart; fewest and most of them.
 const APART: f64 = 2.2;
 const STRAND: (usize, usize) = (6, 96);
@@ -109,7 +110,8 @@ impl Members {
         }
         let thickness = median(lines.iter().map(|t| t.radius));
         let are_alike = lines.iter().all(|t| t.radius < ALIKE * thickness && t.radius > thickness / ALIKE);
-        let is_bent = lines.iter().any(|t| t.sag() >= BENT);
+        let bent = lines.iter().filter(|t| t.sag() >= BENT).count();
+        let is_bent = bent as f64 >= OFTEN * lines.len() as f64;
         if are_lines && thinnest >= SLENDER.0 && are_alike && is_bent {
             return Ok(Build::Strand);
         }
@@ -133,7 +135,7 @@ impl Members {
 fn are_one_thing_bent(meshes: &[&SceneMesh], budget: &Budget) -> Result<bool> {
     let [first, others @ ..] = meshes else { return Ok(false) };
     let own = &first.mesh;
-    let mut most = 0.0_f64;
+    let (mut all_moved, mut all_stretched) = (0.0, 0.0);
     for other in others {
         let places = &other.mesh.positions;
         if other.mesh.triangles != own.triangles || places.len() != own.positions.len() {
@@ -151,18 +153,17 @@ fn are_one_thing_bent(meshes: &[&SceneMesh], budget: &Budget) -> Result<bool> {
         let (sum, other_sum): (f64, f64) = (a.iter().sum(), b.iter().sum());
         let scale = other_sum / sum.max(f64::MIN_POSITIVE);
         let squares: f64 = a.iter().zip(&b).map(|(a, b)| (b - scale * a).powi(2)).sum();
-        let stretched = (squares / b.iter().map(|b| b * b).sum::<f64>().max(f64::MIN_POSITIVE)).sqrt();
+        all_stretched += squares / b.iter().map(|b| b * b).sum::<f64>().max(f64::MIN_POSITIVE);
         let fit = Similarity::fit(&own.positions, places, scale, Matrix::identity());
         let middle = places.iter().fold(Vector::ZERO, |sum, p| sum + *p) * (1.0 / places.len().max(1) as f64);
         let off: f64 = own.positions.iter().zip(places).map(|(p, q)| (fit.apply(*p) - *q).norm2()).sum();
         let size: f64 = places.iter().map(|q| (*q - middle).norm2()).sum();
-        let moved = (off / size.max(f64::MIN_POSITIVE)).sqrt();
-        if moved > 1e-3 && moved < FAITHFUL * stretched {
-            return Ok(false);
-        }
-        most = most.max(moved);
+        all_moved += off / size.max(f64::MIN_POSITIVE);
     }
-    Ok(most >= PLACES)
+    // In the mean over all of them: two may happen to be bent alike.
+    let mean = |sum: f64| (sum / others.len().max(1) as f64).sqrt();
+    let (moved, stretched) = (mean(all_moved), mean(all_stretched));
+    Ok(moved >= PLACES && moved >= FAITHFUL * stretched)
 }
 
 /// The samples of every node.

@@ -3,14 +3,14 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{
-    Bounds, Budget, Build, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Soft, Solid,
-    TriangleMesh, Vector, Warning, point_lattice, suggest::did_you_mean,
+    Bounds, Budget, Build, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Similarity, Soft,
+    Solid, TriangleMesh, Vector, Warning, point_lattice, suggest::did_you_mean,
 };
 use arabesque_io::mesh::{
     gltf::{Scene, SceneMesh, SceneNode},
     scene::Classes,
 };
-use arabesque_surface::{MeshIndex, scatter};
+use arabesque_surface::{MeshIndex, Symmetry, scatter};
 
 use super::bending::{Bending, bending};
 use crate::recipe::{Constraint, Deform};
@@ -30,6 +30,8 @@ const NEAR: f64 = 0.12;
 const FLAT: f64 = 0.2;
 /// A frame is made wider by no more than this factor.
 const WIDEST: f64 = 1.6;
+/// Of more meshes than this nobody looks for symmetries.
+const MANY: usize = 64;
 /// Shares of all samples along each axis between which the middle of a heap is.
 const CORE: (f64, f64) = (0.3, 0.7);
 /// Points are scattered so that so many are in a square of their spacing.
@@ -55,6 +57,8 @@ struct Body {
     /// Mean colour.
     colour: [f64; 3],
     solid: Arc<Solid<3>>,
+    /// The rotations that leave it as it is.
+    symmetry: Symmetry,
 }
 
 impl Bodies {
@@ -92,13 +96,18 @@ impl Bodies {
         let bodies = bodies(name, &scene.meshes, budget)?;
         let classes = found.names.into_iter().map(|name| Class { name }).collect();
         let mut elements = Vec::with_capacity(scene.nodes.len());
+        let mut first = BTreeMap::new();
         for (node, class) in scene.nodes.iter().zip(found.of_node) {
             budget.spend(1000)?;
             let body = &bodies[node.mesh];
+            let usual = *first.entry((class, node.mesh)).or_insert(node.transform.rotation);
+            // Of the rotations that are the same to look at, the one that is most like that of the first: none is as good as another.
+            let turn = body.symmetry.nearest(&node.transform.rotation, &usual);
+            let turn = Similarity::about(body.centre, body.centre, turn, 1.0);
             elements.push(Element {
                 class,
                 centre: node.transform.apply(body.centre),
-                pose: node.transform,
+                pose: node.transform.after(&turn),
                 outline: Outline { rings: vec![body.points.iter().map(|p| node.transform.apply(*p)).collect()] },
                 colour: body.colour,
                 lean: [Vector::ZERO; 3],
@@ -323,7 +332,12 @@ fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>
         points.extend(corners(&shape.mesh));
         let centre = centre(&shape.mesh, &points);
         let solid = Arc::new(solid(&index, &points, centre, budget)?);
-        Ok(Body { centre, points, colour: colour(&shape.mesh), solid })
+        let symmetry = if meshes.len() > MANY {
+            Symmetry::default()
+        } else {
+            Symmetry::of(&shape.mesh, &index, (centre, &points), budget)?
+        };
+        Ok(Body { centre, points, colour: colour(&shape.mesh), solid, symmetry })
     };
     meshes.iter().enumerate().map(one).collect()
 }

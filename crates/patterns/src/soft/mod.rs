@@ -19,6 +19,8 @@ mod form;
 mod layout;
 mod natural;
 mod relax;
+#[cfg(test)]
+mod tests;
 mod wall;
 
 use arabesque_core::{

@@ -2,6 +2,8 @@
 
 mod balls;
 mod skin;
+#[cfg(test)]
+mod tests;
 mod tube;
 
 pub use balls::balls;

@@ -23,6 +23,8 @@ const FLAT: f64 = 2.6;
 const EVEN: (f64, f64) = (0.3, 2.2);
 /// Share of the slices at either end that may be of any thickness.
 const ENDS: f64 = 0.12;
+/// Places of a line that tell whether it is straight.
+const SAGGING: usize = 24;
 /// Work of a corner of a triangle in a pass.
 const CORNER: u64 = 600;
 
@@ -85,12 +87,14 @@ impl Tube {
         self.length() / (2.0 * self.radius)
     }
 
-    /// By how much the line leaves the way from end to end, in radii.
+    /// By how much the line leaves the straight way between its ends, in radii; its very ends, which caps decide, left out.
     pub fn sag(&self) -> f64 {
-        let (Some(a), Some(b)) = (self.line.first(), self.line.last()) else { return 0.0 };
+        let places = self.samples(SAGGING);
+        let inner = &places[2..places.len() - 2];
+        let (Some(a), Some(b)) = (inner.first(), inner.last()) else { return 0.0 };
         let axis = (*b - *a).unit_or_zero();
         let off = |p: &Vector<3>| (*p - *a - axis * (*p - *a).dot(axis)).norm();
-        self.line.iter().map(off).fold(0.0, f64::max) / self.radius
+        inner.iter().map(off).fold(0.0, f64::max) / self.radius
     }
 
     /// So many places at even steps along the line.

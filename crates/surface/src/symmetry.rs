@@ -157,7 +157,6 @@ fn axes(mesh: &TriangleMesh, trial: &Trial<'_>) -> Vec<Vector<3>> {
             found.push(way);
         }
     };
-    inertia(&trial.places, trial.centre).into_iter().for_each(|axis| add(&mut found, axis, 3));
     let mut faces: Vec<Vector<3>> = Vec::new();
     for t in 0..mesh.triangles.len() {
         let normal = mesh.double_area(t);
@@ -169,8 +168,8 @@ fn axes(mesh: &TriangleMesh, trial: &Trial<'_>) -> Vec<Vector<3>> {
         }
     }
     faces.sort_by(|a, b| b.norm2().total_cmp(&a.norm2()));
-    let most = found.len() + AXES;
-    faces.iter().for_each(|normal| add(&mut found, *normal, most));
+    faces.iter().for_each(|normal| add(&mut found, *normal, AXES));
+    inertia(mesh, trial.centre).into_iter().for_each(|axis| add(&mut found, axis, AXES + 3));
     let mut corners: Vec<Vector<3>> = mesh.positions.iter().map(|p| *p - trial.centre).collect();
     corners.sort_by(|a, b| b.norm2().total_cmp(&a.norm2()));
     let most = found.len() + AXES;
@@ -178,14 +177,16 @@ fn axes(mesh: &TriangleMesh, trial: &Trial<'_>) -> Vec<Vector<3>> {
     found
 }
 
-/// Axes of inertia of places, longest first, by turning two of them at a time [Jacobi 1846].
-fn inertia(places: &[Vector<3>], centre: Vector<3>) -> [Vector<3>; 3] {
+/// Axes of inertia of a surface, longest first, by turning two of them at a time [Jacobi 1846].
+fn inertia(mesh: &TriangleMesh, centre: Vector<3>) -> [Vector<3>; 3] {
     let mut m = Matrix::<3>::zero();
-    for p in places {
-        let v = *p - centre;
-        for r in 0..3 {
-            for c in 0..3 {
-                m.0[r][c] += v[r] * v[c];
+    for t in 0..mesh.triangles.len() {
+        let corners = mesh.corners(t).map(|p| p - centre);
+        let sum = corners[0] + corners[1] + corners[2];
+        let area = mesh.double_area(t).norm();
+        for (r, row) in m.0.iter_mut().enumerate() {
+            for (c, entry) in row.iter_mut().enumerate() {
+                *entry += area * (corners.iter().map(|v| v[r] * v[c]).sum::<f64>() + sum[r] * sum[c]);
             }
         }
     }

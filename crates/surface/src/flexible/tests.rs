@@ -178,6 +178,6 @@ fn balls_stand_for_what_is_inside() {
     for (p, radius) in &found {
         assert!(index.is_inside(*p) && *radius > 0.2 && *radius < 1.1, "{p:?} {radius}");
     }
-    let covered = |p: &Vector<3>| found.iter().any(|(q, r)| (*p - *q).norm() < 1.35 * r);
+    let covered = |p: &Vector<3>| found.iter().any(|(q, r)| (*p - *q).norm() < 1.6 * r);
     assert!(mesh.positions.iter().all(covered));
 }

@@ -17,12 +17,16 @@ const PASSES: usize = 3;
 const WINDOW: f64 = 0.12;
 /// A line that is shorter than this share of the way along the surface is none: the thing is round, or a ring.
 const STRAIGHT: f64 = 0.72;
+/// So many times longer than thick it is at least.
+const LEAST: f64 = 2.0;
 /// A slice may reach so many of its mean radii from its middle: the thing may be flat, but is no pair of arms.
 const FLAT: f64 = 2.6;
 /// Slices between the ends are as thick as the median one within these factors.
 const EVEN: (f64, f64) = (0.3, 2.2);
 /// Share of the slices at either end that may be of any thickness.
 const ENDS: f64 = 0.12;
+/// The line goes on beyond its outermost slices by no more than so many steps.
+const BEYOND: f64 = 1.5;
 /// Places of a line that tell whether it is straight.
 const SAGGING: usize = 24;
 /// Work of a corner of a triangle in a pass.
@@ -73,8 +77,9 @@ impl Tube {
         let is_even = slices[inner..slices.len() - inner]
             .iter()
             .all(|s| s.mean > EVEN.0 * radius && s.mean < EVEN.1 * radius && s.most < FLAT * s.mean);
-        let is_one = is_even && radius > 0.0 && polyline_length(&line) > STRAIGHT * length;
-        Ok(is_one.then_some(Self { line, radius }))
+        let tube = Self { line, radius };
+        let is_one = is_even && radius > 0.0 && tube.length() > STRAIGHT * length && tube.slenderness() >= LEAST;
+        Ok(is_one.then_some(tube))
     }
 
     /// Length of the centre line.
@@ -233,19 +238,21 @@ fn slice(cut: &[[Vector<3>; 2]]) -> Option<Slice> {
 /// The middles of slices as a line that reaches to the tips of the mesh.
 fn ended(topology: &Topology, slices: &[Slice]) -> Vec<Vector<3>> {
     let mut line: Vec<Vector<3>> = slices.iter().map(|s| s.middle).collect();
-    let tip = |end: Vector<3>, way: Vector<3>, radius: f64| {
+    let tip = |end: Vector<3>, step: Vector<3>, radius: f64| {
+        let way = step.unit_or_zero();
         let ahead = |p: &Vector<3>| {
             let (along, off) = ((*p - end).dot(way), *p - end);
             (along > 0.0 && (off - way * along).norm() < 2.0 * radius).then_some(along)
         };
         let near = topology.points.iter().filter(|p| (**p - end).norm() < 6.0 * radius + (way.norm() * radius));
-        end + way * near.filter_map(ahead).fold(0.0, f64::max)
+        // The outermost slices are half a step from the ends; what goes on farther than that goes around a corner.
+        end + way * near.filter_map(ahead).fold(0.0, f64::max).min(BEYOND * step.norm())
     };
     if let [first, second, ..] = *slices {
-        line.insert(0, tip(first.middle, (first.middle - second.middle).unit_or_zero(), first.most.max(second.most)));
+        line.insert(0, tip(first.middle, first.middle - second.middle, first.most.max(second.most)));
     }
     if let [.., before, last] = *slices {
-        line.push(tip(last.middle, (last.middle - before.middle).unit_or_zero(), last.most.max(before.most)));
+        line.push(tip(last.middle, last.middle - before.middle, last.most.max(before.most)));
     }
     line.dedup();
     line

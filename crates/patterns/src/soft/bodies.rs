@@ -42,6 +42,15 @@ impl<const D: usize> Bodies<D> {
         kept
     }
 
+    /// Takes some out.
+    pub(super) fn drop(&mut self, forms: &[Form<D>], is_gone: &[bool]) {
+        let mut kept = Self::default();
+        for (body, _) in self.list.iter().zip(is_gone).filter(|(_, gone)| !**gone) {
+            kept.push(body.source, self.samples(body, &forms[body.source]), body.scale, body.frozen);
+        }
+        *self = kept;
+    }
+
     pub(super) fn samples(&self, body: &Body, form: &Form<D>) -> &[Vector<D>] {
         &self.points[body.first..body.first + form.len()]
     }

@@ -9,7 +9,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use arabesque_core::{Border, Bounds, Build, Domain, Matrix, Request, Result, Stage, Stream, Vector};
 
 use super::{
-    bodies::{Laid, walked},
+    bodies::{Bodies, Laid, walked},
     form::Form,
     natural::{LOOK, Natural, laid, quantile, sizes},
     wall,
@@ -27,7 +27,7 @@ const FAR: f64 = 2.0;
 /// Candidates that go on from others, and any others.
 const COHERENT: usize = 10;
 const RANDOM: usize = 24;
-/// A candidate that is worse than this is not taken, and how often a place is tried.
+/// A candidate that is worse than this is not taken, twice that when some were laid out and taken apart before, and so on; and how often a place is tried.
 const WORST: f64 = 0.06;
 const TRIES: u8 = 3;
 /// What it costs to lie beyond a wall, beside lying in others, and to be bent by one.
@@ -51,6 +51,8 @@ pub(super) struct Plan<'a, const D: usize> {
     shown: Bounds<D>,
     /// The elements of each class that may be copied.
     members: Vec<Vec<usize>>,
+    /// How often elements were laid out before.
+    pub(super) round: u64,
     /// Where elements may have their middle.
     pub(super) room: Domain<D>,
 }
@@ -96,7 +98,7 @@ impl<'a, const D: usize> Plan<'a, D> {
         let mut members = vec![Vec::new(); natural.density.len()];
         let copyable = forms.iter().enumerate().filter(|(_, f)| f.copyable);
         copyable.for_each(|(n, f)| members[f.class].push(n));
-        Self { request, forms, natural, known, shown, members, room }
+        Self { request, forms, natural, known, shown, members, round: 0, room }
     }
 
     /// Elements of each class that there should be in the domain.
@@ -112,13 +114,23 @@ impl<'a, const D: usize> Plan<'a, D> {
         self.targets().iter().sum()
     }
 
+    /// By how many elements the domain is short.
+    pub(super) fn missing(&self, bodies: &Bodies<D>) -> f64 {
+        let mut left = self.targets();
+        for body in &bodies.list {
+            let form = &self.forms[body.source];
+            left[form.class] -= self.counted(form, bodies.samples(body, form));
+        }
+        left.iter().map(|n| n.max(0.0)).sum()
+    }
+
     /// Places all over the room, in no order.
     fn places(&self) -> Result<Vec<Vector<D>>> {
         let bounds = self.room.bounds();
         let scale = self.request.fields.scale.range().1;
         let step = (STEP * self.natural.width * scale).max((bounds.measure() / MOST_PLACES).powf(1.0 / D as f64));
         let counts: [usize; D] = bounds.size().map(|side| (side / step).ceil().max(1.0)).0.map(|n| n as usize);
-        let mut random = Stream::new(self.request.seed, PLACES, 0);
+        let mut random = Stream::new(self.request.seed, PLACES, self.round);
         let budget = self.request.budget.stage("laying out elements that bend");
         let mut meter = budget.meter();
         let cell = Vector(std::array::from_fn(|k| bounds.size()[k] / counts[k] as f64));
@@ -151,7 +163,7 @@ impl<'a, const D: usize> Plan<'a, D> {
             let form = &self.forms[body.source];
             counts[form.class] += self.counted(form, laid.bodies.samples(body, form));
         }
-        let mut random = Stream::new(self.request.seed, CHOICES, 0);
+        let mut random = Stream::new(self.request.seed, CHOICES, self.round);
         let mut step = 0;
         while let Some(top) = heap.pop() {
             let Some(class) = short(&targets, &counts, &mut random) else { break };
@@ -210,7 +222,7 @@ impl<'a, const D: usize> Plan<'a, D> {
             if !self.room.contains(form.soft.middle(&samples)) {
                 continue;
             }
-            let most = best.as_ref().map_or(WORST, |b| b.0) + advance;
+            let most = best.as_ref().map_or(WORST * (1 << self.round) as f64, |b| b.0) + advance;
             if let Some(cost) = self.cost(laid, form, (&samples, scale), most, meter)? {
                 best = Some((cost - advance, source, samples.clone(), scale));
             }
@@ -348,6 +360,16 @@ fn along<const D: usize>(form: &Form<D>, turn: &Matrix<D>, axis: usize) -> f64 {
     let middle = form.soft.middle(&form.soft.samples);
     let samples = form.soft.samples.iter().zip(&form.soft.radii);
     samples.map(|(p, r)| turn.apply(*p - middle)[axis].abs() + r).fold(0.0, f64::max)
+}
+
+/// A layout of elements that are in their places.
+pub(super) fn holding<const D: usize>(plan: &Plan<'_, D>, bodies: &Bodies<D>) -> Laid<D> {
+    let mut laid = empty(plan);
+    for body in &bodies.list {
+        let form = &plan.forms[body.source];
+        laid.push(body.source, form, bodies.samples(body, form), body.scale, body.frozen);
+    }
+    laid
 }
 
 /// An empty layout for a plan.

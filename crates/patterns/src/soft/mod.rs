@@ -24,7 +24,7 @@ mod tests;
 mod wall;
 
 use arabesque_core::{
-    Border, Error, Exemplar, Matrix, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot, Watch,
+    Border, Budget, Error, Exemplar, Matrix, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot, Watch,
 };
 
 use crate::{
@@ -34,12 +34,15 @@ use crate::{
 };
 use bodies::{Bodies, Laid};
 use form::{Form, forms};
-use layout::{Plan, empty};
+use layout::{Plan, empty, holding};
 use natural::Natural;
-use relax::Relaxation;
+use relax::{BETWEEN, ROUNDS, Relaxation};
 
 /// Share of the progress that the layout counts for.
 const LAYOUT_SHARE: f64 = 0.6;
+/// Elements are laid out so often at most, and no more once so small a share of them is missing.
+const REFILLS: u64 = 4;
+const ENOUGH: f64 = 0.02;
 /// An element that should lie inside does so when every sample is so far from the border, in its radii.
 const WITHIN: f64 = 0.85;
 
@@ -80,27 +83,19 @@ impl<const D: usize> Softness<D> {
         request: &Request<D>,
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<Outcome<D>> {
-        let plan = Plan::new(exemplar, &self.forms, &self.natural, request);
+        let mut plan = Plan::new(exemplar, &self.forms, &self.natural, request);
         checks::expected(plan.expected(), &request.budget)?;
         request.budget.allow_elements(plan.expected());
         let mut laid = empty(&plan);
         self.keep(&mut laid, request);
-        let mut cut_short = plan
-            .laid_out(&mut laid, &mut |laid, share| {
-                self.told("laying out", LAYOUT_SHARE * share, &laid.bodies, request, watch)
-            })
-            .err();
+        let mut cut_short = self.lay_out(&mut plan, &mut laid, watch).err();
         let mut bodies = laid.bodies.near(&self.forms, request, self.natural.width);
         if self.is_relaxed {
-            let relaxation = Relaxation { request, forms: &self.forms, natural: &self.natural };
             let is_whole = cut_short.is_none();
             let budget = if is_whole { request.budget.clone() } else { last_touches(&request.budget) };
-            let budget = budget.stage("taking elements apart");
-            let ended = relaxation.run(&mut bodies, &budget, &mut |bodies, share| {
-                let fraction = LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * share;
-                if is_whole { self.told("taking elements apart", fraction, bodies, request, watch) } else { Ok(()) }
-            });
-            cut_short = cut_short.or(ended.err());
+            let heard = if is_whole { Some(watch) } else { None };
+            let ended = self.take_apart(&mut bodies, request, &budget, heard).err();
+            cut_short = cut_short.or(ended);
         }
         let placements = self.placements(&bodies, request);
         if placements.is_empty() {
@@ -115,6 +110,45 @@ impl<const D: usize> Softness<D> {
         let stopped = ending::reason(cut_short, &mut warnings)?;
         let (sequence, curves, areas, energy) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         Ok(Outcome { placements, sequence, curves, areas, energy, warnings, stopped })
+    }
+
+    /// Lays elements out until there are as many as there should be; what lies too near to one another moves apart, so that there is
+    /// room for more.
+    fn lay_out(&self, plan: &mut Plan<'_, D>, laid: &mut Laid<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<()> {
+        let request = plan.request;
+        let budget = request.budget.stage("taking elements apart");
+        loop {
+            plan.laid_out(laid, &mut |laid, share| {
+                self.told("laying out", LAYOUT_SHARE * share, &laid.bodies, request, watch)
+            })?;
+            plan.round += 1;
+            if plan.round >= REFILLS || !self.is_relaxed || plan.missing(&laid.bodies) <= ENOUGH * plan.expected() {
+                return Ok(());
+            }
+            let relaxation = Relaxation { request, forms: &self.forms, natural: &self.natural };
+            let mut bodies = std::mem::take(&mut laid.bodies);
+            let ended = relaxation.run((&mut bodies, BETWEEN), &budget, &mut |_, _| Ok(()));
+            *laid = holding(plan, &bodies);
+            ended?;
+        }
+    }
+
+    /// Moves elements apart, and takes out what cannot be.
+    fn take_apart(
+        &self,
+        bodies: &mut Bodies<D>,
+        request: &Request<D>,
+        budget: &Budget,
+        mut watch: Option<&mut dyn Watch<Snapshot<D>>>,
+    ) -> Result<()> {
+        let relaxation = Relaxation { request, forms: &self.forms, natural: &self.natural };
+        let budget = budget.stage("taking elements apart");
+        relaxation.run((bodies, ROUNDS), &budget, &mut |bodies, share| {
+            let fraction = LAYOUT_SHARE + (1.0 - LAYOUT_SHARE) * share;
+            let Some(watch) = watch.as_deref_mut() else { return Ok(()) };
+            self.told("taking elements apart", fraction, bodies, request, watch)
+        })?;
+        relaxation.thin(bodies, &budget)
     }
 
     /// Puts in what the user placed.

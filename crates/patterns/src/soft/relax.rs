@@ -10,8 +10,9 @@ use super::{
     wall,
 };
 
-/// Rounds, and after how many of them pairs are looked for again.
-const ROUNDS: usize = 60;
+/// Rounds in the end and before; after how many of them pairs are looked for again.
+pub(super) const ROUNDS: usize = 60;
+pub(super) const BETWEEN: usize = 25;
 const EVERY: usize = 5;
 /// Rounds at the end in which only overlaps are taken apart.
 const LAST: usize = 12;
@@ -23,6 +24,8 @@ const PUSH: f64 = 0.5;
 const SELF: f64 = 4.0;
 /// How near the surfaces of one strand may come, in radii.
 const TOUCH: f64 = 0.0;
+/// What lies deeper in something else than this share of the thinner one's radius, and more than in the exemplar, is taken out.
+const DEEP: f64 = 0.35;
 /// How often lengths and walls are looked after in turn at the end.
 const AT_WALLS: usize = 6;
 /// Work of a pair, and of a link.
@@ -47,24 +50,24 @@ pub(super) struct Relaxation<'a, const D: usize> {
 }
 
 impl<const D: usize> Relaxation<'_, D> {
-    /// Takes all elements apart.
+    /// Takes all elements apart, in so many rounds.
     pub(super) fn run(
         &self,
-        bodies: &mut Bodies<D>,
+        (bodies, rounds): (&mut Bodies<D>, usize),
         budget: &Budget,
         heard: &mut dyn FnMut(&Bodies<D>, f64) -> Result<()>,
     ) -> Result<()> {
         let pieces: Vec<Piece> =
             bodies.list.iter().enumerate().flat_map(|(n, b)| pieces_of(n, b, &self.forms[b.source])).collect();
         let mut pairs = Vec::new();
-        for round in 0..ROUNDS {
+        for round in 0..rounds {
             if round % EVERY == 0 {
                 pairs = self.pairs(bodies, &pieces, budget)?;
-                heard(bodies, round as f64 / ROUNDS as f64)?;
+                heard(bodies, round as f64 / rounds as f64)?;
             }
             let links: usize = bodies.list.iter().map(|b| self.forms[b.source].links.len()).sum();
             budget.spend(PAIR * pairs.len() as u64 + LINK * links as u64)?;
-            let is_last = round + LAST >= ROUNDS;
+            let is_last = round + LAST >= rounds;
             for pair in &pairs {
                 push(bodies, &pieces, pair, is_last);
             }
@@ -82,6 +85,36 @@ impl<const D: usize> Relaxation<'_, D> {
                 self.stretch(bodies, n);
             }
         }
+        Ok(())
+    }
+
+    /// Takes out what lies too deep in something else, the deepest first.
+    pub(super) fn thin(&self, bodies: &mut Bodies<D>, budget: &Budget) -> Result<()> {
+        let pieces: Vec<Piece> =
+            bodies.list.iter().enumerate().flat_map(|(n, b)| pieces_of(n, b, &self.forms[b.source])).collect();
+        let mut deep: Vec<(f64, u32, u32)> = Vec::new();
+        for pair in self.pairs(bodies, &pieces, budget)? {
+            let (a, b) = (&pieces[pair.a as usize], &pieces[pair.b as usize]);
+            let lack = (pair.least - between(bodies, a, b).1.norm()) / a.radius.min(b.radius).max(f64::MIN_POSITIVE);
+            if lack > DEEP && a.body != b.body {
+                deep.push((lack, a.body, b.body));
+            }
+        }
+        deep.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        let mut trouble = vec![0.0; bodies.list.len()];
+        deep.iter().for_each(|(lack, a, b)| [a, b].into_iter().for_each(|n| trouble[*n as usize] += lack));
+        let mut is_gone = vec![false; bodies.list.len()];
+        for (_, a, b) in deep {
+            let (a, b) = (a as usize, b as usize);
+            if is_gone[a] || is_gone[b] {
+                continue;
+            }
+            let worse = if trouble[b] > trouble[a] { [b, a] } else { [a, b] };
+            if let Some(n) = worse.into_iter().find(|n| bodies.list[*n].frozen.is_none()) {
+                is_gone[n] = true;
+            }
+        }
+        bodies.drop(self.forms, &is_gone);
         Ok(())
     }
 
@@ -116,9 +149,7 @@ impl<const D: usize> Relaxation<'_, D> {
                 let own_scale = bodies.list[a.body as usize].scale;
                 let gap = if a.body == b.body { TOUCH } else { self.natural.gap(a.class, b.class) * own_scale };
                 let apart = touching + gap;
-                let [s, t] = nearest(ends(a), ends(b));
-                let between = |ends: [Vector<D>; 2], t: f64| ends[0] + (ends[1] - ends[0]) * t;
-                if (between(ends(a), s) - between(ends(b), t)).norm() < apart + slack {
+                if between(bodies, a, b).1.norm() < apart + slack {
                     found.push(Pair { a: i as u32, b: j as u32, apart, least: touching + gap.min(0.0) });
                 }
             }
@@ -193,20 +224,29 @@ impl<const D: usize> Relaxation<'_, D> {
     }
 }
 
-/// Moves the ends of two pieces apart where they are too near.
-fn push<const D: usize>(bodies: &mut Bodies<D>, pieces: &[Piece], pair: &Pair, is_last: bool) {
-    let (a, b) = (&pieces[pair.a as usize], &pieces[pair.b as usize]);
+/// Where two pieces are nearest to one another, as shares of them, and the way from the first to the second there.
+fn between<const D: usize>(bodies: &Bodies<D>, a: &Piece, b: &Piece) -> ([f64; 2], Vector<D>) {
     let ends = |p: &Piece| p.ends.map(|k| bodies.points[k as usize]);
     let (first, second) = (ends(a), ends(b));
     let [s, t] = nearest(first, second);
     let way = (second[0] + (second[1] - second[0]) * t) - (first[0] + (first[1] - first[0]) * s);
+    ([s, t], way)
+}
+
+/// Moves the ends of two pieces apart where they are too near.
+fn push<const D: usize>(bodies: &mut Bodies<D>, pieces: &[Piece], pair: &Pair, is_last: bool) {
+    let (a, b) = (&pieces[pair.a as usize], &pieces[pair.b as usize]);
+    let ([s, t], way) = between(bodies, a, b);
     let distance = way.norm();
     let apart = if is_last { pair.least.max(0.9 * pair.apart) } else { pair.apart };
     let lack = apart - distance;
     if lack <= 0.0 {
         return;
     }
-    let way = way.unit_if_longer(1e-9 * apart).unwrap_or_else(|| across(first[1] - first[0], second[1] - second[0]));
+    let way = way.unit_if_longer(1e-9 * apart).unwrap_or_else(|| {
+        let along = |p: &Piece| bodies.points[p.ends[1] as usize] - bodies.points[p.ends[0] as usize];
+        across(along(a), along(b))
+    });
     let is_fixed = |p: &Piece| bodies.list[p.body as usize].frozen.is_some();
     let (stays, other_stays) = (is_fixed(a), is_fixed(b));
     if stays && other_stays {

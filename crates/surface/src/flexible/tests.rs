@@ -85,15 +85,32 @@ fn round_things_rings_and_pairs_have_no_line() {
         *p = Vector([p[0], p[1] * across, p[2] * across]);
     });
     assert_eq!(found(&ball), None);
-    let ring: Vec<_> = (0..=48).map(|k| f64::from(k) / 48.0 * std::f64::consts::TAU).collect();
-    let ring: Vec<_> = ring.iter().map(|a| Vector([3.0 * a.cos(), 3.0 * a.sin(), 0.0])).collect();
-    assert_eq!(found(&tube(&ring, 0.3, 8)), None);
+    assert_eq!(found(&ring()), None);
     let mut pair = tube(&wave(5.0, 1.0), 0.1, 6);
     let count = pair.positions.len() as u32;
     pair.positions.extend(pair.positions.clone().iter().map(|p| *p + Vector([0.0, 3.0, 0.0])));
     pair.triangles.extend(pair.triangles.clone().iter().map(|t| t.map(|v| v + count)));
     assert_eq!(found(&pair), None);
     assert_eq!(found(&TriangleMesh::default()), None);
+}
+
+/// A ring without ends.
+fn ring() -> TriangleMesh {
+    let (around, sides) = (48_u32, 8_u32);
+    let turn = |k: u32, of: u32| (f64::from(k) / f64::from(of) * std::f64::consts::TAU).sin_cos();
+    let mut mesh = TriangleMesh::default();
+    for k in 0..around {
+        let (sin, cos) = turn(k, around);
+        for (s, c) in (0..sides).map(|j| turn(j, sides)) {
+            mesh.positions.push(Vector([(3.0 + 0.3 * c) * cos, (3.0 + 0.3 * c) * sin, 0.3 * s]));
+        }
+    }
+    for (k, j) in (0..around).flat_map(|k| (0..sides).map(move |j| (k, j))) {
+        let at = |k: u32, j: u32| k % around * sides + j % sides;
+        let (a, b, c, d) = (at(k, j), at(k + 1, j), at(k + 1, j + 1), at(k, j + 1));
+        mesh.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    mesh
 }
 
 fn motion() -> Similarity<3> {

@@ -177,7 +177,7 @@ fn axes(mesh: &TriangleMesh, trial: &Trial<'_>) -> Vec<Vector<3>> {
     found
 }
 
-/// Axes of inertia of a surface, longest first, by turning two of them at a time [Jacobi 1846].
+/// Axes of inertia of a surface, longest first, by turning two of them at a time.
 fn inertia(mesh: &TriangleMesh, centre: Vector<3>) -> [Vector<3>; 3] {
     let mut m = Matrix::<3>::zero();
     for t in 0..mesh.triangles.len() {

@@ -1,6 +1,8 @@
 //! Parts of space: scenes of meshes, networks of curves and clouds of points.
 
 mod bending;
+#[cfg(test)]
+mod bending_tests;
 mod layer;
 mod made;
 #[cfg(feature = "physics")]

@@ -1,5 +1,5 @@
 //! Taking apart what lies too near, while lengths and shapes stay: positions are moved to where each link and each pair of pieces wants
-//! them, in turn, many times [Müller 2007].
+//! them, in turn, many times [Mueller 2007].
 
 use arabesque_core::{Budget, Domain, GridIndex, Request, Result, Vector};
 

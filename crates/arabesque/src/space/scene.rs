@@ -96,7 +96,7 @@ impl Bodies {
         let bodies = bodies(name, &scene.meshes, budget)?;
         let classes = found.names.into_iter().map(|name| Class { name }).collect();
         let mut elements = Vec::with_capacity(scene.nodes.len());
-        let mut first = BTreeMap::new();
+        let (mut first, mut seen) = (BTreeMap::new(), Vec::with_capacity(scene.nodes.len()));
         for (node, class) in scene.nodes.iter().zip(found.of_node) {
             budget.spend(1000)?;
             let body = &bodies[node.mesh];
@@ -104,10 +104,11 @@ impl Bodies {
             // Of the rotations that are the same to look at, the one that is most like that of the first: none is as good as another.
             let turn = body.symmetry.nearest(&node.transform.rotation, &usual);
             let turn = Similarity::about(body.centre, body.centre, turn, 1.0);
+            seen.push(node.transform.after(&turn));
             elements.push(Element {
                 class,
                 centre: node.transform.apply(body.centre),
-                pose: node.transform.after(&turn),
+                pose: node.transform,
                 outline: Outline { rings: vec![body.points.iter().map(|p| node.transform.apply(*p)).collect()] },
                 colour: body.colour,
                 lean: [Vector::ZERO; 3],
@@ -115,7 +116,7 @@ impl Bodies {
             });
         }
         let mut exemplar = framed(name, elements, classes, scene.frame)?;
-        exemplar.up = up;
+        (exemplar.up, exemplar.seen) = (up, seen);
         exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[node.mesh].solid)).collect();
         let (scene, exemplar) = (Arc::new(scene), Arc::new(exemplar));
         Ok((Self { scene, exemplar, floor: None, told: String::new() }, warnings))

@@ -105,6 +105,9 @@ pub struct Exemplar<const D: usize> {
     pub period: Option<[Vector<D>; 2]>,
     /// The volumes of the elements, one for each, in the coordinates from which its pose leads; empty where they have none.
     pub solids: Vec<Arc<Solid<D>>>,
+    /// Poses that are the same to look at as those of the elements, one for each, each as like that of the first of its class as a symmetry
+    /// of the solid allows; empty where nobody looked for symmetries.
+    pub seen: Vec<Similarity<D>>,
     /// The samples of the elements, one for each, where any of them bends; else empty.
     pub softs: Vec<Arc<Soft<D>>>,
     /// For each element that stands on the ground, the height of its centre over it, which it keeps; such elements are classes of their
@@ -188,6 +191,7 @@ impl<const D: usize> Exemplar<D> {
             hole: None,
             period: None,
             solids: Vec::new(),
+            seen: Vec::new(),
             softs: Vec::new(),
             heights: Vec::new(),
             up: 1,
@@ -236,6 +240,11 @@ impl<const D: usize> Exemplar<D> {
             None => window_around(&centres),
         };
         Self::new(place, elements, classes, window)
+    }
+
+    /// Pose of an element as it looks: [`Exemplar::seen`] where that is known.
+    pub fn seen_pose(&self, element: usize) -> Similarity<D> {
+        self.seen.get(element).copied().unwrap_or(self.elements[element].pose)
     }
 
     /// What it shows.

@@ -43,11 +43,12 @@ impl<const D: usize> ElementSamples<D> {
         let mut reversible: Vec<Option<bool>> = vec![None; exemplar.classes.len()];
         let mut is_reversible = Vec::with_capacity(exemplar.elements.len());
         for (n, e) in exemplar.elements.iter().enumerate() {
+            let seen = exemplar.seen_pose(n);
             if templates[e.class].is_none() {
                 let corners: usize = e.outline.rings.iter().map(Vec::len).sum();
                 budget.spend(if corners == 0 { 0 } else { SHAPE + CORNER * corners as u64 })?;
             }
-            let template = templates[e.class].get_or_insert_with(|| template(e, count));
+            let template = templates[e.class].get_or_insert_with(|| template(e, &seen, count));
             if let Some(solid) = exemplar.solids.get(n)
                 && reversible[e.class].is_none()
             {
@@ -55,7 +56,7 @@ impl<const D: usize> ElementSamples<D> {
                 reversible[e.class] = Some(turns_end_over_end(solid, template));
             }
             is_reversible.push(reversible[e.class].unwrap_or(false));
-            offsets.push(template.iter().map(|&p| e.pose.apply(p) - e.centre).collect());
+            offsets.push(template.iter().map(|&p| seen.apply(p) - e.centre).collect());
         }
         Ok(Self { offsets, is_reversible })
     }
@@ -124,8 +125,8 @@ fn turns_end_over_end<const D: usize>(solid: &Solid<D>, template: &[Vector<D>]) 
 }
 
 /// Finest samples of an element, in the coordinates that its pose starts from.
-fn template<const D: usize>(element: &Element<D>, count: Option<usize>) -> Vec<Vector<D>> {
-    let to_class = element.pose.inverse();
+fn template<const D: usize>(element: &Element<D>, pose: &Similarity<D>, count: Option<usize>) -> Vec<Vector<D>> {
+    let to_class = pose.inverse();
     let centre = vec![to_class.apply(element.centre)];
     let ink = boundary_points(&element.outline);
     let Some((axis, elongation)) = principal_axis(&ink) else {

@@ -44,7 +44,7 @@ const LAYOUT_SHARE: f64 = 0.6;
 const REFILLS: u64 = 4;
 const ENOUGH: f64 = 0.02;
 /// An element that should lie inside does so when every sample is so far from the border, in its radii.
-const WITHIN: f64 = 0.85;
+const WITHIN: f64 = 0.97;
 
 /// An exemplar of elements that bend, prepared for any number of runs.
 #[derive(Clone, Debug)]

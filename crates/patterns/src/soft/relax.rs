@@ -26,8 +26,10 @@ const SELF: f64 = 4.0;
 const TOUCH: f64 = 0.0;
 /// What lies deeper in something else than this share of the thinner one's radius, and more than in the exemplar, is taken out.
 const DEEP: f64 = 0.35;
+/// So many radii elements stay away from walls: smooth lines go a little beyond their samples.
+const CLEAR: f64 = 1.08;
 /// How often lengths and walls are looked after in turn at the end.
-const AT_WALLS: usize = 6;
+const AT_WALLS: usize = 10;
 /// Work of a pair, and of a link.
 const PAIR: u64 = 60;
 const LINK: u64 = 15;
@@ -171,7 +173,7 @@ impl<const D: usize> Relaxation<'_, D> {
         let form = &self.forms[body.source];
         let points = &mut bodies.points[body.first..body.first + form.len()];
         for (p, r) in points.iter_mut().zip(&form.soft.radii) {
-            *p = wall::within(self.request, *p, r * body.scale);
+            *p = wall::within(self.request, *p, CLEAR * r * body.scale);
         }
     }
 

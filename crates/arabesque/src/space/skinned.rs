@@ -73,11 +73,7 @@ fn turned_primitive(primitive: &Primitive, turned: &[Matrix<3>]) -> Primitive {
 fn without_unused(scene: Scene) -> Scene {
     let mut number = vec![None; scene.meshes.len()];
     scene.nodes.iter().for_each(|node| number[node.mesh] = Some(0));
-    let mut count = 0;
-    for entry in number.iter_mut().flatten() {
-        *entry = count;
-        count += 1;
-    }
+    number.iter_mut().flatten().enumerate().for_each(|(n, entry)| *entry = n);
     let kept = scene.meshes.into_iter().zip(&number).filter(|(_, n)| n.is_some()).map(|(mesh, _)| mesh);
     let meshes = kept.collect();
     let nodes = scene.nodes.into_iter().map(|node| SceneNode { mesh: number[node.mesh].unwrap_or(0), ..node });

@@ -143,7 +143,7 @@ fn along_surface(topology: &Topology) -> Option<(Vec<f64>, f64)> {
     let length = from_first[last];
     // Vertices that no triangle uses are nowhere, and neither is another component.
     let is_whole = topology.triangles.iter().flatten().all(|v| from_first[*v as usize].is_finite());
-    if !is_whole || !(length > 0.0 && length.is_finite()) {
+    if !(is_whole && length > 0.0 && length.is_finite()) {
         return None;
     }
     let place = |(a, b): (&f64, &f64)| if a.is_finite() { 0.5 * (a - b) } else { 0.0 };

@@ -80,7 +80,7 @@ fn cushion(curvature: f64) -> TriangleMesh {
     let line: Vec<_> = (0..9).map(|k| Vector([0.25 * f64::from(k) - 1.0, 0.0, 0.0])).collect();
     let mut mesh = tube(&line);
     for p in &mut mesh.positions {
-        let (x, y, z) = (p[0], 2.5 * p[1], 8.0 * p[2]);
+        let (x, y, z) = (p[0], 3.0 * p[1], 12.0 * p[2]);
         let angle = x * curvature;
         *p = if curvature == 0.0 {
             Vector([x, y, z])

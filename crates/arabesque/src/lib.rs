@@ -92,9 +92,9 @@ pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, M
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
-    Carrier, Constraint, Cuboid, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource, Fill,
-    Format, Input, Job, Method, OutputOptions, Parameters, Physics, Reading, Recipe, Redo, Region, Relief, Ribbon,
-    Size, Space, Structures, Surface, Tile, Unit, Up, WidthSource, carried_recipe, is_result, recipe_in,
+    Carrier, Constraint, Cuboid, Deform, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource,
+    Fill, Format, Input, Job, Method, OutputOptions, Parameters, Physics, Reading, Recipe, Redo, Region, Relief,
+    Ribbon, Size, Space, Structures, Surface, Tile, Unit, Up, WidthSource, carried_recipe, is_result, recipe_in,
     ribbon_options,
 };
 pub use resources::Resources;

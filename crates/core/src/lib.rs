@@ -35,7 +35,9 @@ pub use curve::{
     polyline_length, spans_inside, straight, turned_about,
 };
 pub use error::{Error, Result};
-pub use exemplar::{Area, Class, Contents, Curve, Element, Exemplar, PointLattice, Role, Solid, View, point_lattice};
+pub use exemplar::{
+    Area, Build, Class, Contents, Curve, Element, Exemplar, PointLattice, Role, Soft, Solid, View, point_lattice,
+};
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, Rotations, ScalarField};
 pub use geometry::{MeshPart, PointSet, TriangleMesh};
 pub use image::Image;

@@ -18,7 +18,8 @@
 //! | even out holes and clumps | `evenness` | after [Roveri 2015 §4] |
 //! | place | `finish` | [Ma 2011 §3.1], [Schaefer 2006] |
 //!
-//! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly.
+//! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly. Elements that bend are
+//! laid out and moved by `soft`, sample by sample.
 //!
 //! Everything knows only what stands above it in this list: `exemplar` (worked out once), `output` (what is made, in
 //! the state it is in), then the steps of `layout`, `optimise`, `curves`, `evenness` and `finish`, which do not know one another,
@@ -60,6 +61,7 @@ mod prepared;
 mod regular;
 pub mod repeat;
 mod run;
+mod soft;
 #[cfg(feature = "bench-stages")]
 #[doc(hidden)]
 pub mod stages;

@@ -19,6 +19,7 @@ use crate::{
     params::{Params, Repeats},
     regular::{Filled, Regular},
     repeat::Repeat,
+    soft::Softness,
 };
 
 /// An exemplar, analysed once, ready for any number of runs.
@@ -34,6 +35,8 @@ pub struct Prepared<const D: usize> {
     pub(crate) params: Params,
     /// Its repeat, where it has one that is to be used.
     regular: Option<Arc<Regular>>,
+    /// Its elements as samples that move by themselves, where some bend.
+    soft: Option<Arc<Softness<D>>>,
     /// What the engine needs; where there is a repeat, worked out when a request first needs it.
     irregular: OnceLock<Irregular<D>>,
 }
@@ -168,6 +171,7 @@ where
         if regular.is_none() {
             no_areas(exemplar, "that do not repeat")?;
         }
+        let soft = Softness::new(exemplar, params, budget)?.map(Arc::new);
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
         // Of elements alike, those at one place of the cell may lie on others, and those at another place below them.
@@ -186,9 +190,10 @@ where
             order,
             params: params.clone(),
             regular,
+            soft,
             irregular: OnceLock::new(),
         };
-        if prepared.regular.is_none() {
+        if prepared.regular.is_none() && prepared.soft.is_none() {
             prepared.irregular(budget)?;
         }
         Ok(prepared)
@@ -309,6 +314,9 @@ where
     /// Everything but the order of painting.
     fn laid_out(&self, request: &Request<D>, watch: &mut dyn Watch<Snapshot<D>>) -> Result<Outcome<D>> {
         checks::frozen(&self.exemplar, request)?;
+        if let Some(soft) = &self.soft {
+            return soft.filled(&self.exemplar, request, watch);
+        }
         let mut told = Vec::new();
         if let Some(regular) = &self.regular {
             match Vector::<D>::fill_plane(regular, &self.exemplar, request, watch)? {

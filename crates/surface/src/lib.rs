@@ -7,6 +7,8 @@
 //! | which way does a pattern run along it | [`DirectionField`] of [`Directions`], [`curvatures`] |
 //! | where do the nodes of a lattice lie that is laid on it | [`SurfaceLattice`] |
 //! | points spread on it, in a shell around it, inside of it | [`scatter`], [`shell_grid`], [`inside_grid`] |
+//! | by which rotations does a mesh come to lie on itself | [`Symmetry`] |
+//! | does a mesh have a centre line, which balls stand for it, where is it once samples of it have moved | [`Tube`], [`balls`], [`Skin`] |
 //! | where is the nearest point of a surface that points alone stand for, where does a ray meet it, how does it bend | [`OrientedPoints`] |
 //! | the surface through points, or around balls | [`reconstruct`] with [`SurfaceParams`] |
 //!
@@ -35,6 +37,7 @@
 mod cloud;
 mod dipoles;
 mod directions;
+mod flexible;
 mod implicit;
 mod isosurface;
 mod lattice;
@@ -43,14 +46,17 @@ mod oriented;
 mod params;
 mod reconstruct;
 mod spread;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 mod tree;
 
 pub use directions::{Bend, Curvature, DirectionField, Directions, SurfaceFrame, curvatures};
+pub use flexible::{Skin, Tube, balls};
 pub use lattice::{Axes, LatticePlace, SurfaceLattice};
 pub use mesh::{Closest, Found, MeshIndex, MeshReport};
 pub use oriented::{EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of};
 pub use params::{Method, Normals, Parts, SurfaceParams};
 pub use reconstruct::{Reconstruction, reconstruct};
 pub use spread::{inside_grid, scatter, shell_grid};
+pub use symmetry::Symmetry;

@@ -20,8 +20,8 @@ pub use field::{FieldFile, FieldSource};
 pub use format::Format;
 pub use input::{EMBEDDED_BYTES, Encoding, Input};
 pub use job::{
-    Constraint, Direction, ExemplarTile, Fill, Job, Method, Parameters, Physics, Reading, Redo, Relief, Ribbon, Space,
-    Structures, Surface, Unit, Up, WidthSource, ribbon_options,
+    Constraint, Deform, Direction, ExemplarTile, Fill, Job, Method, Parameters, Physics, Reading, Redo, Relief, Ribbon,
+    Space, Structures, Surface, Unit, Up, WidthSource, ribbon_options,
 };
 pub use output::OutputOptions;
 pub use region::Region;

@@ -48,9 +48,10 @@ impl Layer {
         let flat = |p: Vector<3>| Vector(axes.map(|axis| p[axis]));
         let mut first: Vec<Option<Similarity<3>>> = vec![None; exemplar.classes.len()];
         let mut elements = Vec::with_capacity(exemplar.elements.len());
-        for element in &exemplar.elements {
-            let own = *first[element.class].get_or_insert(element.pose);
-            let turned = element.pose.rotation.compose(&own.rotation.transpose());
+        for (n, element) in exemplar.elements.iter().enumerate() {
+            let seen = exemplar.seen_pose(n);
+            let own = *first[element.class].get_or_insert(seen);
+            let turned = seen.rotation.compose(&own.rotation.transpose());
             let rotation = Matrix(axes.map(|r| axes.map(|c| turned.0[r][c]))).nearest_rotation();
             let ring = hull(element.outline.points().map(flat).collect());
             budget.spend(2000 + 100 * ring.len() as u64)?;

@@ -25,7 +25,7 @@ use crate::{
     plane::{snapshot, unfinished},
     recipe::Format,
     solid::write::{Said, encode_mesh, picture},
-    space::scene::Bodies,
+    space::{scene::Bodies, skinned::skinned},
     spacing::spacing,
 };
 
@@ -69,7 +69,12 @@ impl VolumeMade {
 
     /// Meshes in their places.
     fn encode_scene(&self, bodies: &Bodies, sheet: &Sheet<'_>) -> Result<Encoded> {
-        let scene = bodies.placed(&self.outcome.placements, Some(self.frame));
+        let (placements, frame) = (&self.outcome.placements, Some(self.frame));
+        let scene = if self.exemplar.softs.is_empty() {
+            bodies.placed(placements, frame)
+        } else {
+            skinned(bodies, placements, frame)
+        };
         let budget = sheet.budget;
         match sheet.format {
             Format::Glb => {
@@ -86,7 +91,9 @@ impl VolumeMade {
                 Ok(Encoded { bytes: text.into_bytes(), warnings })
             }
             Format::Json => {
-                let options = PlacementsOptions { recipe: sheet.recipe, ..PlacementsOptions::default() };
+                let lines = self.outcome.placements.iter().map(|p| p.control.iter().map(|(_, to)| *to).collect());
+                let centre_lines: Vec<Vec<_>> = lines.collect();
+                let options = PlacementsOptions { recipe: sheet.recipe, centre_lines: &centre_lines };
                 let text = write_placements(&scene, &options, budget)?;
                 Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new() })
             }

@@ -1,5 +1,8 @@
 //! Parts of space: scenes of meshes, networks of curves and clouds of points.
 
+mod bending;
+#[cfg(test)]
+mod bending_tests;
 mod layer;
 mod made;
 #[cfg(feature = "physics")]
@@ -14,6 +17,7 @@ mod place;
 mod scene;
 #[cfg(test)]
 mod scene_tests;
+mod skinned;
 
 use std::sync::Arc;
 
@@ -62,7 +66,8 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let budget = preparation.files.budget();
     if may_be_scene(preparation.exemplar.name(), &bytes) {
         let scene = scene_of(&preparation.exemplar, &bytes, preparation.files)?;
-        let (bodies, warnings) = Bodies::read(preparation.exemplar.name(), scene, space.up.axis(), budget)?;
+        let (bodies, warnings) =
+            Bodies::read(preparation.exemplar.name(), scene, (space.up.axis(), &space.deform, params.samples), budget)?;
         preparation.warnings.extend(warnings);
         let others = space.floor || space.on.is_some();
         let bodies = if space.stands() { bodies.on_floor(others, &space.constrain)? } else { bodies };
@@ -70,8 +75,9 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
         let exemplar = Arc::clone(&bodies.exemplar);
         let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
-        let layer = layer(&exemplar, &params, budget)?;
-        let pile = if layer.is_none() { Pile::of(&exemplar, budget)?.map(Arc::new) } else { None };
+        let is_soft = !exemplar.softs.is_empty();
+        let layer = if is_soft { None } else { layer(&exemplar, &params, budget)? };
+        let pile = if layer.is_none() && !is_soft { Pile::of(&exemplar, budget)?.map(Arc::new) } else { None };
         return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), layer, pile, engine });
     }
     let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, budget)? {
@@ -106,6 +112,16 @@ impl Volume {
         if self.bodies.is_none() && (space.place()? != "box" || !space.avoid.is_empty()) {
             let what = "a place other than a box for points and curves in space";
             return Err(Error::Unsupported { what: what.into(), advice: "give a scene of meshes, or a box".into() });
+        }
+        if !self.exemplar.softs.is_empty() {
+            let asked = [("physics", space.physics.is_some()), ("keep", space.keep.is_some())];
+            if let Some((name, _)) = asked.into_iter().find(|(_, is_given)| *is_given) {
+                let what = format!("{name} for a scene of which something bends");
+                return Err(Error::Unsupported {
+                    what,
+                    advice: "leave it out, or let nothing bend (--deform=off)".into(),
+                });
+            }
         }
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
         let filling = Filling { exemplar: &self.exemplar, floor, layer: self.layer.as_deref() };
@@ -152,7 +168,9 @@ struct Resolved {
 
 impl Ready for Volume {
     fn understood(&self) -> String {
-        understood(&self.exemplar)
+        let told = self.bodies.as_ref().map_or("", |bodies| bodies.told.as_str());
+        let more = if told.is_empty() { String::new() } else { format!("; {told}") };
+        understood(&self.exemplar) + &more
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {

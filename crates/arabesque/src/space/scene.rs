@@ -3,13 +3,17 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{
-    Bounds, Budget, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Solid, TriangleMesh,
-    Vector, Warning, point_lattice, suggest::did_you_mean,
+    Bounds, Budget, Build, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Similarity, Soft,
+    Solid, TriangleMesh, Vector, Warning, point_lattice, suggest::did_you_mean,
 };
-use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode};
-use arabesque_surface::{MeshIndex, scatter};
+use arabesque_io::mesh::{
+    gltf::{Scene, SceneMesh, SceneNode},
+    scene::Classes,
+};
+use arabesque_surface::{MeshIndex, Symmetry, scatter};
 
-use crate::recipe::Constraint;
+use super::bending::{Bending, bending};
+use crate::recipe::{Constraint, Deform};
 
 /// Points that are scattered over a mesh, and corners that are added to them, at most.
 const SCATTERED: f64 = 40.0;
@@ -26,6 +30,10 @@ const NEAR: f64 = 0.12;
 const FLAT: f64 = 0.2;
 /// A frame is made wider by no more than this factor.
 const WIDEST: f64 = 1.6;
+/// Of more meshes than this nobody looks for symmetries.
+const MANY: usize = 64;
+/// Shares of all samples along each axis between which the middle of a heap is.
+const CORE: (f64, f64) = (0.3, 0.7);
 /// Points are scattered so that so many are in a square of their spacing.
 const PACKED: f64 = 0.7;
 
@@ -36,6 +44,8 @@ pub(crate) struct Bodies {
     pub(crate) exemplar: Arc<Exemplar<3>>,
     /// Height of the floor, where there is one.
     pub(crate) floor: Option<f64>,
+    /// What bends, in words; empty where nothing does.
+    pub(crate) told: String,
 }
 
 /// What a mesh is to the engine, in its own coordinates.
@@ -47,6 +57,8 @@ struct Body {
     /// Mean colour.
     colour: [f64; 3],
     solid: Arc<Solid<3>>,
+    /// The rotations that leave it as it is.
+    symmetry: Symmetry,
 }
 
 impl Bodies {
@@ -54,7 +66,12 @@ impl Bodies {
     ///
     /// # Errors
     /// [`Error::Input`] for a scene without meshes and for a mesh without area.
-    pub(crate) fn read(name: &str, mut scene: Scene, up: usize, budget: &Budget) -> Result<(Self, Vec<Warning>)> {
+    pub(crate) fn read(
+        name: &str,
+        mut scene: Scene,
+        (up, deform, samples): (usize, &Deform, Option<usize>),
+        budget: &Budget,
+    ) -> Result<(Self, Vec<Warning>)> {
         let mut warnings = std::mem::take(&mut scene.warnings);
         if scene.nodes.is_empty() {
             let advice = "give a scene of meshes, or use --method structures for points";
@@ -71,13 +88,23 @@ impl Bodies {
             scene.frame = frame;
             warnings.append(&mut scene.warnings);
         }
-        let bodies = bodies(name, &scene.meshes, budget)?;
+        let scene = shared(scene, budget)?;
         let found = scene.classes();
+        if let Some(bending) = bending((name, &scene), &found, (deform, samples), budget)? {
+            return Ok((Self::bent((name, up), scene, found, bending)?, warnings));
+        }
+        let bodies = bodies(name, &scene.meshes, budget)?;
         let classes = found.names.into_iter().map(|name| Class { name }).collect();
         let mut elements = Vec::with_capacity(scene.nodes.len());
+        let (mut first, mut seen) = (BTreeMap::new(), Vec::with_capacity(scene.nodes.len()));
         for (node, class) in scene.nodes.iter().zip(found.of_node) {
             budget.spend(1000)?;
             let body = &bodies[node.mesh];
+            let usual = *first.entry((class, node.mesh)).or_insert(node.transform.rotation);
+            // Of the rotations that are the same to look at, the one that is most like that of the first: none is as good as another.
+            let turn = body.symmetry.nearest(&node.transform.rotation, &usual);
+            let turn = Similarity::about(body.centre, body.centre, turn, 1.0);
+            seen.push(node.transform.after(&turn));
             elements.push(Element {
                 class,
                 centre: node.transform.apply(body.centre),
@@ -89,9 +116,36 @@ impl Bodies {
             });
         }
         let mut exemplar = framed(name, elements, classes, scene.frame)?;
-        exemplar.up = up;
+        (exemplar.up, exemplar.seen) = (up, seen);
         exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[node.mesh].solid)).collect();
-        Ok((Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar), floor: None }, warnings))
+        let (scene, exemplar) = (Arc::new(scene), Arc::new(exemplar));
+        Ok((Self { scene, exemplar, floor: None, told: String::new() }, warnings))
+    }
+
+    /// A scene of which something bends.
+    fn bent((name, up): (&str, usize), mut scene: Scene, found: Classes, bending: Bending) -> Result<Self> {
+        scene.deformable = found
+            .names
+            .iter()
+            .zip(&bending.builds)
+            .filter(|(_, b)| **b != Build::Rigid)
+            .map(|(n, _)| n.clone())
+            .collect();
+        let classes: Vec<Class> = found.names.into_iter().map(|name| Class { name }).collect();
+        let nodes = scene.nodes.iter().zip(&found.of_node).zip(&bending.softs);
+        let elements = nodes.map(|((node, class), soft)| Element {
+            class: *class,
+            centre: soft.middle(&soft.samples),
+            pose: node.transform,
+            outline: Outline { rings: vec![soft.samples.clone()] },
+            colour: colour(&scene.meshes[node.mesh].mesh),
+            lean: [Vector::ZERO; 3],
+            role: Role::Source,
+        });
+        let frame = scene.frame.unwrap_or_else(|| occupied(&bending.softs));
+        let mut exemplar = Exemplar::new(name, elements.collect(), classes, frame)?;
+        (exemplar.softs, exemplar.up) = (bending.softs, up);
+        Ok(Self { scene: Arc::new(scene), exemplar: Arc::new(exemplar), floor: None, told: bending.told })
     }
 
     /// The same with a floor at its lowest place: what stands on it is a class of its own. Of classes with a rule that
@@ -115,6 +169,9 @@ impl Bodies {
             names.iter().map(|name| rules.get(*name).map_or(others, |rule| *rule == Constraint::Floor)).collect();
         let lowest = |e: &Element<3>| e.outline.points().map(|p| p[up]).fold(f64::INFINITY, f64::min);
         let floor = exemplar.elements.iter().map(lowest).fold(f64::INFINITY, f64::min);
+        if let Some(floor) = lowest_soft(&exemplar) {
+            return Ok(Self { floor: Some(floor), ..self.clone() });
+        }
         let mut number_of = BTreeMap::new();
         let (mut heights, mut classes) = (Vec::new(), exemplar.classes.clone());
         for element in &mut exemplar.elements {
@@ -130,7 +187,7 @@ impl Bodies {
             }
         }
         (exemplar.heights, exemplar.classes) = (heights, classes);
-        Ok(Self { scene: Arc::clone(&self.scene), exemplar: Arc::new(exemplar), floor: Some(floor) })
+        Ok(Self { exemplar: Arc::new(exemplar), floor: Some(floor), ..self.clone() })
     }
 
     /// The elements of another scene, each as a copy of one with the same mesh.
@@ -177,6 +234,49 @@ impl Bodies {
         };
         Scene { nodes: placements.iter().map(node).collect(), frame, ..(*self.scene).clone() }
     }
+}
+
+/// A scene with one mesh for those of a class that are copies of one another, as they are in files that hold every element in its place.
+fn shared(scene: Scene, budget: &Budget) -> Result<Scene> {
+    let classes = scene.classes();
+    let mut mesh_of = BTreeMap::new();
+    let pairs = scene.nodes.iter().zip(classes.of_node);
+    let are_many =
+        pairs.fold(false, |any, (node, class)| *mesh_of.entry(class).or_insert(node.mesh) != node.mesh || any);
+    if !are_many {
+        return Ok(scene);
+    }
+    let fewer = scene.clone().share_shapes(budget)?;
+    Ok(if fewer.meshes.len() < scene.meshes.len() { fewer } else { scene })
+}
+
+/// Lowest place of elements that bend.
+fn lowest_soft(exemplar: &Exemplar<3>) -> Option<f64> {
+    let samples = exemplar.softs.iter().flat_map(|s| s.samples.iter().zip(&s.radii));
+    samples.map(|(p, r)| p[exemplar.up] - r).min_by(f64::total_cmp)
+}
+
+/// A box of which a heap of elements that bend shows everything, where nobody tells: they are longer than it is wide, so that its density
+/// is told by how much of them is in the middle of it, not by their number and where they have their own middle.
+fn occupied(softs: &[Arc<Soft<3>>]) -> Bounds<3> {
+    let middles = Bounds::around(softs.iter().map(|s| s.middle(&s.samples)));
+    let mut core = middles;
+    for axis in 0..3 {
+        let mut all: Vec<f64> = softs.iter().flat_map(|s| s.samples.iter().map(|p| p[axis])).collect();
+        all.sort_by(f64::total_cmp);
+        let at = |share: f64| all.get((share * all.len() as f64) as usize).copied().unwrap_or(0.0);
+        (core.min[axis], core.max[axis]) = (at(CORE.0), at(CORE.1));
+    }
+    let inside = softs
+        .iter()
+        .map(|s| s.samples.iter().filter(|p| core.contains(**p)).count() as f64 / s.samples.len().max(1) as f64);
+    let density = inside.sum::<f64>() / core.measure().max(f64::MIN_POSITIVE);
+    let wanted = softs.len() as f64 / density.max(f64::MIN_POSITIVE);
+    let thickest = softs.iter().flat_map(|s| s.radii.iter().copied()).fold(0.0, f64::max);
+    let least = middles.grown(thickest);
+    let factor = (wanted / least.measure().max(f64::MIN_POSITIVE)).cbrt().clamp(0.5, 2.0);
+    let more = least.size() * (0.5 * (factor - 1.0));
+    Bounds::new(least.min - more, least.max + more)
 }
 
 /// The exemplar in its frame, if the file has one. A lattice that fits its frame tightly shows more elements than there are elsewhere, so that
@@ -233,7 +333,12 @@ fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>
         points.extend(corners(&shape.mesh));
         let centre = centre(&shape.mesh, &points);
         let solid = Arc::new(solid(&index, &points, centre, budget)?);
-        Ok(Body { centre, points, colour: colour(&shape.mesh), solid })
+        let symmetry = if meshes.len() > MANY {
+            Symmetry::default()
+        } else {
+            Symmetry::of(&shape.mesh, &index, (centre, &points), budget)?
+        };
+        Ok(Body { centre, points, colour: colour(&shape.mesh), solid, symmetry })
     };
     meshes.iter().enumerate().map(one).collect()
 }

@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, process::ExitCode};
 
 use arabesque::{
-    Border, Constraint, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method, Parameters,
-    Physics, Recipe, Redo, Region, Resources, Space, Structures, Unit, Up,
+    Border, Constraint, Deform, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method,
+    Parameters, Physics, Recipe, Redo, Region, Resources, Space, Structures, Unit, Up,
     core::options::{Choice, help_list, preset_list},
     is_scene_of_meshes,
     patterns::Params,
@@ -82,6 +82,11 @@ struct Place {
     /// Scenes of meshes: length of a unit of the files that are read; results have the same, GLB always m
     #[arg(long, value_name = "UNIT", default_value = Unit::default().name(), value_parser = choice::<Unit>())]
     unit: Unit,
+    /// Scenes of meshes: elements bend: all, those of some classes (names with commas between them), or off for none; by default those
+    /// that the exemplar shows bent in several ways [a value needs =; without one: all]
+    #[arg(long, value_name = "CLASS,..", num_args = 0..=1, require_equals = true, default_missing_value = "all",
+        value_parser = str::parse::<Deform>)]
+    deform: Option<Deform>,
     /// Scenes of meshes: elements push one another apart, fall and come to rest: so many steps of physics after each iteration, or settle
     /// for the end alone [a value needs =; without one: 5]
     #[arg(long, value_name = "N|settle", num_args = 0..=1, require_equals = true, default_missing_value = "5",
@@ -411,6 +416,7 @@ fn job(place: Place, fields: Fields, engine: Engine) -> Result<Job, Error> {
             up: place.up,
             unit: place.unit,
             floor: place.floor,
+            deform: place.deform.unwrap_or_default(),
             physics: place.physics,
             gravity: place.gravity,
             friction: place.friction,

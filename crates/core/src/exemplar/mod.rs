@@ -1,9 +1,11 @@
 //! The small example, already simplified.
 
+mod soft;
 mod solid;
 mod view;
 mod window;
 
+pub use soft::{Build, Soft};
 pub use solid::Solid;
 pub use view::View;
 pub use window::{PointLattice, point_lattice};
@@ -103,6 +105,11 @@ pub struct Exemplar<const D: usize> {
     pub period: Option<[Vector<D>; 2]>,
     /// The volumes of the elements, one for each, in the coordinates from which its pose leads; empty where they have none.
     pub solids: Vec<Arc<Solid<D>>>,
+    /// Poses that are the same to look at as those of the elements, one for each, each as like that of the first of its class as a symmetry
+    /// of the solid allows; empty where nobody looked for symmetries.
+    pub seen: Vec<Similarity<D>>,
+    /// The samples of the elements, one for each, where any of them bends; else empty.
+    pub softs: Vec<Arc<Soft<D>>>,
     /// For each element that stands on the ground, the height of its centre over it, which it keeps; such elements are classes of their
     /// own. Empty where there is no ground.
     pub heights: Vec<Option<f64>>,
@@ -184,6 +191,8 @@ impl<const D: usize> Exemplar<D> {
             hole: None,
             period: None,
             solids: Vec::new(),
+            seen: Vec::new(),
+            softs: Vec::new(),
             heights: Vec::new(),
             up: 1,
         })
@@ -231,6 +240,11 @@ impl<const D: usize> Exemplar<D> {
             None => window_around(&centres),
         };
         Self::new(place, elements, classes, window)
+    }
+
+    /// Pose of an element as it looks: [`Exemplar::seen`] where that is known.
+    pub fn seen_pose(&self, element: usize) -> Similarity<D> {
+        self.seen.get(element).copied().unwrap_or(self.elements[element].pose)
     }
 
     /// What it shows.

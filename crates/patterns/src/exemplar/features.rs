@@ -12,6 +12,22 @@ const DIRECTIONS: usize = 12;
 /// Entries of a feature vector: outline, then colour.
 const LENGTH: usize = DIRECTIONS + 3;
 
+/// A direction of length 1: around the plane, or to the corners of an icosahedron.
+fn direction<const D: usize>(k: usize) -> Vector<D> {
+    let mut direction = Vector::ZERO;
+    if D < 3 {
+        let turn = k as f64 / DIRECTIONS as f64 * std::f64::consts::TAU;
+        (direction[0], direction[1]) = (turn.cos(), turn.sin());
+        return direction;
+    }
+    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+    let signs = [1.0, -1.0];
+    let (short, long) = (signs[k & 1], signs[k >> 1 & 1] * golden);
+    let first = k / 4;
+    (direction[first], direction[(first + 1) % 3]) = (short, long);
+    direction.unit_or_zero()
+}
+
 /// Attributes of one element, in exemplar directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Feature([f32; LENGTH]);
@@ -22,9 +38,7 @@ impl Feature {
         let mut values = [0.0; LENGTH];
         let scale = 1.0 / (DIRECTIONS as f64).sqrt();
         for (k, value) in values[..DIRECTIONS].iter_mut().enumerate() {
-            let turn = k as f64 / DIRECTIONS as f64 * std::f64::consts::TAU;
-            let mut direction = Vector::<D>::ZERO;
-            (direction[0], direction[1]) = (turn.cos(), turn.sin());
+            let direction = direction::<D>(k);
             let reach = element.outline.points().map(|p| (p - element.centre).dot(direction)).fold(0.0, f64::max);
             *value = (reach * scale) as f32;
         }

@@ -152,8 +152,9 @@ impl<const D: usize> Level<D> {
         };
         for e in 0..library.len() {
             level.first.push(level.position.len() as u32);
+            let ids = samples.ids(e, &level.parts[e]);
             for (j, &offset) in level.parts[e].iter().enumerate() {
-                let key = library.class[e] * most as u32 + j as u32;
+                let key = library.class[e] * most as u32 + ids[j];
                 level.of_key[key].push(level.position.len() as u32);
                 level.key.push(key);
                 level.element.push(e as u32);

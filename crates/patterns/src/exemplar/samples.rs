@@ -4,7 +4,7 @@
 //! carry its orientation and bend. Samples are laid out on the first element of a class and carried to the others by
 //! their pose, so that sample `j` means the same spot on every element of the class.
 
-use arabesque_core::{Budget, Element, Exemplar, Outline, Result, Similarity, Vector};
+use arabesque_core::{Budget, Element, Exemplar, Outline, Result, Similarity, Solid, Vector};
 
 /// Longest element relative to its width that still counts as round.
 const ROUND: f64 = 1.6;
@@ -15,6 +15,14 @@ const CORNER: u64 = 300;
 /// The same for an outline, however few corners it has.
 const SHAPE: u64 = 80_000;
 
+/// A solid that is turned end over end lies the same where its surface is no farther off than this share of its inner radius, about one of
+/// so many axes; and the nanoseconds that it takes to find that out, for each place of its surface.
+const OFF: f64 = 0.3;
+const ANGLES: usize = 12;
+/// Samples are at opposite places where these differ by less than this share of how far they are from the centre.
+const TWIN: f64 = 0.2;
+const TURN: u64 = 1500;
+
 /// Most samples that the shape alone asks for.
 const MAX_SAMPLES: usize = 5;
 
@@ -23,6 +31,8 @@ const MAX_SAMPLES: usize = 5;
 pub(crate) struct ElementSamples<const D: usize> {
     /// `offsets[e][j]`: finest samples of element `e`. All elements of a class have the same number.
     offsets: Vec<Vec<Vector<D>>>,
+    /// Whether each element is the same end over end.
+    is_reversible: Vec<bool>,
 }
 
 impl<const D: usize> ElementSamples<D> {
@@ -30,27 +40,49 @@ impl<const D: usize> ElementSamples<D> {
     pub(crate) fn new(exemplar: &Exemplar<D>, count: Option<usize>, budget: &Budget) -> Result<Self> {
         let mut templates: Vec<Option<Vec<Vector<D>>>> = vec![None; exemplar.classes.len()];
         let mut offsets = Vec::with_capacity(exemplar.elements.len());
-        for e in &exemplar.elements {
+        let mut reversible: Vec<Option<bool>> = vec![None; exemplar.classes.len()];
+        let mut is_reversible = Vec::with_capacity(exemplar.elements.len());
+        for (n, e) in exemplar.elements.iter().enumerate() {
+            let seen = exemplar.seen_pose(n);
             if templates[e.class].is_none() {
                 let corners: usize = e.outline.rings.iter().map(Vec::len).sum();
                 budget.spend(if corners == 0 { 0 } else { SHAPE + CORNER * corners as u64 })?;
             }
-            let template = templates[e.class].get_or_insert_with(|| template(e, count));
-            offsets.push(template.iter().map(|&p| e.pose.apply(p) - e.centre).collect());
+            let template = templates[e.class].get_or_insert_with(|| template(e, &seen, count));
+            if let Some(solid) = exemplar.solids.get(n)
+                && reversible[e.class].is_none()
+            {
+                budget.spend(TURN * solid.points.len() as u64)?;
+                reversible[e.class] = Some(turns_end_over_end(solid, template));
+            }
+            is_reversible.push(reversible[e.class].unwrap_or(false));
+            offsets.push(template.iter().map(|&p| seen.apply(p) - e.centre).collect());
         }
-        Ok(Self { offsets })
+        Ok(Self { offsets, is_reversible })
     }
 
     /// The same with `count` more elements of a single sample: curve samples.
     pub(crate) fn with_points(&self, count: usize) -> Self {
         let mut offsets = self.offsets.clone();
         offsets.extend(std::iter::repeat_n(vec![Vector::ZERO], count));
-        Self { offsets }
+        let mut is_reversible = self.is_reversible.clone();
+        is_reversible.resize(offsets.len(), false);
+        Self { offsets, is_reversible }
     }
 
     /// Number of samples of all elements at the finest level.
     pub(crate) fn count(&self) -> usize {
         self.offsets.iter().map(Vec::len).sum()
+    }
+
+    /// Numbers of the samples of element `e`, given where they are at a level: those that cannot be told from one another have the same.
+    pub(crate) fn ids(&self, e: usize, parts: &[Vector<D>]) -> Vec<u32> {
+        let size = parts.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let twin = |j: usize| {
+            let opposite = |k: &usize| self.is_reversible[e] && (parts[*k] + parts[j]).norm() < TWIN * size;
+            (0..j).find(opposite).unwrap_or(j)
+        };
+        (0..parts.len()).map(|j| twin(j) as u32).collect()
     }
 
     /// Samples of element `e` at a level: the centre alone at `detail` 0, everything at 1, and in between the midpoints
@@ -67,9 +99,34 @@ impl<const D: usize> ElementSamples<D> {
     }
 }
 
+/// Whether a solid that is long lies the same once it is turned end over end, along its samples.
+fn turns_end_over_end<const D: usize>(solid: &Solid<D>, template: &[Vector<D>]) -> bool {
+    let [first, .., last] = template else { return false };
+    let axis = (*last - *first).unit_or_zero();
+    let inner = solid.inradius();
+    let lies_within = |across: Vector<D>| {
+        solid.points.iter().all(|p| {
+            let v = *p - solid.centre;
+            // Half a turn about what is across.
+            let turned = solid.centre + across * (2.0 * v.dot(across)) - v;
+            solid.depth(turned).abs() <= OFF * inner
+        })
+    };
+    let bases = (0..D).map(|k| {
+        let mut base = Vector::ZERO;
+        base[k] = 1.0;
+        (base - axis * axis[k]).unit_or_zero()
+    });
+    let bases: Vec<Vector<D>> = bases.filter(|base| base.norm2() > 0.5).collect();
+    let [a, b, ..] = bases.as_slice() else { return false };
+    let other = (*b - *a * b.dot(*a)).unit_or_zero();
+    let angles = (0..ANGLES).map(|k| k as f64 / ANGLES as f64 * std::f64::consts::PI);
+    angles.into_iter().any(|angle| lies_within(*a * angle.cos() + other * angle.sin()))
+}
+
 /// Finest samples of an element, in the coordinates that its pose starts from.
-fn template<const D: usize>(element: &Element<D>, count: Option<usize>) -> Vec<Vector<D>> {
-    let to_class = element.pose.inverse();
+fn template<const D: usize>(element: &Element<D>, pose: &Similarity<D>, count: Option<usize>) -> Vec<Vector<D>> {
+    let to_class = pose.inverse();
     let centre = vec![to_class.apply(element.centre)];
     let ink = boundary_points(&element.outline);
     let Some((axis, elongation)) = principal_axis(&ink) else {

@@ -25,7 +25,7 @@ pub(crate) fn upright<const D: usize>(
     budget: &Budget,
 ) -> Result<Numbered<bool>> {
     let mut upright = vec![false; exemplar.elements.len()];
-    let rotation = |e: u32| exemplar.elements[e as usize].pose.rotation;
+    let rotation = |e: u32| exemplar.seen_pose(e as usize).rotation;
     for members in members.iter().filter(|members| members.len() >= LEAST) {
         let looked_at: Vec<Matrix<D>> =
             members.iter().step_by(members.len().div_ceil(LOOKED_AT)).map(|&e| rotation(e)).collect();

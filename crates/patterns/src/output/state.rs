@@ -134,7 +134,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// Adds an item with its samples, and returns the number of its first sample; [`State::reindex`] makes it visible.
     pub(crate) fn push(&mut self, item: Item<D>, turn: Matrix<D>) -> u32 {
         let parts = &self.level.parts[item.source];
-        let first_key = self.level.key[self.level.first[item.source]];
+        let first_sample = self.level.first[item.source];
         let first = self.samples.len() as u32;
         let stays = item.frozen.is_some();
         let position = if stays { item.position } else { self.extent.grounded(item.source, item.position) };
@@ -145,7 +145,7 @@ impl<'a, const D: usize> State<'a, D> {
             self.samples.push(Sample {
                 item: number,
                 part,
-                key: first_key + part,
+                key: self.level.key[first_sample + part],
                 position,
                 announced: position,
                 dirty: true,

@@ -3,7 +3,7 @@
 mod crossings;
 mod index;
 mod report;
-mod topology;
+pub(crate) mod topology;
 mod triangle;
 
 pub use index::{Closest, MeshIndex};

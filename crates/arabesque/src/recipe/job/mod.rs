@@ -1,6 +1,7 @@
 //! What is to be made of an exemplar.
 
 mod convention;
+mod deform;
 mod fill;
 mod inputs;
 mod parameters;
@@ -13,6 +14,7 @@ mod structures;
 mod surface;
 
 pub use convention::{Unit, Up};
+pub use deform::Deform;
 pub use fill::{ExemplarTile, Fill, Method, Reading};
 pub use parameters::Parameters;
 pub use physics::Physics;

@@ -11,6 +11,7 @@ use crate::recipe::{
     input::Input,
     job::{
         convention::{Unit, Up},
+        deform::Deform,
         fill::Method,
         parameters::{self, Parameters},
         physics::Physics,
@@ -92,6 +93,10 @@ pub struct Space {
     /// Length of a unit of the files that are read: mm, cm, m, in or ft. Results have the same; GLB always metres. Default: m.
     #[serde(default, skip_serializing_if = "Unit::is_usual")]
     pub unit: Unit,
+    /// Scenes of meshes: which elements bend: `auto`, those that the exemplar shows bent in several ways; `all`; `off`; or names of
+    /// classes with commas between them. Default: auto.
+    #[serde(default, skip_serializing_if = "Deform::is_auto")]
+    pub deform: Deform,
     /// Scenes of meshes: elements push one another apart, fall and come to rest. A number of steps of physics after each iteration of the
     /// engine, or `settle` for the end alone. Default: no physics.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -142,6 +147,7 @@ impl Space {
             floor: self.floor || self.on.is_some(),
             constrain: self.constrain.clone(),
             up: self.up,
+            deform: self.deform.clone(),
             ..Self::default()
         }
     }

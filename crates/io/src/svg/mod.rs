@@ -29,7 +29,7 @@ pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page
 pub use namespace::NAMESPACE;
 pub use options::{Dashes, LargeFills, Method, Parts, ReadOptions, Tiling};
 pub use palette::PALETTE;
-pub use placed::{SvgElements, check_paint};
+pub use placed::{Mark, SvgElements, check_paint, with_marks};
 pub use read::{
     document::Document,
     domain::read_shape,

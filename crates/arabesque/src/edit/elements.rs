@@ -4,6 +4,7 @@ use arabesque_core::{Budget, Error, Result};
 use arabesque_io::{
     file,
     json::placed::{self as json, JsonElements},
+    mesh::gltf::GlbElements,
     placed::{Changes, Layout, PlacedFile},
     svg::SvgElements,
     table::placed::{self as csv, CsvElements},
@@ -57,7 +58,8 @@ impl Elements {
                     None => Err(Error::input(name, "a JSON file without a page and placements", EDITABLE)),
                 }
             }
-            Format::Png | Format::Obj | Format::Glb | Format::Ply | Format::Toml => Err(Error::Unsupported {
+            Format::Glb => Ok(Self::Space(Box::new(GlbElements::open(name, bytes, budget)?))),
+            Format::Png | Format::Obj | Format::Ply | Format::Toml => Err(Error::Unsupported {
                 what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
                 advice: EDITABLE.into(),
             }),

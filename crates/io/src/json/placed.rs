@@ -155,12 +155,7 @@ impl<const D: usize> JsonElements<D> {
         let missing =
             || Error::input("changes", format!("no element {}", replaced.base), "name an element of the file");
         let number = *index.get(&replaced.base).ok_or_else(missing)?;
-        if !replaced.paint.is_empty() {
-            return Err(Error::Unsupported {
-                what: "paint in a JSON file".into(),
-                advice: "edit the result as SVG or GLB, which can say it".into(),
-            });
-        }
+        // How it is painted is not said here.
         let (item, record) = (&self.layout.items[number], &self.records[number]);
         let after = replaced.motion.after(&item.place);
         let centre = replaced.motion.apply(item.centre);

@@ -159,7 +159,8 @@ impl Artwork {
         let Some(edited) = &self.edited else { return self.made.encode(&sheet) };
         let own = &self.origin.recipe;
         // A picture is drawn of a file that was edited.
-        let Some(base) = self.made.drawn_from(format) else {
+        let base = self.made.drawn_from(format).filter(|_| !own.edits.iter().all(|edit| edit.on == Some(format)));
+        let Some(base) = base else {
             let encoded = self.made.encode(&sheet)?;
             return Ok(Encoded { bytes: edited.apply(encoded.bytes, format, own, &budget)?, ..encoded });
         };

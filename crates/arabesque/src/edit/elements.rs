@@ -55,11 +55,15 @@ impl Elements {
                 match json::dimension(&text) {
                     Some(2) => Ok(Self::Plane(Box::new(JsonElements::open(name, text, is_tile, budget)?))),
                     Some(_) => Ok(Self::Space(Box::new(JsonElements::open(name, text, is_tile, budget)?))),
-                    None => Err(Error::input(name, "a JSON file without a page and placements", EDITABLE)),
+                    None => Err(Error::input(
+                        name,
+                        "a JSON file without a page and placements on it",
+                        "edit a scene of meshes as GLB",
+                    )),
                 }
             }
             Format::Glb => Ok(Self::Space(Box::new(GlbElements::open(name, bytes, budget)?))),
-            Format::Png | Format::Obj | Format::Ply | Format::Toml => Err(Error::Unsupported {
+            Format::Png | Format::Obj | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
                 what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
                 advice: EDITABLE.into(),
             }),

@@ -109,7 +109,7 @@ fn matches<const D: usize>(
         centre: item.centre,
         rotation: item.place.rotation,
         scale: item.place.scale,
-        class: item.class,
+        class: if edit.any_class { 0 } else { item.class },
     };
     let spots = layout.items.iter().map(spot).collect();
     let places = Places::new(spots, &domain(layout), edit.radius, budget)?;

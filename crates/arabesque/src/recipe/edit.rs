@@ -51,6 +51,9 @@ pub struct Edit {
     /// Radius of the neighbourhoods, in mean spacings. Default: between the second and the third ring of neighbours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
+    /// Whether elements of all classes may be alike, so that only places count. Default: false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub any_class: bool,
     /// Format of the file that was edited, whose digits decide. Default: that of the output, where it can be edited.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<Format>,
@@ -126,8 +129,8 @@ impl Edit {
         if let Some(propagate) = self.propagate.filter(|t| !(t.is_finite() && *t >= 0.0)) {
             return Err(Error::parameter("propagate", propagate, "a number of mean spacings from 0"));
         }
-        if self.radius.is_some() && self.propagate.is_none() {
-            return Err(Error::parameter("radius", "given", "a radius only together with propagate"));
+        if (self.radius.is_some() || self.any_class) && self.propagate.is_none() {
+            return Err(Error::parameter("radius or any_class", "given", "these only together with propagate"));
         }
         self.paint().iter().try_for_each(check_paint)
     }

@@ -11,7 +11,7 @@ use arabesque_io::{
         placements::{PlacementsOptions, write_placements},
     },
     mesh::{
-        gltf::{GltfOptions, Scene, write_scene_with},
+        gltf::{GltfOptions, Scene, read_scene, write_scene_with},
         obj,
         scene::{Convention, Up},
         usd::write_usda,
@@ -68,8 +68,7 @@ impl VolumeMade {
     }
 
     /// Meshes in their places.
-    fn encode_scene(&self, bodies: &Bodies, sheet: &Sheet<'_>) -> Result<Encoded> {
-        let scene = bodies.placed(&self.outcome.placements, Some(self.frame));
+    fn encode_scene(&self, scene: Scene, sheet: &Sheet<'_>) -> Result<Encoded> {
         let budget = sheet.budget;
         match sheet.format {
             Format::Glb => {
@@ -121,7 +120,7 @@ impl Made for VolumeMade {
         if let Some(bodies) = &self.bodies
             && sheet.format != Format::Csv
         {
-            return self.encode_scene(bodies, sheet);
+            return self.encode_scene(bodies.placed(&self.outcome.placements, Some(self.frame)), sheet);
         }
         let (points, curves) = (outcome.placements.len(), outcome.curves.len());
         let (text, warnings) = match sheet.format {
@@ -146,6 +145,23 @@ impl Made for VolumeMade {
             }
         };
         Ok(Encoded { bytes: text.into_bytes(), warnings })
+    }
+
+    fn drawn_from(&self, format: Format) -> Option<Format> {
+        // Tables have the coordinates of the exemplar, and a GLB file may have others.
+        let is_apart = format == Format::Csv && self.convention == Convention::default();
+        (self.bodies.is_some() && format != Format::Glb && !is_apart).then_some(Format::Glb)
+    }
+
+    fn encode_edited(&self, edited: &[u8], sheet: &Sheet<'_>) -> Result<Encoded> {
+        if sheet.format == Format::Csv {
+            return Err(Error::Unsupported {
+                what: "an edited scene of another unit or axis as CSV".into(),
+                advice: "write GLB or JSON, or edit the CSV file".into(),
+            });
+        }
+        let scene = read_scene("edited scene", edited, sheet.budget)?;
+        self.encode_scene(scene.converted(&Convention::default(), &self.convention), sheet)
     }
 
     fn summary(&self) -> Summary {

@@ -54,7 +54,7 @@ struct Which {
     #[arg(long, value_name = "ID")]
     item: Vec<String>,
     /// The element whose centre is nearest to this place; may be given several times
-    #[arg(long, value_name = "X,Y[,Z]", value_parser = place)]
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = place)]
     at: Vec<Place>,
     /// Change all elements whose neighbourhood is no more unlike than this, in mean spacings, each in its own frame
     #[arg(long, value_name = "THRESHOLD", num_args = 0..=1, require_equals = true, default_missing_value = SIMILAR)]
@@ -62,19 +62,22 @@ struct Which {
     /// With --propagate: radius of the neighbourhoods, in mean spacings [default: between the second and the third ring of neighbours]
     #[arg(long, value_name = "R", requires = "propagate")]
     radius: Option<f64>,
+    /// With --propagate: elements of all classes may be alike, so that only places count
+    #[arg(long, requires = "propagate")]
+    any_class: bool,
 }
 
 /// What changes about them.
 #[derive(Args, Debug)]
 struct What {
     /// Move them, in the units of the page
-    #[arg(long = "move", value_name = "DX,DY[,DZ]", value_parser = place)]
+    #[arg(long = "move", value_name = "DX,DY[,DZ]", allow_hyphen_values = true, value_parser = place)]
     shift: Option<Place>,
     /// Turn them about their centres, clockwise on the page
     #[arg(long, value_name = "DEGREES")]
     turn: Option<f64>,
     /// With --turn in space: about this axis [default: 0,1,0, which is up]
-    #[arg(long, value_name = "X,Y,Z", value_parser = place, requires = "turn")]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = place, requires = "turn")]
     axis: Option<Place>,
     /// Scale them about their centres
     #[arg(long, value_name = "FACTOR")]
@@ -202,6 +205,7 @@ impl Edit {
             insert: self.what.insert.clone(),
             propagate: self.which.propagate,
             radius: self.which.radius,
+            any_class: self.which.any_class,
             ..Edits::of_items(items)
         })
     }
@@ -241,7 +245,11 @@ impl Edit {
         }
         if level > Level::Quiet {
             let (count, all) = (proposal.changed.len(), session.items().len());
-            let verb = if self.preview { "would be" } else { "were" };
+            let verb = match (self.preview, count) {
+                (true, _) => "would be",
+                (false, 1) => "was",
+                (false, _) => "were",
+            };
             let did = if self.what.delete {
                 "deleted"
             } else if self.what.insert.is_empty() {

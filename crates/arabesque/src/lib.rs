@@ -54,6 +54,7 @@
 //! as [`io`].
 
 mod artwork;
+mod edit;
 mod exemplar;
 mod inspect;
 mod measure;
@@ -86,16 +87,17 @@ pub use arabesque_core::{
 };
 pub use arabesque_ribbons::Closing;
 pub use artwork::{Artwork, Encoded, Geometry, PhysicsSummary, PlacedPoint, ReliefSummary, RibbonSummary, Summary};
+pub use edit::{Change, EditSession, PlacedItem, Proposal};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};
 pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, Measurements, Verdict, measure};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};
 pub use recipe::{
-    Carrier, Constraint, Cuboid, Deform, Direction, EMBEDDED_BYTES, Encoding, ExemplarTile, FieldFile, FieldSource,
-    Fill, Format, Input, Job, Method, OutputOptions, Parameters, Physics, Reading, Recipe, Redo, Region, Relief,
-    Ribbon, Size, Space, Structures, Surface, Tile, Unit, Up, WidthSource, carried_recipe, is_result, recipe_in,
-    ribbon_options,
+    Carrier, Constraint, Cuboid, Deform, Direction, EMBEDDED_BYTES, Edit, Encoding, ExemplarTile, FieldFile,
+    FieldSource, Fill, Format, Input, Insertion, Job, Method, OutputOptions, Parameters, Physics, Reading, Recipe,
+    Redo, Region, Relief, Ribbon, Size, Space, Structures, Surface, Tile, Unit, Up, WidthSource, carried_recipe,
+    is_result, recipe_in, ribbon_options,
 };
 pub use resources::Resources;
 pub use space::is_scene_of_meshes;

@@ -105,7 +105,7 @@ impl Prepared {
     /// # Errors
     /// [`Error::Parameter`] for a request of another kind, or one that changes the exemplar or its analysis (method, parameters, regions
     /// of the file, strips); whatever its files are wrong with; [`Error::NoResult`] when nothing can be placed, [`Error::Limit`] when a
-    /// limit is reached.
+    /// limit is reached; for a recipe with edits [`Error::Input`] when the run made another result than the one that was edited.
     pub fn run(&self, request: &Request, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         let (asked, prepared) = (request.job.prepared_part(), self.0.recipe.job.prepared_part());
         if asked != prepared && asked != self.0.given.prepared_part() {
@@ -121,7 +121,7 @@ impl Prepared {
             seed: request.seed,
             warnings: self.0.warnings.clone(),
         };
-        Arc::clone(&self.0.ready).run(context, watch)
+        Arc::clone(&self.0.ready).run(context, watch)?.with_edits()
     }
 
     /// The recipe, with its exemplar inside it where that is small.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::{
-    commands::{completions, fill, inspect, man, measure, relief, ribbon, run, surface},
+    commands::{completions, edit, fill, inspect, man, measure, relief, ribbon, run, surface},
     failure::Failure,
 };
 
@@ -35,6 +35,8 @@ enum Command {
     Inspect(inspect::Inspect),
     /// Say how good results are beside their exemplar: holes, clumps, overlaps, broken elements, copies
     Measure(measure::Measure),
+    /// Change elements of a result, and all elements in places like theirs
+    Edit(Box<edit::Edit>),
     /// Repeat a run from a recipe, or from any result that carries one
     Run(run::Run),
     /// Write the completion script of a shell
@@ -52,6 +54,7 @@ impl App {
             Command::Surface(c) => c.execute(),
             Command::Inspect(c) => c.execute(),
             Command::Measure(c) => c.execute(),
+            Command::Edit(c) => c.execute(),
             Command::Run(c) => c.execute(),
             Command::Completions(c) => c.execute(Self::command()),
             Command::Man(c) => c.execute(Self::command()),

@@ -8,6 +8,7 @@ pub mod file;
 pub mod geometry;
 pub mod json;
 pub mod mesh;
+pub mod placed;
 pub mod raster;
 pub mod render;
 pub mod svg;

@@ -17,6 +17,7 @@
 //! | assign edges and tangents, draw strokes | `curves` | [Tu 2020 §4.3.4, §4.4.2] |
 //! | even out holes and clumps | `evenness` | after [Roveri 2015 §4] |
 //! | place | `finish` | [Ma 2011 §3.1], [Schaefer 2006] |
+//! | find places like one of a result, for edits that spread | [`alike`] | [Ma 2011 §6.3] |
 //!
 //! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly. Elements that bend are
 //! laid out and moved by `soft`, sample by sample.
@@ -43,6 +44,7 @@
 //!
 //! Not handled: interleaved physics; anything outside two and three dimensions.
 
+pub mod alike;
 mod border;
 mod curves;
 mod dimension;

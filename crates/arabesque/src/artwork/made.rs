@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use arabesque_core::{Budget, EnergyPoint, PointSet, Result, Snapshot, StopReason, TriangleMesh, Warning};
+use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Result, Snapshot, StopReason, TriangleMesh, Warning};
 
 use crate::{
     artwork::{points::PlacedPoint, summary::Summary},
@@ -13,6 +13,19 @@ use crate::{
 pub(crate) trait Made: Debug + Send + Sync {
     /// Its file.
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded>;
+
+    /// The format that a file of `format` is made from once it was edited; `None` where it can be edited itself.
+    fn drawn_from(&self, _format: Format) -> Option<Format> {
+        None
+    }
+
+    /// Its file, made from one of another format that was edited.
+    fn encode_edited(&self, _edited: &[u8], sheet: &Sheet<'_>) -> Result<Encoded> {
+        Err(Error::Unsupported {
+            what: format!("an edited result as {}", sheet.format.name()),
+            advice: "write the format that was edited".into(),
+        })
+    }
 
     /// How much of what there is.
     fn summary(&self) -> Summary;

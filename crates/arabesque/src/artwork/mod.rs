@@ -15,7 +15,11 @@ use std::sync::Arc;
 
 use arabesque_core::{Budget, EnergyPoint, Result, StopReason, Warning};
 
-use crate::recipe::{Format, OutputOptions, Recipe};
+use crate::{
+    edit::{EditSession, Replayed, replay, to_geometry, to_points},
+    recipe::{Format, OutputOptions, Recipe},
+    resources::Resources,
+};
 
 /// What a run made, or has made so far: a drawing, a file, numbers, bare geometry.
 ///
@@ -24,6 +28,8 @@ use crate::recipe::{Format, OutputOptions, Recipe};
 pub struct Artwork {
     origin: Arc<Origin>,
     made: Arc<dyn Made>,
+    /// What the edits of the recipe come to, where it has any and the run is over.
+    edited: Option<Arc<Replayed>>,
 }
 
 /// Where an artwork comes from.
@@ -36,7 +42,44 @@ pub(crate) struct Origin {
 
 impl Artwork {
     pub(crate) fn new(origin: Arc<Origin>, made: impl Made + 'static) -> Self {
-        Self { origin, made: Arc::new(made) }
+        Self { origin, made: Arc::new(made), edited: None }
+    }
+
+    /// The same with the edits of its recipe.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Input`] for edits that were made to another result; those of encoding and of editing.
+    pub(crate) fn with_edits(self) -> Result<Self> {
+        let recipe = &self.origin.recipe;
+        if recipe.edits.is_empty() {
+            return Ok(self);
+        }
+        let budget = self.origin.budget.fresh().stage("editing");
+        let output = &recipe.output;
+        let encode = |format| self.made.encode(&self.sheet(format, output, None, &budget)).map(|file| file.bytes);
+        let edited = Some(Arc::new(replay(recipe, encode, &budget)?));
+        Ok(Self { edited, ..self })
+    }
+
+    fn sheet<'a>(
+        &'a self,
+        format: Format,
+        output: &'a OutputOptions,
+        recipe: Option<&'a str>,
+        budget: &'a Budget,
+    ) -> Sheet<'a> {
+        Sheet { format, output, ran: &self.origin.recipe.output, recipe, budget }
+    }
+
+    /// The artwork as a file that can be edited, written as `output` says; the edits end in the recipe of that file. `resources` say within
+    /// which limits.
+    ///
+    /// # Errors
+    /// Those of [`Artwork::encode`] and of [`EditSession::open`].
+    pub fn edit(&self, output: &OutputOptions, resources: &Resources) -> Result<EditSession> {
+        let format = output.format.unwrap_or_else(|| self.origin.recipe.usual_format());
+        let encoded = self.encode(&OutputOptions { format: Some(format), ..output.clone() })?;
+        EditSession::open(&format!("result.{}", format.name()), encoded.bytes, resources)
     }
 
     /// Seed of the run.
@@ -67,17 +110,26 @@ impl Artwork {
 
     /// How much of what there is.
     pub fn summary(&self) -> Summary {
-        self.made.summary()
+        let summary = self.made.summary();
+        if self.edited.is_none() {
+            return summary;
+        }
+        let points = self.points();
+        let mut classes = std::collections::BTreeMap::new();
+        points.iter().for_each(|point| *classes.entry(point.class.clone()).or_insert(0) += 1);
+        Summary { elements: points.len(), classes, ..summary }
     }
 
     /// The bare geometry.
     pub fn geometry(&self) -> Geometry {
-        self.made.geometry()
+        let geometry = self.made.geometry();
+        self.edited.iter().fold(geometry, |geometry, edited| to_geometry(geometry, &edited.changes))
     }
 
     /// The centres of the elements with their classes, in drawing order; empty for ribbons.
     pub fn points(&self) -> Vec<PlacedPoint> {
-        self.made.points()
+        let points = self.made.points();
+        self.edited.iter().fold(points, |points, edited| to_points(points, &edited.changes))
     }
 
     /// The recipe that repeats this very result and writes it as `output` says.
@@ -102,12 +154,17 @@ impl Artwork {
             return Ok(Encoded::plain(recipe));
         }
         let recipe = (!output.bare).then_some(recipe.as_str());
-        self.made.encode(&Sheet {
-            format,
-            output,
-            ran: &self.origin.recipe.output,
-            recipe,
-            budget: &self.origin.budget.fresh().stage("encoding"),
-        })
+        let budget = self.origin.budget.fresh().stage("encoding");
+        let sheet = self.sheet(format, output, recipe, &budget);
+        let Some(edited) = &self.edited else { return self.made.encode(&sheet) };
+        let own = &self.origin.recipe;
+        // A picture is drawn of a file that was edited.
+        let base = self.made.drawn_from(format).filter(|_| !own.edits.iter().all(|edit| edit.on == Some(format)));
+        let Some(base) = base else {
+            let encoded = self.made.encode(&sheet)?;
+            return Ok(Encoded { bytes: edited.apply(encoded.bytes, format, own, &budget)?, ..encoded });
+        };
+        let encoded = self.made.encode(&Sheet { format: base, recipe: None, ..sheet })?;
+        self.made.encode_edited(&edited.apply(encoded.bytes, base, own, &budget)?, &sheet)
     }
 }

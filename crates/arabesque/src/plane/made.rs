@@ -139,9 +139,8 @@ impl Made for PlaneMade {
             }
             Format::Png => {
                 let written = self.svg(Style::Linked, None, sheet.budget)?;
-                let resolution = resolution(sheet.output)?;
-                let job = RenderJob { svg: &written.text, units: size.0, resolution, recipe: sheet.recipe };
-                Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: written.warnings })
+                let warnings = written.warnings;
+                Ok(Encoded { warnings, ..drawn(&written.text, size.0, sheet)? })
             }
             Format::Json => {
                 let has_unit = self.exemplar.units() == Units::OfPage;
@@ -158,6 +157,14 @@ impl Made for PlaneMade {
                 advice: "write svg, png, json or csv; obj holds curves in space (--box), glb ribbons".into(),
             }),
         }
+    }
+
+    fn drawn_from(&self, format: Format) -> Option<Format> {
+        (format == Format::Png).then_some(Format::Svg)
+    }
+
+    fn encode_edited(&self, edited: &[u8], sheet: &Sheet<'_>) -> Result<Encoded> {
+        drawn(&String::from_utf8_lossy(edited), self.request.page.view.size().0, sheet)
     }
 
     fn summary(&self) -> Summary {
@@ -184,6 +191,12 @@ impl Made for PlaneMade {
     fn stopped(&self) -> StopReason {
         self.outcome.stopped
     }
+}
+
+/// A drawing as a picture.
+pub(crate) fn drawn(svg: &str, units: [f64; 2], sheet: &Sheet<'_>) -> Result<Encoded> {
+    let job = RenderJob { svg, units, resolution: resolution(sheet.output)?, recipe: sheet.recipe };
+    Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: Vec::new() })
 }
 
 /// The geometry of an outcome.

@@ -11,7 +11,7 @@ mod surroundings;
 mod tile;
 
 pub(crate) use fields::{constant_factor, factor as factor_field, orientation as orientation_field};
-pub(crate) use made::{snapshot, unfinished};
+pub(crate) use made::{drawn, snapshot, unfinished};
 pub(crate) use place::options;
 
 use std::sync::Arc;

@@ -4,6 +4,7 @@
 //! repeated from the result alone. What to read, which seed and what to write are the same for all methods; the [`Job`] says what is to
 //! be made, and owns every option that only this kind of job has.
 
+mod edit;
 mod embedded;
 mod field;
 mod format;
@@ -15,6 +16,7 @@ mod region;
 mod size;
 mod version;
 
+pub use edit::{Edit, Insertion};
 pub use embedded::{Carrier, carried_recipe, is_result, recipe_in};
 pub use field::{FieldFile, FieldSource};
 pub use format::Format;
@@ -51,6 +53,8 @@ pub struct Recipe {
     pub exemplar: Input,
     /// What is to be made.
     pub job: Job,
+    /// What is changed of the result after the run, one after the other.
+    pub edits: Vec<Edit>,
     /// What to write.
     pub output: OutputOptions,
 }
@@ -93,22 +97,37 @@ struct Document {
     /// What to write.
     #[serde(default)]
     output: OutputOptions,
+    /// What is changed of the result after the run, one after the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    edit: Vec<Edit>,
 }
 
 impl TryFrom<Document> for Recipe {
     type Error = String;
 
     fn try_from(document: Document) -> std::result::Result<Self, String> {
-        let Document { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, relief, output } =
-            document;
+        let Document {
+            arabesque,
+            seed,
+            exemplar,
+            fill,
+            redo,
+            space,
+            ribbon,
+            surface,
+            structures,
+            relief,
+            output,
+            edit,
+        } = document;
         let plane = [fill.map(Job::Fill), redo.map(Job::Redo), ribbon.map(Job::Ribbon)];
         let mut jobs = plane
             .into_iter()
             .chain([space.map(Job::Space), surface.map(Job::Surface), structures.map(Job::from), relief.map(Job::from)])
             .flatten();
         match (jobs.next(), jobs.next()) {
-            (Some(job), None) => Ok(Self { arabesque, seed, exemplar, job, output }),
-            (None, _) => Ok(Self { arabesque, seed, exemplar, job: Job::Fill(Fill::default()), output }),
+            (Some(job), None) => Ok(Self { arabesque, seed, exemplar, job, edits: edit, output }),
+            (None, _) => Ok(Self { arabesque, seed, exemplar, job: Job::Fill(Fill::default()), edits: edit, output }),
             (Some(a), Some(b)) => Err(format!("two jobs, {} and {}; expected one", a.name(), b.name())),
         }
     }
@@ -116,7 +135,7 @@ impl TryFrom<Document> for Recipe {
 
 impl From<Recipe> for Document {
     fn from(recipe: Recipe) -> Self {
-        let Recipe { arabesque, seed, exemplar, job, output } = recipe;
+        let Recipe { arabesque, seed, exemplar, job, edits: edit, output } = recipe;
         let (mut fill, mut redo, mut space, mut ribbon, mut surface, mut structures, mut relief) =
             (None, None, None, None, None, None, None);
         match job {
@@ -128,7 +147,7 @@ impl From<Recipe> for Document {
             Job::Space(job) => space = Some(job),
             Job::Ribbon(job) => ribbon = Some(job),
         }
-        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, relief, output }
+        Self { arabesque, seed, exemplar, fill, redo, space, ribbon, surface, structures, relief, output, edit }
     }
 }
 
@@ -145,7 +164,14 @@ impl JsonSchema for Recipe {
 impl Recipe {
     /// A recipe for `exemplar` with everything but the job at its default.
     pub fn new(exemplar: Input, job: impl Into<Job>) -> Self {
-        Self { arabesque: version(), seed: 0, exemplar, job: job.into(), output: OutputOptions::default() }
+        Self {
+            arabesque: version(),
+            seed: 0,
+            exemplar,
+            job: job.into(),
+            edits: Vec::new(),
+            output: OutputOptions::default(),
+        }
     }
 
     /// Reads a recipe from TOML, in the present form or in the earlier, flat one.
@@ -156,7 +182,7 @@ impl Recipe {
         if FlatRecipe::is_one(text) {
             let (head, job) = toml::from_str::<FlatRecipe>(text).map_err(|e| refused(name, text, &e))?.into_job()?;
             let Head { arabesque, seed, exemplar, output } = head;
-            return Ok(Self { arabesque, seed, exemplar, job, output });
+            return Ok(Self { arabesque, seed, exemplar, job, edits: Vec::new(), output });
         }
         toml::from_str(text).map_err(|e| refused(name, text, &e))
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Bounds, EnergyPoint, Error, Exemplar, Matrix, Outcome, Result, Similarity, Snapshot, StopReason, Warning,
+    Bounds, EnergyPoint, Error, Exemplar, Matrix, Outcome, Result, Similarity, Snapshot, StopReason, Vector, Warning,
 };
 use arabesque_io::{
     json::{
@@ -11,7 +11,7 @@ use arabesque_io::{
         placements::{PlacementsOptions, write_placements},
     },
     mesh::{
-        gltf::{GltfOptions, Scene, write_scene_with},
+        gltf::{GltfOptions, Scene, read_scene, write_scene_with},
         obj,
         scene::{Convention, Up},
         usd::write_usda,
@@ -68,13 +68,17 @@ impl VolumeMade {
     }
 
     /// Meshes in their places.
-    fn encode_scene(&self, bodies: &Bodies, sheet: &Sheet<'_>) -> Result<Encoded> {
+    fn scene(&self, bodies: &Bodies) -> Scene {
         let (placements, frame) = (&self.outcome.placements, Some(self.frame));
-        let scene = if self.exemplar.softs.is_empty() {
+        if self.exemplar.softs.is_empty() {
             bodies.placed(placements, frame)
         } else {
             skinned(bodies, placements, frame)
-        };
+        }
+    }
+
+    /// A scene as a file; `centre_lines` are those of elements that bend.
+    fn encode_scene(&self, scene: Scene, centre_lines: &[Vec<Vector<3>>], sheet: &Sheet<'_>) -> Result<Encoded> {
         let budget = sheet.budget;
         match sheet.format {
             Format::Glb => {
@@ -91,9 +95,7 @@ impl VolumeMade {
                 Ok(Encoded { bytes: text.into_bytes(), warnings })
             }
             Format::Json => {
-                let lines = self.outcome.placements.iter().map(|p| p.control.iter().map(|(_, to)| *to).collect());
-                let centre_lines: Vec<Vec<_>> = lines.collect();
-                let options = PlacementsOptions { recipe: sheet.recipe, centre_lines: &centre_lines };
+                let options = PlacementsOptions { recipe: sheet.recipe, centre_lines };
                 let text = write_placements(&scene, &options, budget)?;
                 Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new() })
             }
@@ -128,7 +130,8 @@ impl Made for VolumeMade {
         if let Some(bodies) = &self.bodies
             && sheet.format != Format::Csv
         {
-            return self.encode_scene(bodies, sheet);
+            let lines = self.outcome.placements.iter().map(|p| p.control.iter().map(|(_, to)| *to).collect());
+            return self.encode_scene(self.scene(bodies), &lines.collect::<Vec<_>>(), sheet);
         }
         let (points, curves) = (outcome.placements.len(), outcome.curves.len());
         let (text, warnings) = match sheet.format {
@@ -153,6 +156,23 @@ impl Made for VolumeMade {
             }
         };
         Ok(Encoded { bytes: text.into_bytes(), warnings })
+    }
+
+    fn drawn_from(&self, format: Format) -> Option<Format> {
+        // Tables have the coordinates of the exemplar, and a GLB file may have others.
+        let is_apart = format == Format::Csv && self.convention == Convention::default();
+        (self.bodies.is_some() && format != Format::Glb && !is_apart).then_some(Format::Glb)
+    }
+
+    fn encode_edited(&self, edited: &[u8], sheet: &Sheet<'_>) -> Result<Encoded> {
+        if sheet.format == Format::Csv {
+            return Err(Error::Unsupported {
+                what: "an edited scene of another unit or axis as CSV".into(),
+                advice: "write GLB or JSON, or edit the CSV file".into(),
+            });
+        }
+        let scene = read_scene("edited scene", edited, sheet.budget)?;
+        self.encode_scene(scene.converted(&Convention::default(), &self.convention), &[], sheet)
     }
 
     fn summary(&self) -> Summary {

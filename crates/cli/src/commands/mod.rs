@@ -1,6 +1,7 @@
 //! One file a subcommand.
 
 pub(crate) mod completions;
+pub(crate) mod edit;
 pub(crate) mod fill;
 pub(crate) mod inspect;
 pub(crate) mod man;

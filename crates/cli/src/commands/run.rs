@@ -24,6 +24,9 @@ pub(crate) struct Run {
     /// Use another seed than the recipe
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
+    /// Leave out the edits of the result
+    #[arg(long)]
+    no_edits: bool,
     /// Let a recipe write where it says outside its own folder
     #[arg(long)]
     allow_path: bool,
@@ -50,6 +53,9 @@ impl Run {
         let (mut recipe, carrier) = carried_recipe(input.name(), &bytes)?;
         if let Some(seed) = self.seed {
             recipe.seed = seed;
+        }
+        if self.no_edits {
+            recipe.edits.clear();
         }
         let from = RecipeFile(&self.file);
         // A result came from somebody else, perhaps; where it goes is for whoever runs it to say.

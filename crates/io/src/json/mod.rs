@@ -2,6 +2,7 @@
 
 pub mod fill;
 pub mod geometry;
+pub mod placed;
 pub mod placements;
 pub mod ribbon;
 mod warning;

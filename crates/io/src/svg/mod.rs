@@ -8,12 +8,14 @@
 
 mod cell;
 mod centreline;
+mod copies;
 mod drawing;
 mod layers;
 mod namespace;
 mod options;
 mod palette;
 mod parse;
+mod placed;
 mod read;
 mod reason;
 mod shape;
@@ -27,6 +29,7 @@ pub use drawing::{Drawing, Fragment, HostDocument, Job, KeptStrokes, Layer, Page
 pub use namespace::NAMESPACE;
 pub use options::{Dashes, LargeFills, Method, Parts, ReadOptions, Tiling};
 pub use palette::PALETTE;
+pub use placed::{Mark, SvgElements, check_paint, with_marks};
 pub use read::{
     document::Document,
     domain::read_shape,

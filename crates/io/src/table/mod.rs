@@ -2,6 +2,7 @@
 
 pub mod centres;
 pub mod csv;
+pub mod placed;
 pub mod points;
 pub(crate) mod records;
 pub mod values;

@@ -9,7 +9,7 @@ const VERSION: u32 = 2;
 pub(super) const JSON_CHUNK: &[u8; 4] = b"JSON";
 const BINARY_CHUNK: &[u8; 4] = b"BIN\0";
 /// Where in `asset` the recipe stands.
-const RECIPE: &str = "arabesque recipe";
+pub(super) const RECIPE: &str = "arabesque recipe";
 
 /// The `asset` of a document, with the recipe.
 pub(super) fn asset(recipe: Option<&str>) -> Value {

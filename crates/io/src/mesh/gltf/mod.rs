@@ -1,6 +1,7 @@
 //! glTF and GLB: points, meshes and their instances in and out, and textured strips with their pictures out.
 
 mod container;
+mod placed;
 mod read;
 mod strips;
 #[cfg(test)]
@@ -8,6 +9,7 @@ mod tests;
 mod write;
 
 pub use container::{is_glb, is_gltf, recipe_of};
+pub use placed::GlbElements;
 pub use read::{read_scene, read_scene_beside};
 pub use strips::write_glb;
 pub use write::{GltfOptions, write_scene, write_scene_with};

@@ -4,10 +4,13 @@ use std::{collections::BTreeSet, fmt::Write as _};
 
 use arabesque_core::{Bounds, Decimals, Domain, Placement, Vector, Warning};
 
-use crate::svg::write::{
-    document::recipe_element,
-    sheet::{Sheet, Style},
-    text::outline_data,
+use crate::svg::{
+    copies::shifts,
+    write::{
+        document::recipe_element,
+        sheet::{Sheet, Style},
+        text::outline_data,
+    },
 };
 
 /// A file on its way.
@@ -99,18 +102,7 @@ impl<'a> Writer<'a> {
     /// The shifts under which a box is seen: none, or on a torus one for every tile that it reaches into.
     pub(crate) fn shifts(&self, bounds: &Bounds<2>) -> Vec<Vector<2>> {
         let Domain::Torus(tile) = self.sheet.domain else { return vec![Vector::ZERO] };
-        if bounds.is_empty() {
-            return vec![Vector::ZERO];
-        }
-        let size = tile.size();
-        let range = |k: usize| {
-            let first = ((tile.min[k] - bounds.max[k]) / size[k]).ceil() as i64;
-            let last = ((tile.max[k] - bounds.min[k]) / size[k]).floor() as i64;
-            first..=last
-        };
-        let mut shifts: Vec<_> = range(1).flat_map(|y| range(0).map(move |x| (x, y))).collect();
-        shifts.sort_by_key(|&(x, y)| (x != 0 || y != 0, y, x));
-        shifts.into_iter().map(|(x, y)| Vector::xy(x as f64 * size[0], y as f64 * size[1])).collect()
+        shifts(bounds, tile)
     }
 
     /// Whether a placement stands in the file already.

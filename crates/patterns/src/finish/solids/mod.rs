@@ -40,7 +40,7 @@ pub(crate) fn take_apart<const D: usize>(
     let mut things = Things::new(placements, exemplar, library, extent, &allowed);
     let any = Numbered::filled(f64::INFINITY, library.classes());
     let mended = things
-        .thin(&any, SLACK, &budget)
+        .thin(&any, (SLACK, BENT), &budget)
         .and_then(|()| things.relax(&budget))
         .and_then(|()| things.thin(&any, (SLACK, BENT), &budget));
     *placements = things.into_placements();

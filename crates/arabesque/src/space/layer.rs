@@ -10,7 +10,7 @@ use arabesque_core::{
 use arabesque_patterns::{Params, Prepared as Engine, Regular, repeat::Extent};
 use arabesque_surface::{Axes, Closest, SurfaceLattice};
 
-use crate::space::place::Shell;
+use crate::space::shell::Shell;
 
 const SOURCES: Stage = Stage::new(462);
 

@@ -17,7 +17,9 @@ mod place;
 mod scene;
 #[cfg(test)]
 mod scene_tests;
+mod shell;
 mod skinned;
+mod suiting;
 
 use std::sync::Arc;
 
@@ -43,8 +45,9 @@ use layer::{Layer, layer};
 use made::VolumeMade;
 use physics::Physical;
 use pile::Pile;
-use place::{Filling, Shell, place};
+use place::{Filling, place};
 use scene::Bodies;
+use shell::Shell;
 
 /// An exemplar in space, analysed.
 #[derive(Debug)]
@@ -315,7 +318,7 @@ mod tests {
             run(&Recipe::new(Input::file("salt.csv").embedding(lattice().as_bytes()), space)).unwrap_err().to_string()
         };
         assert!(with(|s| s.scale = Some(FieldSource::Constant(-1.0))).contains("a factor between"));
-        assert!(with(|s| s.density = Some(FieldSource::parse("a.png").unwrap())).contains("from a picture, in space"));
+        assert!(with(|s| s.density = Some(FieldSource::parse("a.png").unwrap())).contains("no such file"));
         assert!(with(|s| s.border = Some(Border::Turn)).contains("no line along the border"));
         assert!(with(|s| s.cuboid = Some("1e8x1e8x1e8".parse().unwrap())).contains("over the limit"));
         assert!(with(|s| s.cuboid = Some("0.1x0.1x0.1".parse().unwrap())).contains("no room"));

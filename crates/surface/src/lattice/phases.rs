@@ -4,7 +4,7 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 
 use arabesque_core::{Budget, Result, Stage, Stream, Vector};
 
-use super::{Cell, Link};
+use super::{cell::Cell, links::Link};
 
 const BEGIN: Stage = Stage::new(461);
 

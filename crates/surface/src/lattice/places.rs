@@ -2,7 +2,7 @@
 
 use arabesque_core::{Budget, Domain, GridIndex, Result, Vector};
 
-use super::{Axes, SurfaceLattice};
+use super::{laid::SurfaceLattice, links::Axes};
 use crate::mesh::{Closest, MeshIndex};
 
 /// Points tell of a node that is nearer than so many spacings.

@@ -114,6 +114,6 @@ mod tests {
         assert!(rotation.apply(Vector([0.0, 1.0, 0.0]))[1] > 0.98);
         let z_up = upright(along, Vector([0.0, 0.0, 1.0]));
         assert!(z_up.apply(Vector([0.0, 0.0, 1.0]))[2] > 0.0);
-        assert!((z_up.determinant() - 1.0).abs() < 1e-9);
+        assert!((Vector(z_up.0[0]).cross(Vector(z_up.0[1])).dot(Vector(z_up.0[2])) - 1.0).abs() < 1e-9);
     }
 }

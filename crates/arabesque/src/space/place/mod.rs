@@ -4,7 +4,6 @@ mod fields;
 mod floor;
 mod inside;
 mod masked;
-mod shell;
 mod tube;
 
 use std::sync::Arc;
@@ -17,14 +16,16 @@ use arabesque_surface::DirectionField;
 use crate::{
     method::RunContext,
     recipe::{Direction, FieldSource, Input, Space},
-    space::layer::Layer,
+    space::{
+        layer::Layer,
+        shell::{Lying, Shell},
+        suiting::suiting,
+    },
     structure::{directions, filled, lines, surface},
 };
 use floor::Floor;
 use inside::Inside;
 use masked::Masked;
-use shell::Lying;
-pub(super) use shell::Shell;
 use tube::Tube;
 
 /// A place in space, with its fields.
@@ -112,7 +113,7 @@ fn on_mesh(job: &mut Space, filling: Filling<'_>, turned: f64, context: &mut Run
     let lying = Lying { turned, heights, across, under };
     let index = Arc::new(surface(input, context)?);
     let shell = match layer.filter(|layer| layer.repeats() && direction.is_none()) {
-        Some(layer) => Shell::suiting(&index, lying, (layer, up, scale), context.budget())?,
+        Some(layer) => suiting(&index, lying, (layer, up, scale), context.budget())?,
         None if across != up && direction.is_none() => {
             let mut level = Some(Direction::Towards([1, 2, 3].map(|k| if k == up + 1 { 1.0 } else { 0.0 })));
             let field = DirectionField::new(&index, &directions(&mut level, context)?, context.budget())?;

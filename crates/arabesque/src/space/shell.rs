@@ -2,25 +2,20 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Budget, Ground, Matrix, Region, Result, Rotations, Vector};
-use arabesque_surface::{Bend, Closest, DirectionField, Directions, MeshIndex};
-
-use crate::space::layer::Layer;
-
-/// A lattice that breaks in less than this share of the places in which the usual one breaks is better.
-const BETTER: f64 = 0.85;
+use arabesque_core::{Bounds, Ground, Matrix, Region, Rotations, Vector};
+use arabesque_surface::{Closest, DirectionField, MeshIndex};
 
 /// A layer on a mesh: what lies between two heights over it.
 #[derive(Debug)]
-pub(in crate::space) struct Shell {
-    pub(in crate::space) index: Arc<MeshIndex>,
+pub(super) struct Shell {
+    pub(super) index: Arc<MeshIndex>,
     field: DirectionField,
     /// Radians by which the pattern is turned about the normal.
     turned: f64,
     heights: [f64; 2],
     /// The axis of the exemplar that runs along the normal, and what lies on the mesh along it.
     across: usize,
-    pub(in crate::space) under: f64,
+    pub(super) under: f64,
 }
 
 /// How the exemplar lies over a mesh.
@@ -33,43 +28,14 @@ pub(super) struct Lying {
     pub(super) under: f64,
 }
 
-/// A direction along a mesh, and the degrees by which the pattern is turned from it.
-type Way = (Directions, f64);
-
 impl Shell {
     pub(super) fn new(index: &Arc<MeshIndex>, field: DirectionField, lying: Lying) -> Self {
         let Lying { turned, heights, across, under } = lying;
         Self { index: Arc::clone(index), field, turned: turned.to_radians(), heights, across, under }
     }
 
-    /// The layer in which the lattice of a drawing breaks least, where nobody says which way it runs: level, along the longest side, or as the
-    /// mesh bends.
-    pub(super) fn suiting(
-        index: &Arc<MeshIndex>,
-        lying: Lying,
-        (layer, up, scale): (&Layer, usize, f64),
-        budget: &Budget,
-    ) -> Result<Self> {
-        let mut best: Option<(f64, Self)> = None;
-        for (directions, more) in ways(&index.bounds(), up) {
-            let field = DirectionField::new(index, &directions, budget)?;
-            let shell = Self::new(index, field, Lying { turned: lying.turned + more, ..lying });
-            let broken = layer.broken(&shell, scale, budget)?;
-            // What is named first is usual, and stays unless another one is clearly better.
-            if best.as_ref().is_none_or(|(least, _)| broken < BETTER * least - 1e-3) {
-                best = Some((broken, shell));
-            }
-        }
-        match best {
-            Some((_, shell)) => Ok(shell),
-            None => {
-                Ok(Self::new(index, DirectionField::new(index, &Directions::Curvature(Bend::Least), budget)?, lying))
-            }
-        }
-    }
-
     /// The rotation of the exemplar at a point of the mesh.
-    pub(in crate::space) fn rotation(&self, at: &Closest) -> Matrix<3> {
+    pub(super) fn rotation(&self, at: &Closest) -> Matrix<3> {
         let frame = self.field.frame(&self.index, at);
         let (sin, cos) = self.turned.sin_cos();
         let (first, normal) = (frame.tangent * cos + frame.bitangent() * sin, frame.normal);
@@ -131,17 +97,4 @@ impl Rotations<3> for Shell {
     fn at(&self, p: Vector<3>) -> Matrix<3> {
         self.rotation(&self.index.closest(p))
     }
-}
-
-/// Which way a pattern may run, the usual way first.
-fn ways(bounds: &Bounds<3>, up: usize) -> [Way; 4] {
-    let size = bounds.size();
-    let longest = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
-    let axis = |k: usize| Directions::Constant(Vector(std::array::from_fn(|r| if r == k { 1.0 } else { 0.0 })));
-    [
-        (axis(up), -90.0),
-        (axis(longest), 0.0),
-        (Directions::Curvature(Bend::Least), 0.0),
-        (Directions::Curvature(Bend::Most), 0.0),
-    ]
 }

@@ -1,0 +1,53 @@
+//! Neighbours on a surface, and the way from one to the other.
+
+use arabesque_core::{Budget, Domain, GridIndex, Result, Vector};
+
+/// Neighbours lie within so many spacings; normals that differ by more than this cosine are of another side.
+pub(super) const REACH: f64 = 2.0;
+const SAME_SIDE: f64 = 0.3;
+
+/// Axes that differ by more than this cosine meet in a seam.
+const SAME_WAY: f64 = 0.5;
+
+/// The two axes of a pattern at a point of a surface, of length 1.
+pub type Axes = [Vector<3>; 2];
+
+/// Ways along which phases are compared.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    pub(super) to: u32,
+    /// From the one to the other, in the axes of the pattern.
+    pub(super) way: Vector<2>,
+}
+
+/// The neighbours of each point.
+pub(super) fn links(
+    (points, normals, axes): (&[Vector<3>], &[Vector<3>], &[Axes]),
+    reach: f64,
+    budget: &Budget,
+) -> Result<Vec<Vec<Link>>> {
+    let bounds = arabesque_core::Bounds::around(points.iter().copied());
+    let near = GridIndex::new(points, reach, &Domain::Box(bounds.grown(reach)));
+    let mut meter = budget.meter();
+    let mut all = Vec::with_capacity(points.len());
+    for (i, &p) in points.iter().enumerate() {
+        let mut own = Vec::new();
+        let looked = near.within(p, reach, |j, _| {
+            let same = axes[i][0].dot(axes[j][0]) > SAME_WAY && axes[i][1].dot(axes[j][1]) > SAME_WAY;
+            if j != i && same && normals[i].dot(normals[j]) > SAME_SIDE {
+                own.push(Link { to: j as u32, way: way((p, axes[i]), (points[j], axes[j])) });
+            }
+        });
+        meter.spend(100 + 10 * looked)?;
+        own.sort_by_key(|link| link.to);
+        all.push(own);
+    }
+    Ok(all)
+}
+
+/// From one point to another in the axes of the pattern, as long as it is in space.
+fn way((p, own): (Vector<3>, Axes), (q, its): (Vector<3>, Axes)) -> Vector<2> {
+    let apart = q - p;
+    let seen = Vector([0, 1].map(|k| 0.5 * (apart.dot(own[k]) + apart.dot(its[k]))));
+    seen.unit_or_zero() * apart.norm()
+}

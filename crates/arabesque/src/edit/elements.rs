@@ -39,7 +39,7 @@ impl Elements {
         budget: &Budget,
     ) -> Result<Self> {
         let is_tile = recipe.is_some_and(is_tile);
-        let text = || file::decode_text(name, bytes, budget).map(String::from);
+        let text = || file::decode_text(name, bytes, budget);
         match format {
             Format::Svg => Ok(Self::Plane(Box::new(SvgElements::open(name, text()?, is_tile, budget)?))),
             Format::Csv => {

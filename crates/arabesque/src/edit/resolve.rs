@@ -9,6 +9,9 @@ use arabesque_patterns::alike::{Places, Spot, Turned};
 use super::nearest::{Nearest, domain};
 use crate::recipe::Edit;
 
+/// Units of work for a place where an element is inserted.
+const PER_PLACE: u64 = 2000;
+
 /// What an edit comes to.
 #[derive(Clone, Debug)]
 pub(super) struct Resolved<const D: usize> {
@@ -225,6 +228,9 @@ impl<const D: usize> Resolving<'_, D> {
                     }
                 }
             }
+            self.budget.spend(PER_PLACE.saturating_mul(places.len() as u64))?;
+            let count = self.layout.items.len() + inserted.len() + places.len();
+            self.budget.within("elements after inserting", count, ("elements", self.budget.limits().elements))?;
             for (there, rotation, ratio, distance) in places {
                 let motion = about(like.centre, there, rotation, ratio);
                 inserted.push((next, Replaced { base: like.id, motion, paint: Vec::<Paint>::new() }));

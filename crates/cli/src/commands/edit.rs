@@ -236,7 +236,7 @@ impl Edit {
         if self.tell.talk.json {
             return summary::print(&Told { changed: Some(&proposal.changed), ..self.head(session, start) });
         }
-        if self.preview && !piped {
+        if self.preview && !piped && level > Level::Quiet {
             let mut out = standard::output()?;
             for change in &proposal.changed {
                 writeln!(out, "  {}", line(change))?;

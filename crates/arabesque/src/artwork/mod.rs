@@ -16,7 +16,7 @@ use std::sync::Arc;
 use arabesque_core::{Budget, EnergyPoint, Result, StopReason, Warning};
 
 use crate::{
-    edit::{EditSession, Replayed, replay, to_geometry, to_points},
+    edit::{Replayed, replay, to_geometry, to_points},
     recipe::{Format, OutputOptions, Recipe},
     resources::Resources,
 };
@@ -71,15 +71,9 @@ impl Artwork {
         Sheet { format, output, ran: &self.origin.recipe.output, recipe, budget }
     }
 
-    /// The artwork as a file that can be edited, written as `output` says; the edits end in the recipe of that file. `resources` say within
-    /// which limits.
-    ///
-    /// # Errors
-    /// Those of [`Artwork::encode`] and of [`EditSession::open`].
-    pub fn edit(&self, output: &OutputOptions, resources: &Resources) -> Result<EditSession> {
-        let format = output.format.unwrap_or_else(|| self.origin.recipe.usual_format());
-        let encoded = self.encode(&OutputOptions { format: Some(format), ..output.clone() })?;
-        EditSession::open(&format!("result.{}", format.name()), encoded.bytes, resources)
+    /// The format of its file where nobody says which.
+    pub(crate) fn usual_format(&self) -> Format {
+        self.origin.recipe.usual_format()
     }
 
     /// Seed of the run.

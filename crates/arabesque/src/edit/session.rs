@@ -9,9 +9,9 @@ use super::{
     resolve::{Resolved, resolve},
 };
 use crate::{
-    artwork::Sheet,
+    artwork::{Artwork, Sheet},
     plane::drawn,
-    recipe::{Edit, Format, Recipe, carried_recipe},
+    recipe::{Edit, Format, OutputOptions, Recipe, carried_recipe},
     resources::Resources,
 };
 
@@ -287,5 +287,18 @@ fn format_of(name: &str, bytes: &[u8]) -> Format {
         [b'{', ..] => Format::Json,
         [b'x', b',', ..] => Format::Csv,
         _ => by_name.unwrap_or(Format::Toml),
+    }
+}
+
+impl Artwork {
+    /// The artwork as a file that can be edited, written as `output` says; the edits end in the recipe of that file. `resources` say within
+    /// which limits.
+    ///
+    /// # Errors
+    /// Those of [`Artwork::encode`] and of [`EditSession::open`].
+    pub fn edit(&self, output: &OutputOptions, resources: &Resources) -> Result<EditSession> {
+        let format = output.format.unwrap_or_else(|| self.usual_format());
+        let encoded = self.encode(&OutputOptions { format: Some(format), ..output.clone() })?;
+        EditSession::open(&format!("result.{}", format.name()), encoded.bytes, resources)
     }
 }

@@ -18,7 +18,6 @@ use arabesque_core::{Budget, EnergyPoint, Result, StopReason, Warning};
 use crate::{
     edit::{Replayed, replay, to_geometry, to_points},
     recipe::{Format, OutputOptions, Recipe},
-    resources::Resources,
 };
 
 /// What a run made, or has made so far: a drawing, a file, numbers, bare geometry.

@@ -228,3 +228,52 @@ fn a_wave_of_one_width_is_a_stroke() {
     let short = wave(2).replace("M-10", "M5").replace(&top, "q10 -8 20 0").replace(&back, "q-10 -8 -20 0");
     assert_eq!(counts(&read(&format!("{short}{}", at_places("<circle r='4'/>")))), (10, 0));
 }
+
+/// Groups of `each` in seven rows over the page, moved along by what `off` says.
+fn in_rows(each: &str, off: impl Fn(usize) -> f64) -> String {
+    (0..7).map(|k| format!("<g transform='translate({} {})'>{each}</g>", off(k), 15 * k)).collect()
+}
+
+/// Copies of one thing, `step` apart.
+fn in_a_row(one: &str, count: usize, step: usize) -> String {
+    (0..count).map(|k| format!("<g transform='translate({} 0)'>{one}</g>", k * step)).collect()
+}
+
+const BRICK: &str = "<rect width='18' height='13' fill='#a54'/>";
+const FLOWER: &str = "<ellipse cx='6' cy='3' rx='3' ry='2' fill='#d35'/><ellipse cx='3' cy='6' rx='2' ry='3' fill='#d35'/>\
+     <ellipse cx='9' cy='6' rx='2' ry='3' fill='#d35'/><circle cx='6' cy='6' r='2' fill='#fc0'/>";
+
+#[test]
+fn rows_that_were_saved_as_groups_are_things_each() {
+    let wall = in_rows(&in_a_row(BRICK, 7, 20), |k| if k % 2 == 0 { -5.0 } else { -15.0 });
+    let bricks = counts(&read(&wall));
+    assert!(bricks.0 > 35 && bricks.1 == 0, "{bricks:?}");
+    assert_eq!(counts(&read_with(&wall, Method::Elements).unwrap()), bricks);
+    let course = format!("<defs><g id='course'>{}</g></defs>", in_a_row(BRICK, 7, 20));
+    let uses: String =
+        (0..7).map(|k| format!("<use href='#course' x='{}' y='{}'/>", -5 - k % 2 * 10, 15 * k)).collect();
+    assert_eq!(counts(&read(&(course + &uses))), bricks);
+    let two = format!("<g>{0}</g><g transform='translate(-10 15)'>{0}</g>", in_a_row(BRICK, 7, 20));
+    let pairs: String = (0..4).map(|k| format!("<g transform='translate(-5 {})'>{two}</g>", 30 * k)).collect();
+    assert_eq!(counts(&read(&pairs)), bricks, "courses in pairs");
+    let flowers = counts(&read(&in_rows(&in_a_row(FLOWER, 5, 20), |_| 4.0)));
+    assert_eq!(flowers, (35, 0), "a flower of petals in a row of flowers is one thing");
+    let columns: String = in_rows(&in_a_row(BRICK, 7, 20), |_| -5.0);
+    let turned = format!("<g transform='matrix(0 1 1 0 0 0)'>{columns}</g>");
+    assert!(counts(&read(&turned)).0 > 35, "columns");
+}
+
+#[test]
+fn rows_that_are_things_stay_whole() {
+    let dashes = "<rect width='4' height='2' fill='#06c'/>";
+    assert_eq!(counts(&read(&at_places(&in_a_row(dashes, 3, 5)))), (9, 0), "small against the frame");
+    let rail = "<rect width='104' height='2' y='4' fill='#742'/>";
+    let fence = format!("{rail}{}", in_a_row("<rect width='3' height='11' fill='#953'/>", 13, 8));
+    assert_eq!(counts(&read_with(&in_rows(&fence, |_| -2.0), Method::Elements).unwrap()), (7, 0), "with a rail");
+    let letters = ["M0 0h3v8h-3z", "M12 0h9v3h-6v5h-3z", "M34 0h9l-4 8z", "M56 0q9 4 0 8z", "M80 0c9 0 9 8 0 8l-4-4z"];
+    let word: String = letters.iter().map(|d| format!("<path d='{d}' fill='#333'/>")).collect();
+    assert_eq!(counts(&read(&in_rows(&word, |_| 6.0))), (7, 0), "a word");
+    let alone = format!("<g transform='translate(5 40)'>{}</g>", in_a_row(BRICK, 5, 18));
+    let one = counts(&read(&(alone + &at_places("<circle r='3' fill='#36a'/>"))));
+    assert_eq!(one, (10, 0), "one of its kind, in the frame");
+}

@@ -3,8 +3,8 @@
 //! - Filled shapes, groups, `<use>` and filled pieces smaller than half of the frame are elements.
 //! - Strokes without a fill, each subpath by itself, are sorted by what they are joined to: a net that runs through, or
 //!   a thing of their own (`parts::components`). A stroke of no length is a dot.
-//! - Layers, groups that cover half of the frame, and groups of several things far apart are containers: their content
-//!   is looked at.
+//! - Layers, groups that cover half of the frame, groups of several things far apart, and rows of things across the frame
+//!   (`parts::rows`) are containers: their content is looked at.
 //! - A compound path is taken apart into connected pieces unless it is small and its pieces lie close together
 //!   (a paw print); pieces in the holes of another piece stay with it, and pieces of the same colour that abut are
 //!   joined again.
@@ -40,7 +40,7 @@ use crate::svg::{
         compound::Compound,
         item::{HALF, Item, Kind, Origin, Selection, size_of_fill},
         join::join,
-        parts::{alike::put_alike_together, components::sort_strokes, hidden::drop_hidden},
+        parts::{alike::put_alike_together, components::sort_strokes, hidden::drop_hidden, rows::rows},
         surroundings::Surroundings,
     },
 };
@@ -163,10 +163,12 @@ impl Selector<'_, '_, '_> {
         let layer = if node.meta.is_layer { name.map(|l| l.as_str().into()) } else { at.layer.clone() };
         let mark = node.meta.mark.or(at.mark);
         let inside = Surroundings { parent: world, layer, opacity, clip, mark, without: Rc::clone(&at.without) };
-        node.children().iter().try_for_each(|child| self.visit(child, &inside))
+        let rows = rows(node.children(), &inside, &self.frame, self.painter.source.budget)?;
+        node.children().iter().zip(rows).try_for_each(|(child, is_row)| self.visit(child, &inside, is_row))
     }
 
-    fn visit(&mut self, node: &Rc<Node>, at: &Surroundings) -> Result<()> {
+    /// Looks at one thing in a container, which may be a row of things.
+    fn visit(&mut self, node: &Rc<Node>, at: &Surroundings, is_row: bool) -> Result<()> {
         let meta = &node.meta;
         if matches!(meta.part, Some(part) if part != Part::Exemplar) || at.excludes(meta) {
             return Ok(());
@@ -191,7 +193,7 @@ impl Selector<'_, '_, '_> {
         if self.method == Method::Curves && is_all_strokes(node) {
             return self.open(node, at);
         }
-        if self.is_container(node, &extent, at)? {
+        if is_row || self.is_container(node, &extent, at)? {
             return self.open(node, at);
         }
         self.take(node, at, (Kind::Element, Origin::Whole, Reason::Group))

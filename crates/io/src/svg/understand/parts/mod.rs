@@ -12,4 +12,5 @@ pub(crate) mod groups;
 pub(crate) mod hand;
 pub(crate) mod hidden;
 pub(crate) mod outlined;
+pub(crate) mod rows;
 pub(crate) mod uncovered;

@@ -210,7 +210,7 @@ impl Finder<'_> {
             found = self.within_margins(&marks, mode, found)?;
         }
         let Some(mut found) = found else { return Ok(None) };
-        if mode.kinds == Kinds::Shapes && found.share < OF_SHAPES {
+        if mode.kinds == Kinds::Shapes && (found.share < OF_SHAPES || !self.says_all_of_places(mode, &found)?) {
             return Ok(None);
         }
         if mode.kinds == Kinds::Any && mode.anchor == Anchor::Centre {
@@ -236,6 +236,15 @@ impl Finder<'_> {
         }
         let is_by_hand = found.jitter > BY_HAND * marks.unit;
         Ok(Some(Found { repeat: found, is_by_hand }))
+    }
+
+    /// Whether the repeat of shapes goes in as many directions as that of places does.
+    fn says_all_of_places(&self, mode: Mode, found: &Repeat) -> Result<bool> {
+        if found.extent == Extent::Plane {
+            return Ok(true);
+        }
+        let places = self.by_offsets(Mode { kinds: Kinds::Any, ..mode })?;
+        Ok(places.is_none_or(|places| places.repeat.extent != Extent::Plane))
     }
 
     /// What repeats where it is drawn, with a margin around that says nothing.

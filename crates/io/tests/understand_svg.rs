@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use arabesque_core::{Error, Role, Vector};
-use arabesque_io::svg::{Drawing, Method, ReadOptions, Reason, Tiling, read_exemplar};
+use arabesque_io::svg::{Drawing, LargeFills, Method, ReadOptions, Reason, Tiling, read_exemplar};
 
 const NAMESPACES: &str = "xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
      xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'";
@@ -276,4 +276,32 @@ fn rows_that_are_things_stay_whole() {
     let alone = format!("<g transform='translate(5 40)'>{}</g>", in_a_row(BRICK, 5, 18));
     let one = counts(&read(&(alone + &at_places("<circle r='3' fill='#36a'/>"))));
     assert_eq!(one, (10, 0), "one of its kind, in the frame");
+}
+
+/// Rows of scallops down the page, each closed so far below its edge.
+fn scallops(depth: i32, colours: &[&str]) -> String {
+    let row = |k: i32| {
+        let (x, y, colour) =
+            (-43 - k.rem_euclid(2) * 10, 12 * k + 4, colours[k.rem_euclid(colours.len() as i32) as usize]);
+        let edge = "q10 -12 20 0".repeat(9);
+        format!("<path d='M{x} {y}{edge}v{depth}H{x}z' fill='{colour}' stroke='#135' stroke-width='1'/>")
+    };
+    (-2..11).map(row).collect()
+}
+
+#[test]
+fn of_rows_that_lie_on_the_last_only_what_shows_is_drawn() {
+    for colours in [&["#fff"][..], &["#8cf", "#48c"], &["#8cf", "#48c", "#fed"]] {
+        for depth in [20, 30, 200] {
+            let text = format!("<svg {NAMESPACES} width='100' height='100'>{}</svg>", scallops(depth, colours));
+            let options =
+                ReadOptions { large_fills: LargeFills::Areas, tiling: Tiling::Page, ..ReadOptions::new("t.svg") };
+            let drawing = read_exemplar(&text, &options).unwrap();
+            let curves = &drawing.exemplar.curves;
+            let heights = curves.iter().map(|curve| curve.path.bounds().size()[1]);
+            let flat = heights.filter(|height| *height < 0.5).count();
+            assert_eq!(flat, 0, "lower edges {depth} below, in {} colours, of {} curves", colours.len(), curves.len());
+            assert!((8..=15).contains(&curves.len()), "one edge of each row, the first in parts: {}", curves.len());
+        }
+    }
 }

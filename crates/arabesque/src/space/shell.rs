@@ -13,6 +13,8 @@ pub(super) struct Shell {
     /// Radians by which the pattern is turned about the normal.
     turned: f64,
     heights: [f64; 2],
+    /// Where elements may reach, where they have to lie in the layer wholly.
+    reach: [f64; 2],
     /// The axis of the exemplar that runs along the normal, and what lies on the mesh along it.
     across: usize,
     pub(super) under: f64,
@@ -24,14 +26,15 @@ pub(super) struct Lying {
     /// Degrees by which the pattern is turned about the normal.
     pub(super) turned: f64,
     pub(super) heights: [f64; 2],
+    pub(super) reach: [f64; 2],
     pub(super) across: usize,
     pub(super) under: f64,
 }
 
 impl Shell {
     pub(super) fn new(index: &Arc<MeshIndex>, field: DirectionField, lying: Lying) -> Self {
-        let Lying { turned, heights, across, under } = lying;
-        Self { index: Arc::clone(index), field, turned: turned.to_radians(), heights, across, under }
+        let Lying { turned, heights, reach, across, under } = lying;
+        Self { index: Arc::clone(index), field, turned: turned.to_radians(), heights, reach, across, under }
     }
 
     /// The rotation of the exemplar at a point of the mesh.
@@ -58,7 +61,7 @@ impl Shell {
 
 impl Region<3> for Shell {
     fn bounds(&self) -> Bounds<3> {
-        self.index.bounds().grown(self.heights[0].abs().max(self.heights[1].abs()))
+        self.index.bounds().grown(self.reach[0].abs().max(self.reach[1].abs()))
     }
 
     fn measure(&self) -> f64 {
@@ -70,13 +73,13 @@ impl Region<3> for Shell {
         // Beyond the edge of an open mesh the way to the foot leaves the normal.
         let away = p - foot.point;
         let beside = (away.norm2() - height * height).max(0.0).sqrt();
-        let within = (height - self.heights[0]).min(self.heights[1] - height);
+        let within = (height - self.reach[0]).min(self.reach[1] - height);
         if beside > 1e-6 * (1.0 + away.norm()) { within.min(-beside) } else { within }
     }
 
     fn nearest_boundary(&self, p: Vector<3>) -> Vector<3> {
         let (height, foot) = self.foot(p);
-        let [low, high] = self.heights;
+        let [low, high] = self.reach;
         let to = if height - low < high - height { low } else { high };
         foot.point + foot.normal * to
     }

@@ -37,10 +37,11 @@ const fn offsets(kinds: Kinds, anchor: Anchor, tolerance: f64, least: usize, see
 }
 
 /// The ways, in the order of how much they explain.
-const WAYS: [Way; 9] = [
+const WAYS: [Way; 10] = [
     offsets(Kinds::Looks, Anchor::Centre, EXACT, 3, FEW),
     Way::Rows(true),
     offsets(Kinds::Looks, Anchor::Centre, NEAR, 16, MANY),
+    offsets(Kinds::Shapes, Anchor::Centre, EXACT, 9, FEW),
     offsets(Kinds::Any, Anchor::Centre, EXACT, 9, FEW),
     offsets(Kinds::Any, Anchor::Box, EXACT, 9, FEW),
     Way::Rows(false),
@@ -62,6 +63,9 @@ const MANY_IN_CELL: f64 = 3.5;
 /// one that some marks keep to by chance, with a smaller one in it, of at most this share of its cell.
 const BY_HAND: f64 = 0.002;
 const SMALLER: f64 = 0.7;
+
+/// Share of the places at which the shapes come again, at least: with fewer, shapes differ by hand.
+const OF_SHAPES: f64 = 0.97;
 
 /// Elements that take one another's places where they lie about where they should differ by less than this in size.
 const OF_A_SIZE: f64 = 4.0;
@@ -195,7 +199,7 @@ impl Finder<'_> {
         if marks.all.len() < mode.least {
             return Ok(None);
         }
-        let order = self.stacking.filter(|_| mode.kinds != Kinds::Any);
+        let order = self.stacking.filter(|_| !mode.kinds.is_of_places());
         let search = Search { marks: &marks, lines: self.index, order, mode, side: exemplar.view().side(), budget };
         let mut found = search.lattice()?;
         let search = Search { order: None, ..search };
@@ -206,6 +210,9 @@ impl Finder<'_> {
             found = self.within_margins(&marks, mode, found)?;
         }
         let Some(mut found) = found else { return Ok(None) };
+        if mode.kinds == Kinds::Shapes && (found.share < OF_SHAPES || !self.says_all_of_places(mode, &found)?) {
+            return Ok(None);
+        }
         if mode.kinds == Kinds::Any && mode.anchor == Anchor::Centre {
             // Different things are aligned by their boxes as often as by their centres.
             let by_box = Mode { anchor: Anchor::Box, ..mode };
@@ -223,11 +230,21 @@ impl Finder<'_> {
         if mode.tolerance <= EXACT && lines.is_empty() && marks_in(&marks, &found.lattice) >= MANY_IN_CELL {
             found = match mode.kinds {
                 Kinds::Any => self.of_single_places(found)?,
+                Kinds::Shapes => found,
                 Kinds::Looks | Kinds::Classes => self.but_for_odd_ones(&marks, found)?,
             };
         }
         let is_by_hand = found.jitter > BY_HAND * marks.unit;
         Ok(Some(Found { repeat: found, is_by_hand }))
+    }
+
+    /// Whether the repeat of shapes goes in as many directions as that of places does.
+    fn says_all_of_places(&self, mode: Mode, found: &Repeat) -> Result<bool> {
+        if found.extent == Extent::Plane {
+            return Ok(true);
+        }
+        let places = self.by_offsets(Mode { kinds: Kinds::Any, ..mode })?;
+        Ok(places.is_none_or(|places| places.repeat.extent != Extent::Plane))
     }
 
     /// What repeats where it is drawn, with a margin around that says nothing.

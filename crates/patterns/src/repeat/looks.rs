@@ -36,11 +36,29 @@ struct Look {
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
 pub(crate) fn looks(exemplar: &Exemplar<2>, alike: f64, budget: &Budget) -> Result<Option<Vec<u32>>> {
+    numbered(exemplar, alike, Look::of, budget)
+}
+
+/// Number of the shape of each element as it lies, whatever it is painted in; otherwise as [`looks`].
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn shapes(exemplar: &Exemplar<2>, alike: f64, budget: &Budget) -> Result<Option<Vec<u32>>> {
+    numbered(exemplar, alike, Look::of_shape, budget)
+}
+
+/// Number of what `look` sees of each element.
+fn numbered(
+    exemplar: &Exemplar<2>,
+    alike: f64,
+    look: fn(&Element<2>) -> Look,
+    budget: &Budget,
+) -> Result<Option<Vec<u32>>> {
     let mut known: Vec<Look> = Vec::new();
     let mut of = Vec::with_capacity(exemplar.elements.len());
     for element in &exemplar.elements {
         budget.spend(WORK.0 * element.outline.points().count() as u64)?;
-        let look = Look::of(element);
+        let look = look(element);
         // The latest looks first: rows of one kind are common. With very many looks, nothing repeats.
         budget.spend(WORK.1 * known.len() as u64)?;
         let number = known.iter().rposition(|other| look.is_like(other, alike));
@@ -74,6 +92,13 @@ impl Look {
             (numbers[at], numbers[at + 1]) = (LEAN * lean[0] / radius, LEAN * lean[1] / radius);
         }
         Self { class: element.class, radius, numbers }
+    }
+
+    /// What of its look is not paint. How a class is drawn is no part of that: what differs in colour alone is of two classes.
+    fn of_shape(element: &Element<2>) -> Self {
+        let mut look = Self { class: 0, ..Self::of(element) };
+        look.numbers[DIRECTIONS + 4..].fill(0.0);
+        look
     }
 
     fn is_like(&self, other: &Self, alike: f64) -> bool {
@@ -141,5 +166,21 @@ mod tests {
         let exemplar = Exemplar::new("t", elements, vec![Class { name: "arcs".into() }], window).unwrap();
         let of = looks(&exemplar, ALIKE, &Budget::default()).unwrap().unwrap();
         assert_eq!(of, vec![0, 1, 0, 1]);
+    }
+
+    #[test]
+    fn a_shape_is_known_in_any_paint() {
+        let painted = |k: usize| Element {
+            class: k,
+            colour: [0.3 * k as f64; 3],
+            ..arcs(Vector::xy(10.0 * k as f64, 0.0), k == 2)
+        };
+        let elements = (0..3).map(painted).collect();
+        let classes = ["red", "blue", "green"].map(|name| Class { name: name.into() }).to_vec();
+        let window = Bounds::new(Vector::ZERO, Vector::xy(30.0, 10.0));
+        let exemplar = Exemplar::new("t", elements, classes, window).unwrap();
+        let budget = Budget::default();
+        assert_eq!(looks(&exemplar, ALIKE, &budget).unwrap().unwrap(), vec![0, 1, 2]);
+        assert_eq!(shapes(&exemplar, ALIKE, &budget).unwrap().unwrap(), vec![0, 0, 1]);
     }
 }

@@ -17,8 +17,17 @@ pub(crate) enum Kinds {
     Looks,
     /// Those of one class.
     Classes,
+    /// Those of one shape as they lie, painted in whatever: what repeats are the places for each shape.
+    Shapes,
     /// All: what repeats are the places.
     Any,
+}
+
+impl Kinds {
+    /// Whether what repeats are places, with something at each that may differ.
+    pub(crate) fn is_of_places(self) -> bool {
+        matches!(self, Self::Shapes | Self::Any)
+    }
 }
 
 /// The point of an element that is compared.
@@ -54,6 +63,12 @@ pub(crate) struct Marks {
     index: GridIndex<2>,
 }
 
+/// Whether there are several shapes, and some of them in several looks; `looks`: none where there are too many.
+fn is_coarser(shapes: &[u32], looks: Option<&[u32]>) -> bool {
+    let count = |numbers: &[u32]| numbers.iter().max().map_or(0, |most| *most as usize + 1);
+    count(shapes) > 1 && looks.is_none_or(|looks| count(looks) > count(shapes))
+}
+
 /// The place of an element.
 pub(crate) fn place_of(element: &arabesque_core::Element<2>, anchor: Anchor) -> Vector<2> {
     match anchor {
@@ -63,7 +78,8 @@ pub(crate) fn place_of(element: &arabesque_core::Element<2>, anchor: Anchor) -> 
 }
 
 impl Marks {
-    /// The marks of an exemplar; `None` where elements of too many looks are to be told apart.
+    /// The marks of an exemplar; `None` where elements of too many looks are to be told apart, or shapes tell no more than looks
+    /// or places do.
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
@@ -79,6 +95,11 @@ impl Marks {
             Kinds::Looks => match &exact {
                 Some(looks) => looks.clone(),
                 None => return Ok(None),
+            },
+            Kinds::Shapes => match looks::shapes(exemplar, looks::ALIKE, budget)? {
+                // Of one shape they are places, and of shapes that are told by looks already, these have been tried.
+                Some(shapes) if is_coarser(&shapes, exact.as_deref()) => shapes,
+                _ => return Ok(None),
             },
             Kinds::Classes => exemplar.elements.iter().map(|e| e.class as u32).collect(),
             Kinds::Any => vec![0; exemplar.elements.len()],

@@ -1,6 +1,7 @@
 //! Tiles, bricks, hexagons and other elements on lattices: each at its place, of its kind, from any seed, without drift.
 
-use arabesque_core::{Bounds, Domain, Request, Vector};
+use arabesque_core::{Bounds, Domain, Exemplar, Outline, Request, Vector};
+use arabesque_patterns::repeat::Explains;
 
 use crate::{
     drawing::{Motif, Pattern, exemplar, noise, polygon, rectangle, xy},
@@ -182,4 +183,48 @@ fn cells_at_random_stay_on_their_lattice() {
         let turned: std::collections::BTreeSet<_> = outcome.placements.iter().map(|p| p.source).collect();
         assert!(turned.len() > 4, "{turned:?}");
     }
+}
+
+/// Planks at the places of a grid of 20 by 20, in four colours at random, each lying or standing and off its place by `hand`.
+fn planks(hand: f64, is_lying: impl Fn(i64, i64) -> bool) -> (Exemplar<2>, Bounds<2>) {
+    let window = Bounds::new(Vector::ZERO, xy(170.0, 150.0));
+    let plank = |(i, j): (i64, i64)| {
+        let half = if is_lying(i, j) { xy(9.0, 4.0) } else { xy(4.0, 9.0) };
+        let at = xy(20.0 * i as f64 + 5.0, 20.0 * j as f64 + 5.0) + xy(noise(i, j, 3), noise(i, j, 4)) * hand;
+        (Outline { rings: vec![rectangle(at - half, at + half)] }, ((noise(i, j, 8) + 1.0) * 1.999) as usize)
+    };
+    let all: Vec<_> = (-1..10).flat_map(|i| (-1..9).map(move |j| (i, j))).map(plank).collect();
+    let seen: Vec<_> = all.into_iter().filter(|(outline, _)| outline.bounds().intersects(&window)).collect();
+    (exemplar(&seen, &[], window), window)
+}
+
+#[test]
+fn planks_laid_two_ways_keep_to_them_in_any_colours() {
+    for hand in [0.0, 0.6] {
+        let (exemplar, window) = planks(hand, |i, j| (i + j) % 2 == 0);
+        let prepared = prepared(&exemplar, "planks");
+        let repeat = prepared.repeat().unwrap();
+        assert_eq!(repeat.explains, Explains::Places, "{hand}");
+        assert!((repeat.lattice.cell() / 800.0 - 1.0).abs() < 0.02, "{hand}: {:?}", repeat.lattice);
+        let page = page(300.0, 260.0);
+        for seed in 0..3 {
+            let outcome = run(&prepared, &Request { seed, ..Request::new(Domain::Box(page)) });
+            for placement in &outcome.placements {
+                let element = &exemplar.elements[placement.source];
+                let size = element.outline.bounds().size();
+                let at = placement.transform.apply(element.centre) + window.min;
+                let [i, j] = [0, 1].map(|k| ((at[k] - page.min[k] - 5.0) / 20.0).round() as i64);
+                assert_eq!(size[0] > size[1], (i + j) % 2 == 0, "{hand}, seed {seed}: {at:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn planks_turned_at_random_keep_to_places_alone() {
+    let (exemplar, _) = planks(0.0, |i, j| noise(i, j, 5) > 0.0);
+    let prepared = prepared(&exemplar, "planks");
+    let repeat = prepared.repeat().unwrap();
+    assert_eq!(repeat.explains, Explains::Places);
+    assert!((repeat.lattice.cell() / 400.0 - 1.0).abs() < 1e-6, "{:?}", repeat.lattice);
 }

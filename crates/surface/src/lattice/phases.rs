@@ -8,8 +8,8 @@ use super::{cell::Cell, links::Link};
 
 const BEGIN: Stage = Stage::new(461);
 
-/// How often phases are evened out, and work for a link.
-const SWEEPS: usize = 80;
+/// How often phases are evened out, with changes that go too far first and with those that are wanted at the end, and work for a link.
+const SWEEPS: [(usize, f64); 2] = [(240, 1.75), (20, 1.0)];
 const LINK: u64 = 12;
 /// Sweeps end when no phase changes by more than this share of the shorter vector.
 const STILL: f64 = 1e-5;
@@ -18,12 +18,12 @@ const STILL: f64 = 1e-5;
 pub(super) fn phases(links: &[Vec<Link>], cell: &Cell, seed: u64, budget: &Budget) -> Result<Vec<Vector<2>>> {
     let mut phases = spread(links, cell, seed, budget)?;
     let count: u64 = links.iter().map(|own| own.len() as u64).sum();
-    for _ in 0..SWEEPS {
+    for rate in SWEEPS.into_iter().flat_map(|(count, rate)| std::iter::repeat_n(rate, count)) {
         budget.spend(LINK * count)?;
         let mut most = 0.0_f64;
         for (i, own) in links.iter().enumerate() {
             let Some(change) = mean_change(phases[i], own, |j| Some(phases[j]), cell) else { continue };
-            phases[i] += change;
+            phases[i] += change * rate;
             most = most.max(change.norm());
         }
         if most < STILL * cell.shorter {

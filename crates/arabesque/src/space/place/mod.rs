@@ -9,7 +9,7 @@ mod tube;
 use std::sync::Arc;
 
 use arabesque_core::{
-    Domain, Error, Exemplar, Fields, Ground, Matrix, OrientationField, Result, Rotations, ScalarField, Vector,
+    Border, Domain, Error, Exemplar, Fields, Ground, Matrix, OrientationField, Result, Rotations, ScalarField, Vector,
 };
 use arabesque_surface::DirectionField;
 
@@ -94,10 +94,14 @@ fn bare(job: &mut Space, filling: Filling<'_>, context: &mut RunContext<'_>) -> 
     }
 }
 
+/// Flat elements on a bent mesh may reach out of their layer by this share of its thickness.
+const BENT: f64 = 0.3;
+
 /// A layer on a mesh.
 fn on_mesh(job: &mut Space, filling: Filling<'_>, turned: f64, context: &mut RunContext<'_>) -> Result<Place> {
     let Filling { exemplar, floor, layer } = filling;
     let up = job.up.axis();
+    let border = job.border;
     let Space { on: Some(input), direction, scale, .. } = job else {
         return Err(Error::parameter("place", "none", "a mesh"));
     };
@@ -108,9 +112,16 @@ fn on_mesh(job: &mut Space, filling: Filling<'_>, turned: f64, context: &mut Run
     // A wall stands on the floor, but lies on a mesh: its rows run level.
     let across = layer.map_or(up, |layer| layer.across);
     let ends = exemplar.elements.iter().flat_map(|e| e.outline.points()).map(|p| p[across]);
-    let under = floor.filter(|_| across == up).unwrap_or_else(|| ends.fold(f64::INFINITY, f64::min));
+    let (low, high) = ends.fold((f64::MAX, f64::MIN), |(low, high), h| (low.min(h), high.max(h)));
+    let under = floor.filter(|_| across == up).unwrap_or(low);
     let heights = [exemplar.window.min[across], exemplar.window.max[across]].map(|h| (h - under) * scale);
-    let lying = Lying { turned, heights, across, under };
+    // Whole elements reach farther than their centres, and on a bent mesh farther than on a flat one.
+    let slack = BENT * (high - low);
+    let reach = match border {
+        Some(Border::Inside) => [(low - under - slack) * scale, (high - under + slack) * scale],
+        _ => heights,
+    };
+    let lying = Lying { turned, heights, reach, across, under };
     let index = Arc::new(surface(input, context)?);
     let shell = match layer.filter(|layer| layer.repeats() && direction.is_none()) {
         Some(layer) => suiting(&index, lying, (layer, up, scale), context.budget())?,

@@ -43,6 +43,13 @@ impl Sublattice {
         self.odd.len() as f64 <= (1.0 - RIGHT) * self.places.len() as f64
     }
 
+    /// Whether another one has all its nodes.
+    pub(crate) fn is_within(&self, other: &Self) -> bool {
+        // Vectors are (wide, 0) and (slant, high).
+        let [[wide, _], [slant, high]] = other.vectors;
+        self.vectors.iter().all(|[x, y]| y % high == 0 && (x - y / high * slant) % wide == 0)
+    }
+
     /// Whether all nodes are one place of its cell.
     pub(crate) fn is_of_all(&self) -> bool {
         self.vectors == [[1, 0], [0, 1]]

@@ -7,7 +7,7 @@ use arabesque_core::{Budget, Exemplar, Result, Vector};
 use crate::repeat::{
     description::{Explains, Extent, Repeat},
     lattice::{Lattice, Node},
-    looks::{ALIKE, ALIKE_BY_HAND, looks},
+    looks::{ALIKE, ALIKE_BY_HAND, looks, shapes},
     marks::{Anchor, place_of},
     near::{
         kinds::{self, Sublattice},
@@ -55,6 +55,10 @@ pub(crate) fn near(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Nea
             of_some = Some(sublattice);
         }
     }
+    // Planks laid two ways in any colours: what lies where is said but for the paint.
+    if let Some(sublattice) = rows.of_shapes(of_some.as_ref(), budget)? {
+        of_some = Some(sublattice);
+    }
     // What lies where is said in part: that there are crosses between suns, but not which suns.
     if let Some(repeat) = of_some.and_then(|sublattice| rows.of_kinds(&sublattice)) {
         let repeat = Repeat { explains: Explains::Places, share: rows.nodes.taken, ..repeat };
@@ -72,6 +76,19 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
+    /// The lattice of shapes, where it says where each lies; `None` where all nodes are one place, or another lattice that is
+    /// `known` says as much and more.
+    fn of_shapes(&self, known: Option<&Sublattice>, budget: &Budget) -> Result<Option<Sublattice>> {
+        for alike in [ALIKE, ALIKE_BY_HAND] {
+            let Some(shapes) = shapes(self.exemplar, alike, budget)? else { continue };
+            let sublattice = kinds::sublattice(&self.nodes, &shapes, budget)?;
+            if sublattice.says_all() && !sublattice.is_of_all() {
+                return Ok(Some(sublattice).filter(|found| !known.is_some_and(|known| known.is_within(found))));
+            }
+        }
+        Ok(None)
+    }
+
     /// The repeat of kinds, its vectors fitted to each place in its cell by itself: where these lie in the cell is part of the
     /// pattern.
     fn of_kinds(&self, kinds: &Sublattice) -> Option<Repeat> {

@@ -233,7 +233,7 @@ impl Search<'_> {
         }
         let Some(fit) = fit else { return Ok(None) };
         let shorter = lattice.shorter();
-        let explains = if self.mode.kinds == Kinds::Any { Explains::Places } else { Explains::Everything };
+        let explains = if self.mode.kinds.is_of_places() { Explains::Places } else { Explains::Everything };
         // Where marks lie about where they should, a cell of many of them is a chance to find all at once.
         let in_cell = marks_in(self.marks, &lattice);
         let sound = fit.jitter <= JITTER * shorter && (self.mode.tolerance <= EXACT || in_cell <= FEW_IN_CELL);

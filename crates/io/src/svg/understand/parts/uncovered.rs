@@ -1,5 +1,5 @@
-//! Stacks: fills painted over one another that are each closed beyond the page, such as waves down to the bottom of the
-//! sea. What is seen of each is the band between its edge and that of the next.
+//! Stacks: fills painted over one another, each closed beyond the page, such as waves down to the bottom of the sea, or below
+//! the next ones, such as rows of scallops. What is seen of each is the band between its edge and that of the next.
 
 use std::rc::Rc;
 
@@ -17,7 +17,7 @@ use crate::svg::{
 const FEWEST: usize = 3;
 
 /// Share of a fill that lies over the one before it in a stack, and of all of them for which that holds.
-const OVER: (f64, f64) = (0.9, 0.8);
+const OVER: (f64, f64) = (0.2, 0.8);
 
 /// Share of the frame above the first fill of a stack that may be left out of the frame, and below which it is nothing.
 const BARE: (f64, f64) = (0.5, 1e-5);

@@ -64,7 +64,8 @@ impl<const D: usize> Softness<D> {
         params: &Params,
         budget: &arabesque_core::Budget,
     ) -> Result<Option<Self>> {
-        if exemplar.softs.len() != exemplar.elements.len() || exemplar.softs.iter().any(|s| s.samples.is_empty()) {
+        let is_soft = !exemplar.softs.is_empty() && exemplar.softs.len() == exemplar.elements.len();
+        if !is_soft || exemplar.softs.iter().any(|s| s.samples.is_empty()) {
             return Ok(None);
         }
         let budget = &budget.stage("analysing the exemplar");

@@ -27,12 +27,15 @@ const SPANS: f64 = 0.1;
 const LOOK: u64 = 120;
 const PLACE: u64 = 600;
 
+/// A place of the cell: where it is at the node at the origin, and the elements that show it.
+type Place = (Vector<3>, Vec<usize>);
+
 /// A pile on a lattice.
 #[derive(Clone, Debug)]
 pub(super) struct Pile {
     vectors: [Vector<3>; 3],
-    /// For each place of the cell the elements that lie there, and where: at the node at the origin.
-    places: Vec<(Vector<3>, Vec<usize>)>,
+    /// What lies in a cell.
+    places: Vec<Place>,
 }
 
 impl Pile {
@@ -242,7 +245,7 @@ fn places(
     kinds: &[usize],
     vectors: &[Vector<3>; 3],
     budget: &Budget,
-) -> Result<Option<Vec<(Vector<3>, Vec<usize>)>>> {
+) -> Result<Option<Vec<Place>>> {
     let shortest = vectors.iter().map(|v| v.norm()).fold(f64::INFINITY, f64::min);
     let mut groups: BTreeMap<usize, Vec<(Vector<3>, Vec<usize>, Vector<3>)>> = BTreeMap::new();
     let mut number = 0;

@@ -324,8 +324,8 @@ mod tests {
             (0..=12).map(|k| (f64::from(k) / 12.0 * TAU / 2.0).sin_cos()).map(|(s, c)| (-c, s.max(0.02))).collect();
         assert!(found(&turned_on_a_lathe(&profile, 20)).is_round);
         let mut odd = block([4.0, 2.0, 1.0]);
-        odd.positions[7] = odd.positions[7] + Vector([1.5, 0.7, 0.5]);
-        odd.positions[1] = odd.positions[1] + Vector([0.8, 0.0, -0.6]);
+        odd.positions[7] += Vector([1.5, 0.7, 0.5]);
+        odd.positions[1] += Vector([0.8, 0.0, -0.6]);
         assert_eq!(found(&odd), Symmetry::default());
     }
 

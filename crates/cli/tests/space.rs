@@ -109,7 +109,7 @@ fn what_does_not_fit_space_is_told() {
         ("fill net.obj --box 5x5 -o a.obj", "three positive numbers"),
         ("fill net.obj --box 5x5x5 -o a.svg", "write obj"),
         ("fill leaves.svg --size 80x80 -o a.obj", "curves in space"),
-        ("fill net.obj --box 5x5x5 --avoid ring.svg -o a.obj", "avoid for a part of space"),
+        ("fill net.obj --box 5x5x5 --avoid ring.svg -o a.obj", "avoid for points and curves in space"),
         ("fill net.obj --box 5x5x5 --physics -o a.obj", "physics for anything but elements in space"),
         ("fill net.obj --box 5x5x5 --physics=0 -o a.obj", "from 1 to 100, or settle"),
         ("fill net.obj --box 5x5x5 --physics --gravity 0,-1 -o a.obj", "three numbers"),

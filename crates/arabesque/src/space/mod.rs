@@ -112,19 +112,12 @@ impl Volume {
             let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
             return Err(Error::parameter("border", "turn", expected));
         }
-        if self.bodies.is_none() && (space.place()? != "box" || !space.avoid.is_empty()) {
-            let what = "a place other than a box for points and curves in space";
-            return Err(Error::Unsupported { what: what.into(), advice: "give a scene of meshes, or a box".into() });
-        }
-        if !self.exemplar.softs.is_empty() {
-            let asked = [("physics", space.physics.is_some()), ("keep", space.keep.is_some())];
-            if let Some((name, _)) = asked.into_iter().find(|(_, is_given)| *is_given) {
-                let what = format!("{name} for a scene of which something bends");
-                return Err(Error::Unsupported {
-                    what,
-                    advice: "leave it out, or let nothing bend (--deform=off)".into(),
-                });
-            }
+        let is_elsewhere = space.place()? != "box";
+        if self.bodies.is_none() && (is_elsewhere || !space.avoid.is_empty()) {
+            let what = if is_elsewhere { "a place other than a box" } else { "avoid" };
+            let (what, advice) =
+                (format!("{what} for points and curves in space"), "give a scene of meshes, or a box alone");
+            return Err(Error::Unsupported { what, advice: advice.into() });
         }
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
         let filling = Filling { exemplar: &self.exemplar, floor, layer: self.layer.as_deref() };

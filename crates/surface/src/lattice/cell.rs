@@ -2,10 +2,14 @@
 
 use arabesque_core::{Error, Result, Vector};
 
+use super::links::Link;
+
 /// How much rather a row slips along its neighbour than leaves its line.
 const STIFF: f64 = 4.0;
 /// How little a neighbour in another row says of where things lie along a row.
 const SLIP: f64 = 0.05;
+/// What a neighbour says that does not agree at all.
+const FAINT: f64 = 1e-3;
 /// Vectors are shortened so often at most.
 const STEPS: usize = 64;
 
@@ -48,15 +52,21 @@ impl Cell {
         }
     }
 
-    /// By how much a neighbour would change a phase that is off by `off`, and with which weight along and across rows: `way` leads to it.
-    pub(super) fn change(&self, off: Vector<2>, way: Vector<2>) -> Change {
+    /// How far a link can be trusted: where nothing slips there is no way around a pole, and all links count alike.
+    pub(super) fn trust(&self, link: &Link) -> f64 {
+        if self.rows.is_some() { link.trust } else { 1.0 }
+    }
+
+    /// By how much a neighbour would change a phase that is off by `off`, and with which weight along and across rows.
+    pub(super) fn change(&self, off: Vector<2>, link: &Link) -> Change {
         let off = self.slipped(off);
         let agrees = 1.0 - (2.0 * self.share(off)).min(1.0);
-        let weight = agrees * agrees + 1e-3;
+        let weight = agrees * agrees + FAINT;
         let Some(rows) = self.rows else { return Change { off, weights: [weight; 2] } };
-        let along = way.cosine(rows).powi(4);
+        let weight = weight * self.trust(link);
+        let along = link.way.cosine(rows).powi(4);
         let across = off.dot(left(rows)) / self.spread(left(rows));
-        let in_line = (1.0 - (2.0 * across.abs()).min(1.0)).powi(2) + 1e-3;
+        let in_line = ((1.0 - (2.0 * across.abs()).min(1.0)).powi(2) + FAINT) * self.trust(link);
         Change { off, weights: [weight * (SLIP + along), in_line] }
     }
 
@@ -192,7 +202,7 @@ mod tests {
         assert!(whole.misfit(off, up) > 0.4);
         assert!(slipping.misfit(off, up) < 0.1);
         assert!(slipping.misfit(Vector([0.0, 0.5]), up) > 0.4);
-        let change = slipping.mean([slipping.change(off, up)].into_iter()).unwrap();
+        let change = slipping.mean([slipping.change(off, &Link { to: 0, way: up, trust: 1.0 })].into_iter()).unwrap();
         assert!((change - off).norm() < 1e-9);
         assert!((slipping.spread(Vector([1.0, 0.0])) - 2.0).abs() < 1e-9);
         assert!((slipping.spread(Vector([0.0, 1.0])) - 1.0).abs() < 1e-9);

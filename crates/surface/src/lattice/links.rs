@@ -9,6 +9,9 @@ const SAME_SIDE: f64 = 0.3;
 /// Axes that differ by more than this cosine meet in a seam.
 const SAME_WAY: f64 = 0.5;
 
+/// A link along which axes turn by this angle in their plane, in radians, is half as trusted.
+const TURNED: f64 = 0.1;
+
 /// The two axes of a pattern at a point of a surface, of length 1.
 pub type Axes = [Vector<3>; 2];
 
@@ -18,6 +21,8 @@ pub(super) struct Link {
     pub(super) to: u32,
     /// From the one to the other, in the axes of the pattern.
     pub(super) way: Vector<2>,
+    /// How far it can be trusted, from 0 to 1: around a pole, where axes turn quickly, ways mean little.
+    pub(super) trust: f64,
 }
 
 /// The neighbours of each point.
@@ -35,7 +40,8 @@ pub(super) fn links(
         let looked = near.within(p, reach, |j, _| {
             let same = axes[i][0].dot(axes[j][0]) > SAME_WAY && axes[i][1].dot(axes[j][1]) > SAME_WAY;
             if j != i && same && normals[i].dot(normals[j]) > SAME_SIDE {
-                own.push(Link { to: j as u32, way: way((p, axes[i]), (points[j], axes[j])) });
+                let (to, way) = (j as u32, way((p, axes[i]), (points[j], axes[j])));
+                own.push(Link { to, way, trust: 1.0 / (1.0 + (turn(axes[i], axes[j]) / TURNED).powi(2)) });
             }
         });
         meter.spend(100 + 10 * looked)?;
@@ -43,6 +49,11 @@ pub(super) fn links(
         all.push(own);
     }
     Ok(all)
+}
+
+/// By how much axes turn in their plane from one place to another; bending of the surface does not count.
+fn turn(own: Axes, its: Axes) -> f64 {
+    0.5 * (own[0].dot(its[1]) - own[1].dot(its[0])).abs()
 }
 
 /// From one point to another in the axes of the pattern, as long as it is in space.

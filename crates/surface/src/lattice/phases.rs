@@ -33,7 +33,7 @@ pub(super) fn phases(links: &[Vec<Link>], cell: &Cell, seed: u64, budget: &Budge
     Ok(phases)
 }
 
-/// Phases from one point to the next, the nearest first.
+/// Phases from one point to the next, those first that are near along ways that can be trusted.
 fn spread(links: &[Vec<Link>], cell: &Cell, seed: u64, budget: &Budget) -> Result<Vec<Vector<2>>> {
     let mut stream = Stream::new(seed, BEGIN, 0);
     let mut phases: Vec<Option<Vector<2>>> = vec![None; links.len()];
@@ -59,7 +59,7 @@ fn spread(links: &[Vec<Link>], cell: &Cell, seed: u64, budget: &Budget) -> Resul
             phases[i] = Some(first + change);
             for link in links[i].iter().filter(|link| phases[link.to as usize].is_none()) {
                 // Distances are not negative, so that their bits are in their order.
-                let reached = f64::from_bits(far) + link.way.norm();
+                let reached = f64::from_bits(far) + link.way.norm() / cell.trust(link);
                 heap.push((Reverse(reached.to_bits()), Reverse(link.to), Some(i as u32)));
             }
         }
@@ -82,6 +82,6 @@ fn mean_change(
 ) -> Option<Vector<2>> {
     cell.mean(links.iter().filter_map(|link| {
         let other = of(link.to as usize)?;
-        Some(cell.change(other - link.way - phase, link.way))
+        Some(cell.change(other - link.way - phase, link))
     }))
 }

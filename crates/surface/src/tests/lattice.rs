@@ -112,14 +112,13 @@ fn rows_of_a_ball_stay_level_and_slip() {
             [-frame.bitangent(), frame.tangent]
         };
         let row = 0.1;
-        let lying = ([Vector::xy(2.0 * row, 0.0), Vector::xy(row, row)], Some(Vector::xy(1.0, 0.0)));
+        let lying = ([Vector::xy(1.45 * row, row), Vector::xy(-1.45 * row, row)], Some(Vector::xy(1.0, 0.0)));
         let lattice = SurfaceLattice::new(&ball, &axes, lying, height, (seed, &budget)).unwrap();
         assert!(lattice.broken() < 0.1, "{parts} parts: {}", lattice.broken());
         let found = lattice.places(&ball, Vector::ZERO, &budget).unwrap();
         let order = on_rows(&found, 1.0 + height, row);
-        eprintln!("{parts} {seed} order {order} {} {}", lattice.broken(), found.len());
-        assert!(order > 0.0, "{parts} parts, seed {seed}: places lie on rows by {order}");
-        let share = found.len() as f64 * 2.0 * row * row / (ball.area() * (1.0 + height).powi(2));
+        assert!(order > 0.9, "{parts} parts, seed {seed}: places lie on rows by {order}");
+        let share = found.len() as f64 * 2.9 * row * row / (ball.area() * (1.0 + height).powi(2));
         assert!((0.9..1.1).contains(&share), "{parts} parts: {share}");
     }
 }

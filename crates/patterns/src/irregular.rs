@@ -174,14 +174,14 @@ where
         Ok(Outcome { placements, sequence: Vec::new(), curves, areas: Vec::new(), energy: trace, warnings, stopped })
     }
 
-    /// See [`crate::Prepared::take_apart`].
+    /// See [`crate::Prepared::without_overlaps`].
     ///
     /// # Errors
     /// As there.
-    pub(crate) fn taken_apart(&self, placements: &mut Vec<Placement<D>>, request: &Request<D>) -> Result<()> {
+    pub(crate) fn without_overlaps(&self, placements: &mut Vec<Placement<D>>, request: &Request<D>) -> Result<()> {
         let Some(sampled) = self.levels.last() else { return Ok(()) };
         let extent = Extent::new(request, &sampled.exemplar, &sampled.library, sampled.level.base)?;
-        solids::take_apart(placements, &self.exemplar, &sampled.library, &extent)
+        solids::take_out(placements, &self.exemplar, &sampled.library, &extent)
     }
 
     /// What a run will take, by what its samples take in each iteration.

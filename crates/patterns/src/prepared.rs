@@ -218,13 +218,13 @@ where
         self.regular.as_deref()
     }
 
-    /// Takes apart elements with a volume that somebody else has placed, where they overlap more than in the exemplar, and takes out what
-    /// stays too deep or does not suit the border.
+    /// Elements with a volume that somebody else has placed, without those that lie deeper in others than in the exemplar or do not suit
+    /// the border.
     ///
     /// # Errors
     /// [`Error::NoResult`] when nothing is left; when a limit is reached, or somebody asks to stop, the result is what it is by then.
-    pub fn take_apart(&self, mut placements: Vec<Placement<D>>, request: &Request<D>) -> Result<Outcome<D>> {
-        let ended = self.irregular(&request.budget)?.taken_apart(&mut placements, request).err();
+    pub fn without_overlaps(&self, mut placements: Vec<Placement<D>>, request: &Request<D>) -> Result<Outcome<D>> {
+        let ended = self.irregular(&request.budget)?.without_overlaps(&mut placements, request).err();
         if placements.is_empty() {
             return Err(ended.unwrap_or_else(|| {
                 let advice = "make the domain larger, lower the scale, or allow elements to cross its border";

@@ -53,7 +53,7 @@ mod tree;
 
 pub use directions::{Bend, Curvature, DirectionField, Directions, SurfaceFrame, curvatures};
 pub use flexible::{Skin, Tube, balls};
-pub use lattice::{Axes, LatticePlace, SurfaceLattice};
+pub use lattice::{Axes, LatticePlace, RowSite, SurfaceLattice};
 pub use mesh::{Closest, Found, MeshIndex, MeshReport};
 pub use oriented::{EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of};
 pub use params::{Method, Normals, Parts, SurfaceParams};

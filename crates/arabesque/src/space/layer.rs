@@ -8,7 +8,7 @@ use arabesque_core::{
     Request as EngineRequest, Result, Similarity, Snapshot, Stage, Stream, Vector, Watch,
 };
 use arabesque_patterns::{Params, Prepared as Engine, Regular, repeat::Extent};
-use arabesque_surface::{Axes, Closest, SurfaceLattice};
+use arabesque_surface::{Axes, Closest, RowSite, SurfaceLattice};
 
 use crate::space::shell::Shell;
 
@@ -161,7 +161,7 @@ impl Layer {
     /// Covers a mesh, if the drawing repeats: its lattice is laid on the mesh and breaks where that bends too much; `None` if it does not.
     ///
     /// # Errors
-    /// As [`SurfaceLattice::new`] and [`Engine::take_apart`].
+    /// As [`SurfaceLattice::new`] and [`Engine::without_overlaps`].
     pub(super) fn cover(
         &self,
         (shell, solids): (&Shell, &Engine<3>),
@@ -172,27 +172,31 @@ impl Layer {
         let wider = scale / density.sqrt();
         let budget = request.budget.stage("laying the lattice on the mesh");
         let lattice = self.laid(shell, [scale, wider], request.seed, &budget)?;
-        let mut placements = Vec::new();
-        for (number, shown) in regular.cell_places(&self.drawing).iter().enumerate() {
-            let sum = shown.iter().fold(Vector::ZERO, |sum, (_, centre)| sum + *centre);
-            let mean = sum * (1.0 / shown.len().max(1) as f64);
+        let (mut sites, mut shown) = (Vec::new(), Vec::new());
+        for (number, of_place) in regular.cell_places(&self.drawing).iter().enumerate() {
+            let sum = of_place.iter().fold(Vector::ZERO, |sum, (_, centre)| sum + *centre);
+            let mean = sum * (1.0 / of_place.len().max(1) as f64);
             let mut random = Stream::new(request.seed, SOURCES, number as u64);
             for place in lattice.places(&shell.index, mean * wider, &budget)? {
-                let (source, centre) = shown[random.below(shown.len())];
-                let off = (centre - mean) * wider;
-                let moved = self
-                    .along(shell, &place.at)
-                    .into_iter()
-                    .zip(off.0)
-                    .fold(Vector::ZERO, |sum, (axis, v)| sum + axis * v);
-                let at = shell.index.closest(place.at.point + moved);
-                let above = (self.centres[source][self.across] - shell.under) * scale;
-                let place = at.point + at.normal * above;
-                let transform = Similarity::about(self.centres[source], place, shell.rotation(&at), scale);
-                placements.push(Placement { source, transform, control: Vec::new(), frozen: None });
+                sites.push(RowSite { at: place.at, offset: mean * wider, item: shown.len() });
+                let (source, centre) = of_place[random.below(of_place.len())];
+                shown.push((source, (centre - mean) * wider));
             }
         }
-        solids.take_apart(placements, request).map(Some)
+        let sites = lattice.even_rows(&shell.index, &|at| self.along(shell, at), sites, &budget)?;
+        let placements = sites.iter().map(|site| self.on_mesh(shell, &site.at, shown[site.item], scale)).collect();
+        solids.without_overlaps(placements, request).map(Some)
+    }
+
+    /// An element of the exemplar over a point of a mesh, off by what it is off in the exemplar.
+    fn on_mesh(&self, shell: &Shell, at: &Closest, (source, off): (usize, Vector<2>), scale: f64) -> Placement<3> {
+        let axes = self.along(shell, at).into_iter().zip(off.0);
+        let moved = axes.fold(Vector::ZERO, |sum, (axis, v)| sum + axis * v);
+        let at = shell.index.closest(at.point + moved);
+        let above = (self.centres[source][self.across] - shell.under) * scale;
+        let place = at.point + at.normal * above;
+        let transform = Similarity::about(self.centres[source], place, shell.rotation(&at), scale);
+        Placement { source, transform, control: Vec::new(), frozen: None }
     }
 
     /// A place in the drawing as one in space, where the middle of the layer comes to the height `to`.

@@ -102,6 +102,16 @@ impl Cell {
         [along, left(along)]
     }
 
+    /// The direction of rows that slip, of length 1.
+    pub(super) fn rows(&self) -> Option<Vector<2>> {
+        self.rows
+    }
+
+    /// How far apart the lattice repeats along rows that slip, and how far apart rows are.
+    pub(super) fn spreads(&self) -> [f64; 2] {
+        self.axes().map(|way| self.spread(way))
+    }
+
     /// The larger coordinate in terms of the vectors.
     fn share(&self, v: Vector<2>) -> f64 {
         let [a, b] = self.vectors;

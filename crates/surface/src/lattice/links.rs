@@ -57,7 +57,7 @@ fn turn(own: Axes, its: Axes) -> f64 {
 }
 
 /// From one point to another in the axes of the pattern, as long as it is in space.
-fn way((p, own): (Vector<3>, Axes), (q, its): (Vector<3>, Axes)) -> Vector<2> {
+pub(super) fn way((p, own): (Vector<3>, Axes), (q, its): (Vector<3>, Axes)) -> Vector<2> {
     let apart = q - p;
     let seen = Vector([0, 1].map(|k| 0.5 * (apart.dot(own[k]) + apart.dot(its[k]))));
     seen.unit_or_zero() * apart.norm()

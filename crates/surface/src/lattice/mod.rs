@@ -10,7 +10,9 @@ mod laid;
 mod links;
 mod phases;
 mod places;
+mod rows;
 
 pub use laid::SurfaceLattice;
 pub use links::Axes;
 pub use places::LatticePlace;
+pub use rows::RowSite;

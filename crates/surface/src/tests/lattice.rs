@@ -3,7 +3,7 @@
 use arabesque_core::{Budget, TriangleMesh, Vector};
 
 use super::shapes::{ball, grid};
-use crate::{Axes, Closest, DirectionField, Directions, LatticePlace, MeshIndex, SurfaceLattice};
+use crate::{Axes, Closest, DirectionField, Directions, LatticePlace, MeshIndex, RowSite, SurfaceLattice};
 
 const SIDE: f64 = 0.2;
 
@@ -121,4 +121,44 @@ fn rows_of_a_ball_stay_level_and_slip() {
         let share = found.len() as f64 * 2.9 * row * row / (ball.area() * (1.0 + height).powi(2));
         assert!((0.9..1.1).contains(&share), "{parts} parts: {share}");
     }
+}
+
+#[test]
+fn rows_of_a_ball_have_whole_numbers_of_things_evenly_apart() {
+    let budget = Budget::default();
+    let ball = index(&ball(48, Vector::ZERO, 1.0));
+    let field = DirectionField::new(&ball, &Directions::Constant(Vector([0.0, 0.0, 1.0])), &budget).unwrap();
+    let axes = |at: &Closest| -> Axes {
+        let frame = field.frame(&ball, at);
+        [-frame.bitangent(), frame.tangent]
+    };
+    let (row, brick) = (0.1, 0.29);
+    let lying = ([Vector::xy(0.5 * brick, row), Vector::xy(-0.5 * brick, row)], Some(Vector::xy(1.0, 0.0)));
+    let lattice = SurfaceLattice::new(&ball, &axes, lying, 0.0, (1, &budget)).unwrap();
+    let places = lattice.places(&ball, Vector::ZERO, &budget).unwrap();
+    let site = |(item, place): (usize, &LatticePlace)| RowSite { at: place.at, offset: Vector::ZERO, item };
+    let sites: Vec<_> = places.iter().enumerate().map(site).collect();
+    let fair = |sites: &[RowSite]| {
+        let gaps: Vec<f64> = sites
+            .iter()
+            .filter(|site| site.at.point[2].abs() < 0.85)
+            .map(|site| {
+                let p = site.at.point;
+                let near = sites.iter().filter(|q| (q.at.point - p).norm() < 4.0 * brick);
+                let in_row = near.filter(|q| (q.at.point[2].asin() - p[2].asin()).abs() < 0.3 * row);
+                let after = in_row.map(|q| around(p).dot(q.at.point - p)).filter(|along| *along > 1e-6);
+                after.fold(f64::INFINITY, f64::min) / brick
+            })
+            .collect();
+        gaps.iter().filter(|gap| (0.9..1.2).contains(*gap)).count() as f64 / gaps.len() as f64
+    };
+    let before = fair(&sites);
+    let evened = lattice.even_rows(&ball, &axes, sites, &budget).unwrap();
+    assert!(before < 0.8, "as the lattice breaks: {before}");
+    assert!(fair(&evened) > 0.9, "{}", fair(&evened));
+}
+
+/// The direction around the z axis.
+fn around(p: Vector<3>) -> Vector<3> {
+    Vector([-p[1], p[0], 0.0]).unit()
 }

@@ -22,11 +22,12 @@ const BENT: f64 = 0.06;
 /// Rounds of taking out, putting in and moving.
 const ROUNDS: usize = 4;
 
-/// Mends overlaps alone: nothing is put in.
+/// Takes out what lies too deep in others, and what does not suit the border: things at the places of a lattice would lose their order if
+/// they were moved apart.
 ///
 /// # Errors
 /// As [`mend`].
-pub(crate) fn take_apart<const D: usize>(
+pub(crate) fn take_out<const D: usize>(
     placements: &mut Vec<Placement<D>>,
     exemplar: &Exemplar<D>,
     library: &Library<D>,
@@ -35,17 +36,14 @@ pub(crate) fn take_apart<const D: usize>(
     if exemplar.solids.is_empty() {
         return Ok(());
     }
-    let budget = extent.request().budget.stage("taking elements apart");
+    let budget = extent.request().budget.stage("taking elements out");
     let allowed = Allowed::measure(exemplar, library, &budget)?;
     let mut things = Things::new(placements, exemplar, library, extent, &allowed);
     let any = Numbered::filled(f64::INFINITY, library.classes());
-    let mended = things
-        .thin(&any, (SLACK, BENT), &budget)
-        .and_then(|()| things.relax(&budget))
-        .and_then(|()| things.thin(&any, (SLACK, BENT), &budget));
+    let thinned = things.thin(&any, (SLACK, BENT), &budget);
     *placements = things.into_placements();
     placements.retain(|p| p.frozen.is_some() || extent.keeps_rule(p));
-    mended
+    thinned
 }
 
 /// Mends overlaps and numbers of elements with a volume; anything else stays as it is.

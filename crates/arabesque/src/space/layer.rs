@@ -131,17 +131,15 @@ impl Layer {
         self.regular().is_some()
     }
 
-    /// The lattice on a mesh, whose vectors are longer by a factor; 0 for a drawing without.
-    fn laid(&self, shell: &Shell, [scale, wider]: [f64; 2], seed: u64, budget: &Budget) -> Result<SurfaceLattice> {
+    /// The lattice, longer by a factor, with the rows that slip; nothing for a drawing without.
+    fn lattice(&self, wider: f64) -> ([Vector<2>; 2], Option<Vector<2>>) {
         let vectors = self.regular().map_or([Vector::ZERO; 2], |regular| regular.repeat().lattice.vectors);
-        let height = (self.middle - shell.under) * scale;
-        SurfaceLattice::new(
-            &shell.index,
-            &|at| self.along(shell, at),
-            (vectors.map(|v| v * wider), self.rows),
-            height,
-            (seed, budget),
-        )
+        (vectors.map(|v| v * wider), self.rows)
+    }
+
+    /// Height of the middle of the layer over a mesh.
+    fn height(&self, shell: &Shell, scale: f64) -> f64 {
+        (self.middle - shell.under) * scale
     }
 
     /// The axes of the drawing at a point of a mesh.
@@ -155,7 +153,8 @@ impl Layer {
     /// # Errors
     /// As [`SurfaceLattice::new`].
     pub(super) fn broken(&self, shell: &Shell, scale: f64, budget: &Budget) -> Result<f64> {
-        Ok(self.laid(shell, [scale, scale], 0, budget)?.broken())
+        let (axes, height) = (|at: &Closest| self.along(shell, at), self.height(shell, scale));
+        SurfaceLattice::tried(&shell.index, &axes, self.lattice(scale), height, budget)
     }
 
     /// Covers a mesh, if the drawing repeats: its lattice is laid on the mesh and breaks where that bends too much; `None` if it does not.
@@ -171,7 +170,8 @@ impl Layer {
         let (scale, density) = (request.fields.scale.range().0, request.fields.density.range().0);
         let wider = scale / density.sqrt();
         let budget = request.budget.stage("laying the lattice on the mesh");
-        let lattice = self.laid(shell, [scale, wider], request.seed, &budget)?;
+        let (axes, height) = (|at: &Closest| self.along(shell, at), self.height(shell, scale));
+        let lattice = SurfaceLattice::new(&shell.index, &axes, self.lattice(wider), height, (request.seed, &budget))?;
         let (mut sites, mut shown) = (Vec::new(), Vec::new());
         for (number, of_place) in regular.cell_places(&self.drawing).iter().enumerate() {
             let sum = of_place.iter().fold(Vector::ZERO, |sum, (_, centre)| sum + *centre);
@@ -183,7 +183,7 @@ impl Layer {
                 shown.push((source, (centre - mean) * wider));
             }
         }
-        let sites = lattice.even_rows(&shell.index, &|at| self.along(shell, at), sites, &budget)?;
+        let sites = lattice.even_rows(&shell.index, &axes, sites, &budget)?;
         let placements = sites.iter().map(|site| self.on_mesh(shell, &site.at, shown[site.item], scale)).collect();
         solids.without_overlaps(placements, request).map(Some)
     }

@@ -41,9 +41,33 @@ impl SurfaceLattice {
     pub fn new(
         index: &MeshIndex,
         axes: &dyn Fn(&Closest) -> Axes,
-        (vectors, rows): ([Vector<2>; 2], Option<Vector<2>>),
+        lattice: ([Vector<2>; 2], Option<Vector<2>>),
         height: f64,
         (seed, budget): (u64, &Budget),
+    ) -> Result<Self> {
+        Self::laid(index, axes, lattice, height, (seed, false, budget))
+    }
+
+    /// How much a lattice breaks that is laid so: see [`SurfaceLattice::broken`]. It takes a tenth of laying it.
+    ///
+    /// # Errors
+    /// As [`SurfaceLattice::new`].
+    pub fn tried(
+        index: &MeshIndex,
+        axes: &dyn Fn(&Closest) -> Axes,
+        lattice: ([Vector<2>; 2], Option<Vector<2>>),
+        height: f64,
+        budget: &Budget,
+    ) -> Result<f64> {
+        Ok(Self::laid(index, axes, lattice, height, (0, true, budget))?.broken())
+    }
+
+    fn laid(
+        index: &MeshIndex,
+        axes: &dyn Fn(&Closest) -> Axes,
+        (vectors, rows): ([Vector<2>; 2], Option<Vector<2>>),
+        height: f64,
+        (seed, is_trial, budget): (u64, bool, &Budget),
     ) -> Result<Self> {
         let cell = Cell::new(vectors, rows)?;
         let spacing = SPACING * cell.shorter;
@@ -53,7 +77,7 @@ impl SurfaceLattice {
         let normals: Vec<_> = found.iter().map(|at| at.normal).collect();
         let axes: Vec<_> = found.iter().map(axes).collect();
         let links = links((&points, &normals, &axes), REACH * spacing, budget)?;
-        let phases = phases(&links, &cell, seed, budget)?;
+        let phases = phases(&links, &cell, (seed, is_trial), budget)?;
         Ok(Self { points, axes, links, phases, cell, spacing, height })
     }
 

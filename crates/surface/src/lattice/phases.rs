@@ -10,15 +10,23 @@ const BEGIN: Stage = Stage::new(461);
 
 /// How often phases are evened out, with changes that go too far first and with those that are wanted at the end, and work for a link.
 const SWEEPS: [(usize, f64); 2] = [(240, 1.75), (20, 1.0)];
+/// The same for phases that only tell how much a lattice breaks.
+const FEW: [(usize, f64); 2] = [(20, 1.75), (10, 1.0)];
 const LINK: u64 = 12;
 /// Sweeps end when no phase changes by more than this share of the shorter vector.
-const STILL: f64 = 1e-5;
+const STILL: f64 = 3e-4;
 
 /// Phases that change along the links as the ways say, as far as that can be.
-pub(super) fn phases(links: &[Vec<Link>], cell: &Cell, seed: u64, budget: &Budget) -> Result<Vec<Vector<2>>> {
+pub(super) fn phases(
+    links: &[Vec<Link>],
+    cell: &Cell,
+    (seed, is_trial): (u64, bool),
+    budget: &Budget,
+) -> Result<Vec<Vector<2>>> {
     let mut phases = spread(links, cell, seed, budget)?;
     let count: u64 = links.iter().map(|own| own.len() as u64).sum();
-    for rate in SWEEPS.into_iter().flat_map(|(count, rate)| std::iter::repeat_n(rate, count)) {
+    let sweeps = if is_trial { FEW } else { SWEEPS };
+    for rate in sweeps.into_iter().flat_map(|(count, rate)| std::iter::repeat_n(rate, count)) {
         budget.spend(LINK * count)?;
         let mut most = 0.0_f64;
         for (i, own) in links.iter().enumerate() {

@@ -126,7 +126,9 @@ impl Volume {
         check_volume(&self.exemplar, place.domain.measure(), context.budget())?;
         let usual = match (&self.bodies, &place.domain) {
             (None, _) => Border::Clip,
-            (Some(_), Domain::Region(_)) if space.on.is_none() && space.along.is_none() => Border::Inside,
+            (Some(_), Domain::Region(_)) if space.on.is_none() && space.along.is_none() || !space.avoid.is_empty() => {
+                Border::Inside
+            }
             (Some(_), _) => Border::Cross,
         };
         let mut request = EngineRequest::new(place.domain);

@@ -76,17 +76,22 @@ impl Pile {
         let (ScalarField::Constant(scale), ScalarField::Constant(density)) = (&fields.scale, &fields.density) else {
             return Ok(None);
         };
-        if fields.orientation.is_some() || !request.frozen.is_empty() || matches!(request.domain, Domain::Torus(_)) {
+        // What lies nearer than in the pile would overlap.
+        if *density != 1.0
+            || fields.orientation.is_some()
+            || !request.frozen.is_empty()
+            || matches!(request.domain, Domain::Torus(_))
+        {
             return Ok(None);
         }
-        let (scale, wider) = (*scale, scale / density.cbrt());
+        let scale = *scale;
         let bounds = request.domain.bounds();
         let mut from = exemplar.window.min;
         let up = exemplar.up;
         if let Some(floor) = floor.filter(|_| request.ground.is_some()) {
             from[up] = floor;
         }
-        let to_output = |p: Vector<3>| (p - from) * wider + bounds.min;
+        let to_output = |p: Vector<3>| (p - from) * scale + bounds.min;
         let fits = |source: usize, transform: &Similarity<3>, centre: Vector<3>| match request.border {
             Border::Inside | Border::Turn => {
                 request.domain.contains(centre)
@@ -99,7 +104,7 @@ impl Pile {
         let mut placements = Vec::new();
         let mut meter = budget.meter();
         for (base, shown) in &self.places {
-            for node in self.nodes(*base, &bounds, (from, wider), &budget)? {
+            for node in self.nodes(*base, &bounds, (from, scale), &budget)? {
                 meter.spend(PLACE)?;
                 let source = shown[random.below(shown.len())];
                 let centre = to_output(node);
@@ -129,10 +134,10 @@ impl Pile {
         &self,
         base: Vector<3>,
         bounds: &Bounds<3>,
-        (from, wider): (Vector<3>, f64),
+        (from, scale): (Vector<3>, f64),
         budget: &Budget,
     ) -> Result<Vec<Vector<3>>> {
-        let size = bounds.size() * (1.0 / wider);
+        let size = bounds.size() * (1.0 / scale);
         let corners = (0..8_u8).map(|k| Vector([0, 1, 2].map(|a| if k >> a & 1 == 1 { size[a] } else { 0.0 })));
         let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
         for corner in corners {

@@ -197,38 +197,50 @@ impl Gaps<'_> {
 }
 
 impl Row {
-    /// The run of so many sites that has least room, or most.
-    fn run(&self, length: usize, sign: f64) -> usize {
+    /// Where the run of so many sites begins that has least room, or most; the ends of an open row are no part of it.
+    fn run(&self, length: usize, sign: f64) -> Option<usize> {
         let n = self.sites.len();
+        if n < length + 2 {
+            return None;
+        }
         let room = |k: usize| sign * (0..=length).map(|m| self.sites[(k + n - 1 + m) % n].1).sum::<f64>();
-        // The ends of an open row are no part of it.
-        let (first, last) = if self.is_closed { (0, n) } else { (1, n.saturating_sub(length)) };
-        (first..last).min_by(|&a, &b| room(a).total_cmp(&room(b))).unwrap_or(first)
+        let starts = if self.is_closed { 0..n } else { 1..n - length };
+        starts.min_by(|&a, &b| room(a).total_cmp(&room(b)))
+    }
+
+    /// A closed row with another of its sites as the first.
+    fn begun_at(&mut self, start: usize, beyond: &mut [f64]) {
+        self.sites.rotate_left(start);
+        beyond.rotate_left(start);
     }
 
     /// Takes out the run that has least room.
     fn take_out(&mut self, length: usize, beyond: &mut Vec<f64>) {
-        let start = self.run(length, 1.0);
-        for _ in 0..length {
-            let n = self.sites.len();
-            let (_, gap) = self.sites.remove(start % n);
-            beyond.remove(start % n);
-            let before = (start % n + n - 2) % (n - 1);
-            self.sites[before].1 += gap;
+        let Some(mut start) = self.run(length, 1.0) else { return };
+        if self.is_closed {
+            self.begun_at((start + self.sites.len() - 1) % self.sites.len(), beyond);
+            start = 1;
         }
+        let room: f64 = self.sites.drain(start..start + length).map(|(_, gap)| gap).sum();
+        beyond.drain(start..start + length);
+        self.sites[start - 1].1 += room;
     }
 
-    /// Doubles the run that has most room.
+    /// Doubles the run of a closed row that has most room: both share it.
     fn put_in(&mut self, length: usize, beyond: &mut Vec<f64>) {
-        let n = self.sites.len();
-        let start = self.run(length, -1.0);
-        for m in 0..length {
-            let k = (start + m) % n;
+        let Some(start) = self.run(length, -1.0) else { return };
+        self.begun_at(start, beyond);
+        let room: f64 = self.sites[..length].iter().map(|(_, gap)| gap).sum();
+        let mut from = 0.0;
+        for k in 0..length {
             let (site, gap) = self.sites[k];
             self.sites[k].1 = 0.5 * gap;
-            let from = beyond[k];
-            self.sites.insert(start + length + m, (site, 0.5 * gap));
-            beyond.insert(start + length + m, from + 0.5 * gap);
+            self.sites.insert(length + k, (site, 0.5 * gap));
+            // What lay so far from the start of the run lies half as far, and its double as far behind half of the room.
+            let own = beyond[k];
+            beyond[k] = own - 0.5 * from;
+            beyond.insert(length + k, own + 0.5 * (room - from));
+            from += gap;
         }
     }
 }
@@ -254,7 +266,41 @@ fn evened(misfits: &[f64], is_closed: bool) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use arabesque_core::{Stage, Stream};
+
     use super::*;
+
+    #[test]
+    fn runs_are_taken_out_and_doubled_in_rows_of_any_length() {
+        let mut stream = Stream::new(5, Stage::TEST, 0);
+        for n in 1..9 {
+            for (length, is_closed) in [(1, true), (2, true), (3, true), (1, false), (2, false)] {
+                let sites: Vec<_> = (0..n).map(|k| (k, stream.range(0.5, 1.5))).collect();
+                let row = || Row { sites: sites.clone(), is_closed };
+                let total = |row: &Row| row.sites.iter().map(|(_, gap)| gap).sum::<f64>();
+                let changes = n >= length + 2;
+                let (mut less, mut beyond) = (row(), vec![0.0; n]);
+                less.take_out(length, &mut beyond);
+                assert_eq!((less.sites.len(), beyond.len()), if changes { (n - length, n - length) } else { (n, n) });
+                assert!((total(&less) - total(&row())).abs() < 1e-12);
+                if is_closed {
+                    let (mut more, mut beyond) = (row(), vec![0.0; n]);
+                    more.put_in(length, &mut beyond);
+                    assert_eq!(
+                        (more.sites.len(), beyond.len()),
+                        if changes { (n + length, n + length) } else { (n, n) }
+                    );
+                    assert!((total(&more) - total(&row())).abs() < 1e-12);
+                }
+            }
+        }
+        // The double of one lies half of the way to the next.
+        let mut row = Row { sites: vec![(0, 1.0), (1, 1.8), (2, 1.0)], is_closed: true };
+        let mut beyond = vec![0.0; 3];
+        row.put_in(1, &mut beyond);
+        let double = row.sites.iter().zip(&beyond).find(|(_, beyond)| **beyond > 0.0).map(|((site, _), b)| (*site, *b));
+        assert!(matches!(double, Some((1 | 2, at)) if at > 0.4), "{double:?}");
+    }
 
     #[test]
     fn misfits_are_shared_with_what_is_near() {

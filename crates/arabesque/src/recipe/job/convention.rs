@@ -20,11 +20,6 @@ impl Default for Up {
 }
 
 impl Up {
-    #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
-    pub(super) fn is_usual(&self) -> bool {
-        *self == Self::Y
-    }
-
     /// The number of the axis.
     pub(crate) fn axis(self) -> usize {
         if self == Self::Y { 1 } else { 2 }
@@ -61,11 +56,6 @@ impl Default for Unit {
 }
 
 impl Unit {
-    #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
-    pub(super) fn is_usual(&self) -> bool {
-        *self == Self::Metre
-    }
-
     /// Its length in metres.
     pub(crate) fn metres(self) -> f64 {
         match self {

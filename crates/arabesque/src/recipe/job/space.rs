@@ -70,7 +70,8 @@ pub struct Space {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orient: Option<FieldSource>,
     /// Where the x axis of the exemplar runs on a mesh: `least` or `most`, along which the mesh bends least or most; a direction in space such
-    /// as `0,0,1`; or the lines of an OBJ file as strokes on the mesh. Default: least.
+    /// as `0,0,1`; or the lines of an OBJ file as strokes on the mesh. Default: least; where a single layer repeats, as its lattice breaks least, or level for a
+    /// wall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<Direction>,
     /// Size of the pattern relative to the exemplar, elements and gaps alike: a number, or a table of places (CSV with x, y, z, value), between
@@ -88,10 +89,10 @@ pub struct Space {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub constrain: BTreeMap<String, Constraint>,
     /// The axis that is up in the files that are read. Results have the same; GLB always y. Default: y.
-    #[serde(default, skip_serializing_if = "Up::is_usual")]
+    #[serde(default, skip_serializing_if = "is_usual")]
     pub up: Up,
     /// Length of a unit of the files that are read: mm, cm, m, in or ft. Results have the same; GLB always metres. Default: m.
-    #[serde(default, skip_serializing_if = "Unit::is_usual")]
+    #[serde(default, skip_serializing_if = "is_usual")]
     pub unit: Unit,
     /// Scenes of meshes: which elements bend: `auto`, those that the exemplar shows bent in several ways; `all`; `off`; or names of
     /// classes with commas between them. Default: auto.
@@ -112,6 +113,11 @@ pub struct Space {
     #[serde(default, skip_serializing_if = "Parameters::is_empty")]
     #[schemars(schema_with = "parameters::of_patterns")]
     pub params: Parameters,
+}
+
+/// Whether something is as it is where nobody says otherwise.
+fn is_usual<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl Space {

@@ -1,6 +1,6 @@
 //! A tube around curves in space.
 
-use arabesque_core::{Bounds, Error, Matrix, Region, Result, Rotations, Vector};
+use arabesque_core::{Bounds, Budget, Error, Matrix, Region, Result, Rotations, Vector};
 use arabesque_structures::{Along, Foot, Thread, Tube as Threads};
 
 /// What lies nearer to curves than a radius; open curves end in flat ends.
@@ -10,9 +10,37 @@ pub(super) struct Tube {
     radius: f64,
 }
 
+/// Corners nearer to one another than this share of the radius are left out: each question to the tube looks at all of them.
+const FINE: f64 = 0.1;
+/// Most corners.
+const MOST: usize = 20_000;
+
+/// A line without corners that are close to the one before; its ends stay.
+fn thinned(line: Vec<Vector<3>>, least: f64) -> Vec<Vector<3>> {
+    let last = line.last().copied();
+    let mut kept: Vec<Vector<3>> = Vec::new();
+    for p in line {
+        if kept.last().is_none_or(|before| (p - *before).norm() >= least) {
+            kept.push(p);
+        }
+    }
+    if let Some(last) = last.filter(|last| kept.last() != Some(last)) {
+        kept.push(last);
+    }
+    kept
+}
+
 impl Tube {
     /// A tube in which the pattern is turned about the curve by some degrees at its start, and by some more until its end.
-    pub(super) fn new(lines: Vec<Vec<Vector<3>>>, radius: f64, [turned, twist]: [f64; 2]) -> Result<Self> {
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for numbers out of range, [`Error::Limit`] for curves that have too many corners for their radius.
+    pub(super) fn new(
+        lines: Vec<Vec<Vector<3>>>,
+        radius: f64,
+        [turned, twist]: [f64; 2],
+        budget: &Budget,
+    ) -> Result<Self> {
         if !(radius.is_finite() && radius > 0.0) {
             return Err(Error::parameter("tube", radius, "a radius above 0"));
         }
@@ -20,6 +48,9 @@ impl Tube {
             return Err(Error::parameter("twist", twist, "degrees"));
         }
         let ends = [turned, turned + twist].map(f64::to_radians);
+        let lines: Vec<_> = lines.into_iter().map(|line| thinned(line, FINE * radius)).collect();
+        let corners = lines.iter().map(Vec::len).sum();
+        budget.within("corners of the curves", corners, ("candidates", budget.limits().candidates.min(MOST)))?;
         let thread = |line| Thread { roll: Along(vec![(0.0, ends[0]), (1.0, ends[1])]), ..Thread::new(line) };
         Ok(Self { threads: Threads::new(lines.into_iter().map(thread).collect(), radius)?, radius })
     }
@@ -68,7 +99,8 @@ mod tests {
     use super::*;
 
     fn straight() -> Tube {
-        Tube::new(vec![vec![Vector([0.0, 0.0, 0.0]), Vector([0.0, 0.0, 4.0])]], 0.5, [0.0, 90.0]).unwrap()
+        Tube::new(vec![vec![Vector([0.0, 0.0, 0.0]), Vector([0.0, 0.0, 4.0])]], 0.5, [0.0, 90.0], &Budget::default())
+            .unwrap()
     }
 
     #[test]
@@ -103,8 +135,13 @@ mod tests {
 
     #[test]
     fn tubes_without_a_radius_or_a_line_are_refused() {
-        assert!(Tube::new(vec![vec![Vector::ZERO, Vector::splat(1.0)]], 0.0, [0.0; 2]).is_err());
-        assert!(Tube::new(Vec::new(), 1.0, [0.0; 2]).is_err());
-        assert!(Tube::new(vec![vec![Vector::ZERO]], 1.0, [0.0; 2]).is_err());
+        assert!(Tube::new(vec![vec![Vector::ZERO, Vector::splat(1.0)]], 0.0, [0.0; 2], &Budget::default()).is_err());
+        assert!(Tube::new(Vec::new(), 1.0, [0.0; 2], &Budget::default()).is_err());
+        assert!(Tube::new(vec![vec![Vector::ZERO]], 1.0, [0.0; 2], &Budget::default()).is_err());
+        let dense = (0..50_000).map(|k| Vector([f64::from(k), 0.0, 0.0])).collect();
+        let refused = Tube::new(vec![dense], 0.5, [0.0; 2], &Budget::default()).unwrap_err();
+        assert!(refused.to_string().contains("corners of the curves"), "{refused}");
+        let fine = (0..50_000).map(|k| Vector([1e-4 * f64::from(k), 0.0, 0.0])).collect();
+        assert!(Tube::new(vec![fine], 0.5, [0.0; 2], &Budget::default()).is_ok());
     }
 }

@@ -104,21 +104,36 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
 }
 
 impl Volume {
-    fn resolve(&self, context: &mut RunContext<'_>) -> Result<Resolved> {
-        let Job::Space(mut space) = context.job.clone() else {
-            return Err(Error::parameter("request", context.job.name(), "a request for a part of space"));
-        };
+    /// Refuses what this exemplar cannot do.
+    fn suits(&self, space: &Space) -> Result<()> {
         if space.border == Some(Border::Turn) {
             let expected = "inside, cross or clip: in space there is no line along the border for strokes to turn into";
             return Err(Error::parameter("border", "turn", expected));
         }
+        let unsupported = |what: String, advice: &str| Err(Error::Unsupported { what, advice: advice.into() });
         let is_elsewhere = space.place()? != "box";
         if self.bodies.is_none() && (is_elsewhere || !space.avoid.is_empty()) {
             let what = if is_elsewhere { "a place other than a box" } else { "avoid" };
-            let (what, advice) =
-                (format!("{what} for points and curves in space"), "give a scene of meshes, or a box alone");
-            return Err(Error::Unsupported { what, advice: advice.into() });
+            return unsupported(
+                format!("{what} for points and curves in space"),
+                "give a scene of meshes, or a box alone",
+            );
         }
+        let asked = [("physics", space.physics.is_some()), ("keep", space.keep.is_some())];
+        match asked.into_iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) if !self.exemplar.softs.is_empty() => {
+                let advice = "leave it out, or let nothing bend (--deform=off)";
+                unsupported(format!("{name} for a scene of which something bends"), advice)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn resolve(&self, context: &mut RunContext<'_>) -> Result<Resolved> {
+        let Job::Space(mut space) = context.job.clone() else {
+            return Err(Error::parameter("request", context.job.name(), "a request for a part of space"));
+        };
+        self.suits(&space)?;
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
         let filling = Filling { exemplar: &self.exemplar, floor, layer: self.layer.as_deref() };
         let place = place(&mut space, filling, context)?;

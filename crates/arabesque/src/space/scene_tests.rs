@@ -5,7 +5,10 @@
 use arabesque_core::{Budget, PointSet, Similarity, TriangleMesh, Unobserved, Vector};
 use arabesque_io::mesh::gltf::{Scene, SceneMesh, SceneNode, read_scene, write_scene};
 
-use crate::{Artwork, Fill, Format, Input, Method, OutputOptions, Recipe, Resources, Space};
+use crate::{
+    Artwork, Constraint, FieldFile, FieldSource, Fill, Format, Input, Method, OutputOptions, Recipe, Resources, Space,
+    Unit, Up,
+};
 
 fn cube(at: Vector<3>) -> TriangleMesh {
     let corner = |k: u32| Vector([0, 1, 2].map(|a| f64::from(k >> a & 1) - 0.5)) + at;
@@ -87,4 +90,122 @@ fn a_scene_is_no_drawing() {
     let recipe = Recipe::new(Input::file("cubes.glb").embedding(&encoded(&cubes(12))), job);
     let refused = recipe.prepare(&Resources::default()).unwrap_err();
     assert!(refused.to_string().contains("a scene in space"), "{refused}");
+}
+
+fn bytes(artwork: &Artwork, output: OutputOptions) -> Vec<u8> {
+    artwork.encode(&output).unwrap().bytes
+}
+
+fn as_format(artwork: &Artwork, format: Format) -> String {
+    String::from_utf8(bytes(artwork, OutputOptions { format: Some(format), ..OutputOptions::default() })).unwrap()
+}
+
+/// A block as an OBJ file, from one corner to the other.
+fn block(from: [f64; 3], to: [f64; 3]) -> String {
+    let corner = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 1 { to[a] } else { from[a] });
+    let corners = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+    let quads = [[1, 5, 7, 3], [2, 4, 8, 6], [1, 2, 6, 5], [3, 7, 8, 4], [1, 3, 4, 2], [5, 6, 8, 7]];
+    let faces = quads.iter().map(|q| format!("f {} {} {} {}\n", q[0], q[1], q[2], q[3]));
+    corners.chain(faces).collect()
+}
+
+fn file(name: &str, text: &str) -> Input {
+    Input::file(name).embedding(text.as_bytes())
+}
+
+fn centres(artwork: &Artwork) -> Vec<Vector<3>> {
+    scene(artwork).nodes.iter().map(|node| node.transform.translation).collect()
+}
+
+#[test]
+fn a_tube_follows_its_curve() {
+    let curve = "v 0 0 0\nv 6 0 0\nv 6 0 9\nl 1 2 3\n";
+    let job = Space { tube: Some(1.6), ..Space::along(file("curve.obj", curve)) };
+    let made = centres(&run(&encoded(&cubes(48)), job).unwrap());
+    assert!(made.len() > 20, "{}", made.len());
+    for p in &made {
+        let [x, y, z] = p.0;
+        let to_first = (x - x.clamp(0.0, 6.0)).hypot(y).hypot(z);
+        let to_second = (x - 6.0).hypot(y).hypot(z - z.clamp(0.0, 9.0));
+        assert!(to_first.min(to_second) < 1.61, "{p:?}");
+    }
+}
+
+#[test]
+fn what_is_avoided_stays_empty() {
+    let job = Space {
+        avoid: vec![file("hole.obj", &block([2.0, 1.0, 2.0], [5.0, 4.0, 5.0]))],
+        ..Space::new("7x5x7".parse().unwrap())
+    };
+    let made = centres(&run(&encoded(&cubes(48)), job).unwrap());
+    assert!(made.len() > 20, "{}", made.len());
+    for p in &made {
+        // Corners of a cube stick out by half of its side.
+        let beside =
+            (0..3).map(|k| (p[k] - [2.0, 1.0, 2.0][k]).min([5.0, 4.0, 5.0][k] - p[k])).fold(f64::MAX, f64::min);
+        assert!(beside < -0.3, "{p:?}");
+    }
+}
+
+#[test]
+fn tables_say_how_dense_it_is_and_strokes_which_way_it_goes() {
+    let table = "0,2,3,1\n8,2,3,0.2\n";
+    let density = Some(FieldSource::File(FieldFile { range: None, file: file("density.csv", table) }));
+    let made = centres(&run(&encoded(&cubes(48)), Space { density, ..Space::new("8x4x6".parse().unwrap()) }).unwrap());
+    let left = made.iter().filter(|p| p[0] < 4.0).count();
+    assert!(2 * left > 3 * (made.len() - left), "{left} of {}", made.len());
+    let stroke = "v 0 0 0\nv 0 0 9\nl 1 2\n";
+    let orient = Some(FieldSource::File(FieldFile { range: None, file: file("way.obj", stroke) }));
+    let made = scene(&run(&encoded(&cubes(48)), Space { orient, ..Space::new("6x4x6".parse().unwrap()) }).unwrap());
+    let turned = |node: &SceneNode| node.transform.rotation.apply(Vector([1.0, 0.0, 0.0]))[2] > 0.9;
+    assert!(made.nodes.iter().all(turned));
+}
+
+#[test]
+fn rules_say_what_stands_on_the_floor_and_z_may_be_up() {
+    // Cubes that stand in z.
+    let standing = Scene { nodes: cubes(12).nodes, ..cubes(48) };
+    let with = |constrain: &[(&str, Constraint)]| Space {
+        up: Up::Z,
+        unit: Unit::Centimetre,
+        constrain: constrain.iter().map(|(class, rule)| ((*class).to_owned(), *rule)).collect(),
+        ..Space::new("6x6x4".parse().unwrap())
+    };
+    let unknown = run(&encoded(&standing), with(&[("cone", Constraint::Floor)])).unwrap_err().to_string();
+    assert!(unknown.contains("a class of the exemplar: cube"), "{unknown}");
+    let artwork = run(&encoded(&standing), with(&[("cube", Constraint::Floor)])).unwrap();
+    let heights: Vec<f64> =
+        as_format(&artwork, Format::Csv).lines().filter_map(|line| line.split(',').nth(2)?.parse().ok()).collect();
+    assert!(!heights.is_empty() && heights.iter().all(|z| (0.4..0.7).contains(z)), "{heights:?}");
+    // GLB has y up and metres.
+    assert!(centres(&artwork).iter().all(|p| (0.004..0.007).contains(&p[1])));
+    assert!(as_format(&artwork, Format::Usda).contains("upAxis = \"Z\""));
+}
+
+#[test]
+fn scenes_come_in_and_go_out_in_many_formats() {
+    let artwork = run(&encoded(&cubes(48)), Space::new("6x4x6".parse().unwrap())).unwrap();
+    let count = scene(&artwork).nodes.len();
+    let obj = as_format(&artwork, Format::Obj);
+    assert_eq!(obj.lines().filter(|line| line.starts_with("o cube.")).count(), count);
+    let usda = as_format(&artwork, Format::Usda);
+    assert!(usda.starts_with("#usda 1.0") && usda.contains("PointInstancer"));
+    let json: serde_json::Value = serde_json::from_str(&as_format(&artwork, Format::Json)).unwrap();
+    assert_eq!(json["placements"].as_array().unwrap().len(), count);
+    let centres = OutputOptions { format: Some(Format::Ply), centres: true, ..OutputOptions::default() };
+    let ply = String::from_utf8(bytes(&artwork, centres)).unwrap();
+    assert!(ply.contains(&format!("element vertex {count}")));
+    let instanced = OutputOptions { format: Some(Format::Glb), instancing: true, ..OutputOptions::default() };
+    let glb = bytes(&artwork, instanced);
+    assert!(String::from_utf8_lossy(&glb).contains("EXT_mesh_gpu_instancing"));
+    assert_eq!(read_scene("i.glb", &glb, &Budget::default()).unwrap().nodes.len(), count);
+    for (name, text) in [("a.usda", &usda), ("a.obj", &obj)] {
+        let again = crate::recipe_in(name, text.as_bytes()).unwrap();
+        assert!(matches!(again.job, crate::Job::Space(_)), "{name}");
+    }
+    // What was written as OBJ is an exemplar again.
+    let recipe = Recipe::new(file("out.obj", &obj), Space::new("5x3x5".parse().unwrap()));
+    let prepared = recipe.prepare(&Resources::default()).unwrap();
+    let made = prepared.run(&prepared.request(), &mut Unobserved).unwrap();
+    assert!(made.summary().elements > 20, "{}", made.summary().elements);
 }

@@ -16,8 +16,8 @@ const REACH: f64 = 1.6;
 /// open one, whose ends stay, by no more than that.
 const TIGHT: [f64; 2] = [0.15, 0.5];
 /// How much things hold on to their places: a misfit is spread over about so many of them as 1 over the root of this. Sweeps until it is.
-const HOLD: f64 = 0.1;
-const SWEEPS: usize = 60;
+const HOLD: f64 = 0.07;
+const SWEEPS: usize = 100;
 /// A row is moved in so many steps, so that it stays on the mesh.
 const STEPS: usize = 4;
 /// Work for a thing that is moved, and for one that is looked at.

@@ -90,6 +90,9 @@ impl SurfaceLattice {
     }
 }
 
+/// How far away a site is along a row, and its number.
+type Neighbour = (f64, usize);
+
 /// Sites and what is between them.
 struct Gaps<'a> {
     sites: &'a [RowSite],
@@ -128,7 +131,7 @@ impl Gaps<'_> {
         let mut meter = budget.meter();
         let (mut next, mut before) = (vec![None; places.len()], vec![None; places.len()]);
         for (i, &p) in places.iter().enumerate() {
-            let (mut first, mut last): (Option<(f64, usize)>, Option<(f64, usize)>) = (None, None);
+            let (mut first, mut last) = (None::<Neighbour>, None::<Neighbour>);
             let looked = near.within(p, reach, |j, _| {
                 if j == i || self.frames[i][0].dot(self.frames[j][0]) < 0.5 {
                     return;

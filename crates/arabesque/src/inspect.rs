@@ -18,6 +18,7 @@ use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
     recipe::{Format, Input, NO_RECIPE, Reading},
     resources::Resources,
+    space::scene_understood,
     spacing::{length, spacing},
 };
 
@@ -26,7 +27,7 @@ use crate::{
 pub struct Report {
     /// Name of the file.
     pub file: String,
-    /// `drawing`, `points`, `points in space` or `curves in space`.
+    /// `drawing`, `points`, `points in space`, `curves in space` or `scene of meshes`.
     pub kind: &'static str,
     /// Number of elements, context included.
     pub elements: usize,
@@ -59,6 +60,9 @@ pub struct Report {
     pub suggested_radius: f64,
     /// What everything in the file was taken for, and why; empty for points.
     pub understood: Vec<UnderstoodReport>,
+    /// What else is to be told of a scene: elements of several meshes, stacks, what bends.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub told: Vec<String>,
     /// What it repeats by; `None` where it is treated as irregular.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeat: Option<RepeatReport>,
@@ -160,6 +164,9 @@ const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources) -> Result<Report> {
     let bytes = resources.read(input)?;
     let budget = resources.budget();
+    if let Some((exemplar, told, warnings)) = scene_understood(input, &bytes, resources)? {
+        return Ok(Report { told, warnings, ..describe(input, "scene of meshes", &exemplar) });
+    }
     Ok(match LoadedExemplar::read(input, &bytes, reading, &budget)? {
         LoadedExemplar::Drawing(drawing, known) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
@@ -224,6 +231,7 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
         spacing,
         suggested_radius: spacing * (SUGGESTED_NEIGHBOURS / ball).powf(1.0 / D as f64),
         understood: Vec::new(),
+        told: Vec::new(),
         repeat: None,
         layers: Vec::new(),
         warnings: Vec::new(),
@@ -267,9 +275,7 @@ impl Report {
                 let job = RenderJob { svg: &svg, units, resolution: Resolution::default(), recipe: Some(NO_RECIPE) };
                 write_png(&job, budget)
             }
-            Format::Json | Format::Csv | Format::Obj | Format::Glb | Format::Ply | Format::Usda | Format::Toml => {
-                Err(unsupported("a picture in this format"))
-            }
+            _ => Err(unsupported("a picture in this format")),
         }
     }
 }

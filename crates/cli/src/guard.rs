@@ -66,6 +66,14 @@ impl Guard {
         self.check(path, Target::new(path).map_err(Failure::writing)?)
     }
 
+    /// The same for the files beside those at `paths` that are called like them but for their ending.
+    pub(crate) fn companions(&self, paths: &[String], ending: &str) -> Result<Vec<Target>, Failure> {
+        let beside = |path: &String| Path::new(path).with_extension(ending).to_string_lossy().into_owned();
+        let paths: Vec<String> = paths.iter().map(beside).collect();
+        let targets = Target::all(&paths).map_err(Failure::writing)?;
+        paths.iter().zip(targets).map(|(path, target)| self.check(path, target)).collect()
+    }
+
     fn check(&self, path: &str, target: Target) -> Result<Target, Failure> {
         let written = Identity::of_output(path);
         let input = self.inputs.iter().find(|(_, identity)| written.as_ref() == Some(identity));

@@ -1,10 +1,14 @@
 //! From a recipe to files: what `fill` and `run` have in common.
 
-use std::{path::Path, process::ExitCode, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Duration,
+};
 
 use arabesque::{
-    Artwork, EnergyPoint, Error, Format, OutputOptions, Prepared, Recipe, Resources, StopReason, Stopper, Summary,
-    Warning, in_pool, io::file,
+    Artwork, Companion, Encoded, EnergyPoint, Error, Format, Job, OutputOptions, Prepared, Recipe, Resources, StopReason,
+    Stopper, Summary, Warning, in_pool, io::file,
 };
 use clap::Args;
 
@@ -78,7 +82,24 @@ struct Plan {
     path: String,
     seed: u64,
     target: file::Target,
+    /// Where its companion lies, if it may have one.
+    beside: Option<file::Target>,
 }
+
+impl Plan {
+    /// Writes a result and its companion: the latter once the former is on the disk under a name for the time being, so that there are both
+    /// or none.
+    fn write(&self, bytes: &[u8], companion: Option<&Companion>) -> arabesque::Result<Option<PathBuf>> {
+        let (Some(target), Some(companion)) = (&self.beside, companion) else { return self.target.write(bytes) };
+        self.target.write_watched(bytes, &mut |step| match step {
+            file::Step::Kept => target.write(&companion.bytes).map(|_| ()).map_err(std::io::Error::other),
+            _ => Ok(()),
+        })
+    }
+}
+
+/// The ending of files of materials.
+const MATERIALS: &str = "mtl";
 
 /// Runs `recipe`, whose files lie beside the file that it was read from, and writes the result to `path`.
 pub(crate) fn produce(
@@ -143,9 +164,15 @@ fn check(
         Some(count) if !path.is_empty() => (1..=u64::from(count)).map(|n| variation(path, n)).collect(),
         _ => vec![path.to_owned()],
     };
-    let targets = guard(recipe, from, options.write).targets(&paths)?;
+    let guard = guard(recipe, from, options.write);
+    // Scenes as OBJ have their materials in a file beside it.
+    let is_named = Format::of_path(path).ok().flatten() == Some(Format::Obj);
+    let has_materials = format == Format::Obj && is_named && matches!(recipe.job, Job::Space(_));
+    let beside = if has_materials { guard.companions(&paths, MATERIALS)? } else { Vec::new() };
+    let mut beside = beside.into_iter();
+    let targets = guard.targets(&paths)?;
     let plans = paths.into_iter().zip(seeds).zip(targets);
-    Ok(plans.map(|((path, seed), target)| Plan { path, seed, target }).collect())
+    Ok(plans.map(|((path, seed), target)| Plan { path, seed, target, beside: beside.next() }).collect())
 }
 
 /// What must not be written over.
@@ -209,11 +236,11 @@ impl Run<'_> {
     fn make(&self, plan: &Plan) -> Result<Output, Failure> {
         sentinel::enter(Phase::Reading);
         let mut watch = Watch::new(self.level);
-        let ran = self.run(plan.seed, &mut watch);
+        let ran = self.run(plan, &mut watch);
         watch.finish();
-        let (artwork, bytes, mut warnings) = ran.map_err(stopped)?;
+        let (artwork, Encoded { bytes, mut warnings, companion }) = ran.map_err(stopped)?;
         sentinel::enter(Phase::Writing);
-        let copy = plan.target.write(&bytes).map_err(Failure::writing)?;
+        let copy = plan.write(&bytes, companion.as_ref()).map_err(Failure::writing)?;
         sentinel::written();
         if artwork.stopped() == StopReason::Stopped && sentinel::signal().is_none() {
             let message = "the time was up before the pattern was finished: this is the best so far";
@@ -227,14 +254,15 @@ impl Run<'_> {
         Ok(made)
     }
 
-    /// An artwork, its file, and what the user should know of both.
-    fn run(&self, seed: u64, watch: &mut Watch) -> arabesque::Result<(Artwork, Vec<u8>, Vec<Warning>)> {
-        let artwork = self.prepared.run(&self.prepared.request().with_seed(seed), watch)?;
+    /// An artwork, and its file with what the user should know of both.
+    fn run(&self, plan: &Plan, watch: &mut Watch) -> arabesque::Result<(Artwork, Encoded)> {
+        let artwork = self.prepared.run(&self.prepared.request().with_seed(plan.seed), watch)?;
         sentinel::enter(Phase::Encoding);
         watch.finish();
-        let encoded = artwork.encode(self.output)?;
-        let warnings = artwork.warnings().iter().cloned().chain(encoded.warnings).collect();
-        Ok((artwork, encoded.bytes, warnings))
+        let path = Some(plan.path.clone()).filter(|_| plan.beside.is_some());
+        let mut encoded = artwork.encode(&OutputOptions { path, ..self.output.clone() })?;
+        encoded.warnings.splice(0..0, artwork.warnings().iter().cloned());
+        Ok((artwork, encoded))
     }
 
     fn describe(&self, artwork: &Artwork, plan: &Plan, warnings: Vec<Warning>, elapsed: Duration) -> Output {

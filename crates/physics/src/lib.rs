@@ -23,6 +23,7 @@
 //! there are. Its feature `enhanced-determinism` makes results the same on all machines as well, for slower arithmetic; as the rest of
 //! the house promises the same bytes on one machine, it is left off.
 
+mod clearance;
 mod figures;
 mod guard;
 mod params;
@@ -33,6 +34,7 @@ mod surroundings;
 mod units;
 mod world;
 
+pub use clearance::clearance;
 pub use figures::Figures;
 pub use params::PhysicsParams;
 pub use setting::Body;

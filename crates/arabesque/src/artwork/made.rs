@@ -70,6 +70,17 @@ pub struct Encoded {
     pub bytes: Vec<u8>,
     /// What could not be written as asked.
     pub warnings: Vec<Warning>,
+    /// A file that it names and that has to lie beside it.
+    pub companion: Option<Companion>,
+}
+
+/// A file that lies beside another one and is called like it but for its ending.
+#[derive(Clone, Debug)]
+pub struct Companion {
+    /// Its ending, without the dot.
+    pub ending: &'static str,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
 }
 
 /// Geometry without ink: placements, strokes and pieces of pictures, in the units of the page or of the exemplar.
@@ -90,6 +101,6 @@ pub enum Geometry {
 impl Encoded {
     /// A text without warnings.
     pub(crate) fn plain(text: String) -> Self {
-        Self { bytes: text.into_bytes(), warnings: Vec::new() }
+        Self { bytes: text.into_bytes(), warnings: Vec::new(), companion: None }
     }
 }

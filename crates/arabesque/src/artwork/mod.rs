@@ -4,7 +4,7 @@ mod made;
 mod points;
 mod summary;
 
-pub use made::{Encoded, Geometry};
+pub use made::{Companion, Encoded, Geometry};
 pub use points::PlacedPoint;
 pub use summary::{PhysicsSummary, ReliefSummary, RibbonSummary, Summary};
 
@@ -14,6 +14,7 @@ pub(crate) use points::points;
 use std::sync::Arc;
 
 use arabesque_core::{Budget, EnergyPoint, Result, StopReason, Warning};
+use arabesque_io::mesh::gltf;
 
 use crate::{
     edit::{Replayed, replay, to_geometry, to_points},
@@ -135,7 +136,7 @@ impl Artwork {
     }
 
     /// The file in the format that `output` asks for, or else in the usual one: SVG for the plane, OBJ for curves and CSV for points in
-    /// space, PNG for ribbons, GLB for ribbons in space.
+    /// space, PNG for ribbons, GLB for ribbons in space. What is written under a name (`output.path`) may have a companion.
     ///
     /// # Errors
     /// [`arabesque_core::Error::Unsupported`] for a format that cannot hold what was made, [`arabesque_core::Error::Limit`] for a picture
@@ -148,16 +149,31 @@ impl Artwork {
         }
         let recipe = (!output.bare).then_some(recipe.as_str());
         let budget = self.origin.budget.fresh().stage("encoding");
-        let sheet = self.sheet(format, output, recipe, &budget);
+        if format == Format::Gltf {
+            let glb = self.encode_as(Format::Glb, output, recipe, &budget)?;
+            return Ok(Encoded { bytes: gltf::as_text(&glb.bytes, &budget)?, ..glb });
+        }
+        self.encode_as(format, output, recipe, &budget)
+    }
+
+    /// The file in a format, with a recipe.
+    fn encode_as(
+        &self,
+        format: Format,
+        output: &OutputOptions,
+        recipe: Option<&str>,
+        budget: &Budget,
+    ) -> Result<Encoded> {
+        let sheet = self.sheet(format, output, recipe, budget);
         let Some(edited) = &self.edited else { return self.made.encode(&sheet) };
         let own = &self.origin.recipe;
         // A picture is drawn of a file that was edited.
         let base = self.made.drawn_from(format).filter(|_| !own.edits.iter().all(|edit| edit.on == Some(format)));
         let Some(base) = base else {
             let encoded = self.made.encode(&sheet)?;
-            return Ok(Encoded { bytes: edited.apply(encoded.bytes, format, own, &budget)?, ..encoded });
+            return Ok(Encoded { bytes: edited.apply(encoded.bytes, format, own, budget)?, ..encoded });
         };
         let encoded = self.made.encode(&Sheet { format: base, recipe: None, ..sheet })?;
-        self.made.encode_edited(&edited.apply(encoded.bytes, base, own, &budget)?, &sheet)
+        self.made.encode_edited(&edited.apply(encoded.bytes, base, own, budget)?, &sheet)
     }
 }

@@ -63,7 +63,7 @@ impl Elements {
                 }
             }
             Format::Glb => Ok(Self::Space(Box::new(GlbElements::open(name, bytes, budget)?))),
-            Format::Png | Format::Obj | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
+            Format::Png | Format::Obj | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
                 what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
                 advice: EDITABLE.into(),
             }),

@@ -284,6 +284,7 @@ fn format_of(name: &str, bytes: &[u8]) -> Format {
         [b'g', b'l', b'T', b'F', ..] => Format::Glb,
         [b'p', b'l', b'y', b'\n' | b'\r', ..] => Format::Ply,
         [b'<', ..] => Format::Svg,
+        [b'{', ..] if by_name == Some(Format::Gltf) => Format::Gltf,
         [b'{', ..] => Format::Json,
         [b'x', b',', ..] => Format::Csv,
         _ => by_name.unwrap_or(Format::Toml),

@@ -135,7 +135,7 @@ impl Made for PlaneMade {
             Format::Svg => {
                 let style = if sheet.output.expand { Style::Expanded } else { Style::Linked };
                 let written = self.svg(style, sheet.recipe, sheet.budget)?;
-                Ok(Encoded { bytes: written.text.into_bytes(), warnings: written.warnings })
+                Ok(Encoded { bytes: written.text.into_bytes(), warnings: written.warnings, companion: None })
             }
             Format::Png => {
                 let written = self.svg(Style::Linked, None, sheet.budget)?;
@@ -150,9 +150,9 @@ impl Made for PlaneMade {
             }
             Format::Csv => {
                 let text = csv::write_points(exemplar, &self.outcome.placements, size[0].max(size[1]), sheet.recipe);
-                Ok(Encoded { bytes: text.into_bytes(), warnings: self.left_out()? })
+                Ok(Encoded { bytes: text.into_bytes(), warnings: self.left_out()?, companion: None })
             }
-            Format::Obj | Format::Glb | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
+            Format::Obj | Format::Glb | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
                 what: format!("a drawing of the plane as {}", sheet.format.name()),
                 advice: "write svg, png, json or csv; obj holds curves in space (--box), glb ribbons".into(),
             }),
@@ -196,7 +196,7 @@ impl Made for PlaneMade {
 /// A drawing as a picture.
 pub(crate) fn drawn(svg: &str, units: [f64; 2], sheet: &Sheet<'_>) -> Result<Encoded> {
     let job = RenderJob { svg, units, resolution: resolution(sheet.output)?, recipe: sheet.recipe };
-    Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: Vec::new() })
+    Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: Vec::new(), companion: None })
 }
 
 /// The geometry of an outcome.

@@ -5,7 +5,7 @@ use arabesque_io::{
     file, json,
     mesh::{
         gltf,
-        obj::{self, SCENE_TITLE, solid, strips},
+        obj::{self, MATERIALS_TITLE, SCENE_TITLE, solid, strips},
         ply,
     },
     raster::png,
@@ -55,7 +55,7 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
         if start.starts_with('<') {
             (svg::recipe_of(&text), "a drawing")
         } else if start.starts_with('{') {
-            (json::recipe_of(&text), "a JSON file")
+            (json::recipe_of(&text).or_else(|| gltf::recipe_of(text.as_bytes())), "a JSON file")
         } else if ending == Some(Format::Csv) || start.starts_with("x,y,") {
             (csv::recipe_of(&text), "a file of points")
         } else if ending == Some(Format::Usda) || start.starts_with("#usda") {
@@ -92,16 +92,19 @@ pub fn is_result(bytes: &[u8]) -> bool {
     }
     match bytes.trim_ascii_start() {
         [b'<', ..] => begins("xmlns:arabesque=\"urn:arabesque:1\"") || has("<arabesque:recipe"),
-        [b'{', ..] => begins("\"generator\": \"arabesque\""),
+        [b'{', ..] => {
+            let is_scene = gltf::is_gltf(bytes) && has("\"generator\":\"arabesque ");
+            is_scene || begins("\"generator\": \"arabesque\"")
+        }
         start @ [b'#', ..] => is_of_curves(start),
         [b'x', b',', ..] => has("\n# arabesque recipe:\n"),
         start => start.starts_with(b"arabesque = \"") && has("\n[exemplar]\npath = ") && has("\nhash = \""),
     }
 }
 
-/// Whether an OBJ file begins as those of arabesque do.
+/// Whether an OBJ file, or one of materials, begins as those of arabesque do.
 fn is_of_curves(start: &[u8]) -> bool {
-    ["# curves as polylines", strips::TITLE, solid::TITLE, SCENE_TITLE]
+    ["# curves as polylines", strips::TITLE, solid::TITLE, SCENE_TITLE, MATERIALS_TITLE]
         .iter()
         .any(|title| start.starts_with(title.as_bytes()))
 }

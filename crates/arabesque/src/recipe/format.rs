@@ -22,6 +22,8 @@ pub enum Format {
     Obj,
     /// Ribbons as textured strips, with their pictures; points and meshes.
     Glb,
+    /// The same as GLB, as text with its bytes inside it.
+    Gltf,
     /// Points with attributes, and meshes.
     Ply,
     /// Scenes of meshes as USD text.
@@ -32,13 +34,14 @@ pub enum Format {
 
 impl Format {
     /// Every format, by name.
-    pub const ALL: [(&'static str, Self); 9] = [
+    pub const ALL: [(&'static str, Self); 10] = [
         ("svg", Self::Svg),
         ("png", Self::Png),
         ("json", Self::Json),
         ("csv", Self::Csv),
         ("obj", Self::Obj),
         ("glb", Self::Glb),
+        ("gltf", Self::Gltf),
         ("ply", Self::Ply),
         ("usda", Self::Usda),
         ("toml", Self::Toml),

@@ -69,7 +69,7 @@ impl Made for ReliefMade {
                 return Err(Error::Unsupported { what, advice: "leave the view or the height field out".into() });
             }
             let bytes = encode(points, grid, sheet.recipe, sheet.budget)?;
-            return Ok(Encoded { bytes, warnings: Vec::new() });
+            return Ok(Encoded { bytes, warnings: Vec::new(), companion: None });
         }
         encode_points(points, Item::Points(points), sheet, Said { warnings, stopped: *stopped })
     }

@@ -293,7 +293,7 @@ impl Made for RibbonMade {
         let expanded = sheet.output.expand.then(|| {
             Warning::new("ribbons are always written in place: expand has no meaning for them", "leave it out")
         });
-        Ok(Encoded { bytes, warnings: expanded.into_iter().collect() })
+        Ok(Encoded { bytes, warnings: expanded.into_iter().collect(), companion: None })
     }
 
     fn summary(&self) -> Summary {

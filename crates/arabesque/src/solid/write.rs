@@ -44,11 +44,11 @@ pub(crate) fn encode_mesh(mesh: &TriangleMesh, sheet: &Sheet<'_>, said: Said<'_>
         Format::Glb => gltf::write_scene(&Scene::of_mesh("surface", mesh), recipe, budget)?,
         Format::Json => json::write_mesh(mesh, &said.report(recipe), budget)?.into_bytes(),
         Format::Png => picture(&[Item::Mesh(mesh)], sheet)?,
-        Format::Svg | Format::Csv | Format::Usda | Format::Toml => {
+        Format::Svg | Format::Csv | Format::Gltf | Format::Usda | Format::Toml => {
             return Err(refused("a surface", sheet.format, "write ply, obj, glb, json or png"));
         }
     };
-    Ok(Encoded { bytes, warnings: Vec::new() })
+    Ok(Encoded { bytes, warnings: Vec::new(), companion: None })
 }
 
 /// Writes points; `item` is how they are drawn.
@@ -79,11 +79,11 @@ pub(crate) fn encode_points<const D: usize>(
         Format::Csv => points::write_table(points, recipe, budget)?.into_bytes(),
         Format::Json => json::write_cloud(points, &said.report(recipe), budget)?.into_bytes(),
         Format::Png => picture(&[item], sheet)?,
-        Format::Svg | Format::Usda | Format::Toml => {
+        Format::Svg | Format::Gltf | Format::Usda | Format::Toml => {
             return Err(refused("points with attributes", sheet.format, "write ply, csv, obj, glb, json or png"));
         }
     };
-    Ok(Encoded { bytes, warnings })
+    Ok(Encoded { bytes, warnings, companion: None })
 }
 
 /// A shaded picture.

@@ -33,6 +33,8 @@ pub(super) struct Layer {
     engine: Engine<2>,
     /// Height of the middle of the exemplar's window across.
     middle: f64,
+    /// Height of the floor of the exemplar, where the layer lies on one.
+    floor: f64,
     /// The direction of rows that can slip along one another.
     rows: Option<Vector<2>>,
     centres: Vec<Vector<3>>,
@@ -72,9 +74,11 @@ impl Layer {
         let drawing = Arc::new(Exemplar::new("exemplar", elements, exemplar.classes.clone(), window)?);
         let engine = Engine::new(Arc::clone(&drawing), params, budget)?;
         let middle = exemplar.window.centre()[across];
-        let centres = exemplar.elements.iter().map(|e| e.centre).collect();
+        let centres: Vec<Vector<3>> = exemplar.elements.iter().map(|e| e.centre).collect();
+        let stands = exemplar.heights.iter().zip(&centres).filter(|_| across == exemplar.up);
+        let floor = stands.filter_map(|(height, centre)| Some(centre[across] - (*height)?)).next().unwrap_or(0.0);
         let rows = engine.repeating().and_then(|regular| rows(&drawing, regular.repeat().lattice.vectors));
-        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, rows, centres }))
+        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, floor, rows, centres }))
     }
 
     /// Fills a box, in the middle of which the layer lies; `None` where that turns it about another axis.
@@ -104,7 +108,7 @@ impl Layer {
         };
         (own.seed, own.budget) = (request.seed, request.budget.clone());
         let to = if request.ground.is_some() {
-            self.middle * own.fields.scale.range().0
+            bounds.min[self.across] + (self.middle - self.floor) * own.fields.scale.range().0
         } else {
             bounds.centre()[self.across]
         };
@@ -222,8 +226,11 @@ impl Layer {
     }
 }
 
-/// Whether the elements lie side by side across an axis.
+/// Whether the elements lie side by side across an axis, as those do that all stand on a floor.
 fn is_single(exemplar: &Exemplar<3>, axis: usize) -> bool {
+    if axis == exemplar.up && !exemplar.heights.is_empty() && exemplar.heights.iter().all(Option::is_some) {
+        return true;
+    }
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         high - low

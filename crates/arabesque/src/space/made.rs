@@ -1,11 +1,12 @@
 //! Points and curves in space as files.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use arabesque_core::{
     Bounds, EnergyPoint, Error, Exemplar, Matrix, Outcome, Result, Similarity, Snapshot, StopReason, Vector, Warning,
 };
 use arabesque_io::{
+    file::is_standard_output,
     json::{
         self,
         placements::{PlacementsOptions, write_placements},
@@ -21,7 +22,7 @@ use arabesque_io::{
 };
 
 use crate::{
-    artwork::{Encoded, Geometry, Made, PhysicsSummary, PlacedPoint, Sheet, Summary, points},
+    artwork::{Companion, Encoded, Geometry, Made, PhysicsSummary, PlacedPoint, Sheet, Summary, points},
     plane::{snapshot, unfinished},
     recipe::Format,
     solid::write::{Said, encode_mesh, picture},
@@ -31,6 +32,17 @@ use crate::{
 
 /// How far a written polyline may lie from its curve, in mean spacings.
 const CHORD: f64 = 0.005;
+
+/// The ending of files of materials.
+const MATERIALS: &str = "mtl";
+
+/// The name of the file of materials beside a file; none for standard output.
+fn materials_beside(path: &str) -> Option<String> {
+    if is_standard_output(path) {
+        return None;
+    }
+    Some(Path::new(path).with_extension(MATERIALS).file_name()?.to_string_lossy().into_owned())
+}
 
 /// What takes y to z, and z to the front.
 const UPRIGHT: Matrix<3> = Matrix([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]);
@@ -84,24 +96,27 @@ impl VolumeMade {
             Format::Glb => {
                 let scene = scene.converted(&self.convention, &Convention::default());
                 let options = GltfOptions { recipe: sheet.recipe, instancing: sheet.output.instancing };
-                Ok(Encoded { bytes: write_scene_with(&scene, &options, budget)?, warnings: Vec::new() })
+                Ok(Encoded { bytes: write_scene_with(&scene, &options, budget)?, warnings: Vec::new(), companion: None })
             }
             Format::Obj => {
-                let written = obj::write_scene(&scene, None, sheet.recipe, budget)?;
-                Ok(Encoded { bytes: written.obj.into_bytes(), warnings: written.warnings })
+                // What has a name has its materials in a file beside it.
+                let mtl = sheet.output.path.as_deref().and_then(materials_beside);
+                let written = obj::write_scene(&scene, mtl.as_deref(), sheet.recipe, budget)?;
+                let companion = written.mtl.map(|text| Companion { ending: MATERIALS, bytes: text.into_bytes() });
+                Ok(Encoded { bytes: written.obj.into_bytes(), warnings: written.warnings, companion })
             }
             Format::Usda => {
                 let (text, warnings) = write_usda(&scene, &self.convention, sheet.recipe, budget)?;
-                Ok(Encoded { bytes: text.into_bytes(), warnings })
+                Ok(Encoded { bytes: text.into_bytes(), warnings, companion: None })
             }
             Format::Json => {
                 let options = PlacementsOptions { recipe: sheet.recipe, centre_lines };
                 let text = write_placements(&scene, &options, budget)?;
-                Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new() })
+                Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new(), companion: None })
             }
             Format::Ply if sheet.output.centres => {
                 let text = write_centres_ply(&scene, sheet.recipe, budget)?;
-                Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new() })
+                Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new(), companion: None })
             }
             Format::Png => {
                 // Pictures have z up, scenes y.
@@ -112,7 +127,7 @@ impl VolumeMade {
                     .collect();
                 let shown = scene.meshes.iter().zip(&places).filter(|(_, places)| !places.is_empty());
                 let items: Vec<_> = shown.map(|(m, places)| Item::Placed(&m.mesh, places)).collect();
-                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new() })
+                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new(), companion: None })
             }
             _ => {
                 budget.within("triangles in all places", scene.triangles(), ("nodes", budget.limits().nodes))?;
@@ -149,13 +164,19 @@ impl Made for VolumeMade {
                 let page = json::Frame { view: frame, unit: None, recipe: sheet.recipe };
                 (json::write_json(exemplar, outcome, &page)?, Vec::new())
             }
-            Format::Svg | Format::Png | Format::Glb | Format::Ply | Format::Usda | Format::Toml => {
+            Format::Svg
+            | Format::Png
+            | Format::Glb
+            | Format::Gltf
+            | Format::Ply
+            | Format::Usda
+            | Format::Toml => {
                 let what = format!("a result in space as {}", sheet.format.name());
                 let advice = "write obj (curves), csv (points) or json (both)";
                 return Err(Error::Unsupported { what, advice: advice.into() });
             }
         };
-        Ok(Encoded { bytes: text.into_bytes(), warnings })
+        Ok(Encoded { bytes: text.into_bytes(), warnings, companion: None })
     }
 
     fn drawn_from(&self, format: Format) -> Option<Format> {

@@ -19,12 +19,13 @@ mod scene;
 mod scene_tests;
 mod shell;
 mod skinned;
+mod stacks;
 mod suiting;
 
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, StopReason, Warning,
+    Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, Snapshot, StopReason, Warning,
     Watch,
 };
 use arabesque_io::mesh::scene::Convention;
@@ -48,6 +49,7 @@ use pile::Pile;
 use place::{Filling, place};
 use scene::Bodies;
 use shell::Shell;
+use stacks::{Stacks, stacked};
 
 /// An exemplar in space, analysed.
 #[derive(Debug)]
@@ -60,6 +62,8 @@ pub(crate) struct Volume {
     /// The same as a lattice of space, where it is one.
     pile: Option<Arc<Pile>>,
     engine: Engine<3>,
+    /// The scene as it is in its file, where what lies on something else is one element with it.
+    stacks: Option<Stacks>,
 }
 
 /// Reads an exemplar to fill a box in space.
@@ -73,6 +77,11 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
             Bodies::read(preparation.exemplar.name(), scene, (space.up.axis(), &space.deform, params.samples), budget)?;
         preparation.warnings.extend(warnings);
         let others = space.floor || space.on.is_some();
+        let (bodies, stacks) = if space.stacks() {
+            stacked(preparation.exemplar.name(), bodies, budget)?
+        } else {
+            (bodies, None)
+        };
         let bodies = if space.stands() { bodies.on_floor(others, &space.constrain)? } else { bodies };
         preparation.exemplar = preparation.exemplar.embedding(&bytes);
         let exemplar = Arc::clone(&bodies.exemplar);
@@ -81,7 +90,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
         let is_soft = !exemplar.softs.is_empty();
         let layer = if is_soft { None } else { layer(&exemplar, &params, budget)? };
         let pile = if layer.is_none() && !is_soft { Pile::of(&exemplar, budget)?.map(Arc::new) } else { None };
-        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), layer, pile, engine });
+        return Ok(Volume { exemplar, bodies: Some(Arc::new(bodies)), layer, pile, engine, stacks });
     }
     let exemplar = match LoadedExemplar::read(&preparation.exemplar, &bytes, space.method, budget)? {
         LoadedExemplar::Space(exemplar, warnings) => {
@@ -100,7 +109,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     let exemplar = Arc::new(exemplar);
     let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
         .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
-    Ok(Volume { exemplar, bodies: None, layer: None, pile: None, engine })
+    Ok(Volume { exemplar, bodies: None, layer: None, pile: None, engine, stacks: None })
 }
 
 impl Volume {
@@ -118,6 +127,10 @@ impl Volume {
                 format!("{what} for points and curves in space"),
                 "give a scene of meshes, or a box alone",
             );
+        }
+        if self.stacks.is_some() && space.keep.is_some() {
+            let advice = "give both in the recipe that is prepared";
+            return unsupported("keep for a scene whose stacks are elements".into(), advice);
         }
         let asked = [("physics", space.physics.is_some()), ("keep", space.keep.is_some())];
         match asked.into_iter().find(|(_, is_given)| *is_given) {
@@ -181,21 +194,35 @@ struct Resolved {
 
 impl Ready for Volume {
     fn understood(&self) -> String {
-        let told = self.bodies.as_ref().map_or("", |bodies| bodies.told.as_str());
-        let more = if told.is_empty() { String::new() } else { format!("; {told}") };
-        understood(&self.exemplar) + &more
+        let shown = self.stacks.as_ref().map_or(self.bodies.as_ref(), |stacks| Some(&stacks.single));
+        let told = shown.map_or("", |bodies| bodies.told.as_str());
+        let mut more = if told.is_empty() { String::new() } else { format!("; {told}") };
+        if let Some(stacks) = &self.stacks {
+            let (count, elements) = stacks.count();
+            more += &format!("; {count} stacks of {elements} elements, each placed as one");
+        }
+        understood(shown.map_or(&self.exemplar, |bodies| &bodies.exemplar)) + &more
     }
 
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         let Resolved { request, physical, shell } = self.resolve(&mut context)?;
         let frame = request.domain.bounds();
         let origin = context.origin();
-        let kind = (&self.exemplar, &self.bodies);
+        let (exemplar, bodies) = match &self.stacks {
+            None => (Arc::clone(&self.exemplar), self.bodies.clone()),
+            Some(stacks) => (Arc::clone(&stacks.single.exemplar), Some(Arc::clone(&stacks.single))),
+        };
+        let kind = (&exemplar, &bodies);
         let convention = match &context.job {
             Job::Space(space) => Convention { up: space.up.into(), metres_per_unit: space.unit.metres() },
             _ => Convention::default(),
         };
-        let make = |snapshot| VolumeMade::of_snapshot(kind, (frame, convention), snapshot);
+        let make = |mut snapshot: Snapshot<3>| {
+            if let Some(stacks) = &self.stacks {
+                snapshot.placements = stacks.taken_apart(&snapshot.placements);
+            }
+            VolumeMade::of_snapshot(kind, (frame, convention), snapshot)
+        };
         let mut show = Show { watch, origin: &origin, make };
         let floor = self.bodies.as_ref().and_then(|bodies| bodies.floor);
         let flat = match (&self.layer, shell) {
@@ -215,7 +242,9 @@ impl Ready for Volume {
             None => None,
         };
         outcome.warnings.splice(0..0, context.warnings);
-        let (exemplar, bodies) = (Arc::clone(&self.exemplar), self.bodies.clone());
+        if let Some(stacks) = &self.stacks {
+            outcome.placements = stacks.taken_apart(&outcome.placements);
+        }
         Ok(Artwork::new(origin, VolumeMade { exemplar, bodies, frame, convention, outcome, physics }))
     }
 }
@@ -236,12 +265,41 @@ pub fn is_scene_of_meshes(exemplar: &Input, resources: &Resources) -> Result<boo
     Ok(scene.points.is_empty() && !scene.nodes.is_empty())
 }
 
+/// A scene of meshes as an exemplar, what is to be told of it, and warnings; `None` for files of another kind.
+///
+/// # Errors
+/// As [`Recipe::prepare`] for a file that cannot be read.
+pub(crate) fn scene_understood(input: &Input, bytes: &[u8], resources: &Resources) -> Result<Option<SceneUnderstood>> {
+    if !may_be_scene(input.name(), bytes) {
+        return Ok(None);
+    }
+    let files = Files::new(resources.clone(), &Recipe::new(input.clone(), Space::default()));
+    let scene = scene_of(input, bytes, &files)?;
+    if scene.nodes.is_empty() || !scene.points.is_empty() {
+        return Ok(None);
+    }
+    let space = Space::default();
+    let (bodies, warnings) =
+        Bodies::read(input.name(), scene, (space.up.axis(), &space.deform, None), files.budget())?;
+    let mut told = Vec::new();
+    told.extend(Some(bodies.told.clone()).filter(|told| !told.is_empty()));
+    let exemplar = Arc::clone(&bodies.exemplar);
+    if let (_, Some(stacks)) = stacked(input.name(), bodies, files.budget())? {
+        let (count, elements) = stacks.count();
+        told.push(format!("on a floor {count} stacks of {elements} elements, each placed as one"));
+    }
+    Ok(Some((exemplar, told, warnings)))
+}
+
+/// An exemplar, what is told of it, and warnings.
+pub(crate) type SceneUnderstood = (Arc<Exemplar<3>>, Vec<String>, Vec<Warning>);
+
 /// Lets the elements of a run come to rest that nobody stopped; where it reached a limit, on an account of its own.
 fn settle(
     physical: &Physical,
     outcome: &mut Outcome<3>,
     budget: &Budget,
-    watch: &mut dyn Watch<arabesque_core::Snapshot<3>>,
+    watch: &mut dyn Watch<Snapshot<3>>,
 ) -> Result<Option<PhysicsSummary>> {
     let budget = &if outcome.stopped == StopReason::Limit { budget.fresh() } else { budget.clone() };
     if outcome.stopped == StopReason::Stopped {

@@ -1,13 +1,16 @@
 //! Physics for elements in space: between the iterations of the engine, and at the end.
 
-use std::sync::{Arc, Mutex};
+use std::{
+    collections::{BTreeMap, btree_map::Entry},
+    sync::{Arc, Mutex},
+};
 
 use arabesque_core::{
-    Between, Border, Budget, Error, Outcome, Placement, Request as EngineRequest, Result, Similarity, StopReason,
+    Between, Border, Budget, Error, Matrix, Outcome, Placement, Request as EngineRequest, Result, Similarity, StopReason,
     Vector, Warning,
 };
 use arabesque_patterns::Deform;
-use arabesque_physics::{Body, PhysicsParams, Run, Shape, Side, Surface, Surroundings, World};
+use arabesque_physics::{Body, PhysicsParams, Run, Shape, Side, Surface, Surroundings, World, clearance};
 use arabesque_surface::MeshIndex;
 
 use crate::{
@@ -24,10 +27,12 @@ const STRONGEST: f64 = 10.0;
 /// Elements as bodies, and what is around them.
 #[derive(Debug)]
 pub(super) struct Physical {
-    /// What stands for each mesh of the scene.
-    shapes: Vec<Arc<Shape>>,
+    /// What stands for each mesh that a node of the scene shows.
+    shapes: BTreeMap<usize, Arc<Shape>>,
     /// The mesh of each element of the exemplar, and how it lies there.
     sources: Vec<(usize, Similarity<3>)>,
+    /// How much larger than elements their colliders are, so that what touches keeps the gap that it has in the exemplar.
+    larger: f64,
     surroundings: Surroundings,
     gravity: Vector<3>,
     /// The mesh towards which elements fall, where they do.
@@ -64,23 +69,33 @@ impl Physical {
         }
         let scene = &bodies.scene;
         let budget = context.budget().stage("preparing physics");
-        let shape = |(k, shown): (usize, &arabesque_io::mesh::gltf::SceneMesh)| {
-            let called = format!("{}: mesh {k} {}", context.exemplar_name(), shown.name);
-            Ok(Arc::new(Shape::new(&shown.mesh, called.trim_end(), &budget)?))
-        };
-        let shapes: Vec<_> = scene.meshes.iter().enumerate().map(shape).collect::<Result<_>>()?;
-        context.warnings.extend(shapes.iter().filter_map(|shape| shape.warning().cloned()));
+        let mut shapes = BTreeMap::new();
+        for k in scene.nodes.iter().map(|node| node.mesh) {
+            if let Entry::Vacant(entry) = shapes.entry(k) {
+                let called = format!("{}: mesh {k} {}", context.exemplar_name(), scene.meshes[k].name);
+                entry.insert(Arc::new(Shape::new(&scene.meshes[k].mesh, called.trim_end(), &budget)?));
+            }
+        }
+        context.warnings.extend(shapes.values().filter_map(|shape| shape.warning().cloned()));
         let gravity = gravity(job)?;
         let ground = match &mut job.on {
             Some(on) if gravity.is_none() => Some(indexed_mesh(on, context.files)?.0),
             _ => None,
         };
-        let sources = scene.nodes.iter().map(|node| (node.mesh, node.transform)).collect();
+        let sources: Vec<_> = scene.nodes.iter().map(|node| (node.mesh, node.transform)).collect();
+        let body = |(mesh, pose): &(usize, Similarity<3>)| {
+            Body { pose: *pose, shape: Arc::clone(&shapes[mesh]), frozen: false, gravity: None }
+        };
+        let larger = 1.0 + clearance(&sources.iter().map(body).collect::<Vec<_>>(), &budget)?;
+        let mut half: Vec<f64> = sources.iter().map(|(mesh, pose)| 0.5 * shapes[mesh].size() * pose.scale).collect();
+        half.sort_by(f64::total_cmp);
+        let gap = (larger - 1.0) * half.get(half.len() / 2).copied().unwrap_or(0.0);
         let substeps = if let Physics::Substeps(count) = physics { count } else { 0 };
         Ok(Some(Arc::new(Self {
             shapes,
             sources,
-            surroundings: surroundings(job, request, context)?,
+            surroundings: surroundings(job, request, (gap, context))?,
+            larger,
             gravity: if ground.is_some() { Vector::ZERO } else { gravity.unwrap_or_else(|| down(job)) },
             ground,
             params,
@@ -116,10 +131,11 @@ impl Physical {
         let mut world = World::new(self.surroundings.clone(), self.gravity, &self.params)?;
         let body = |placement: &Placement<3>| {
             let (mesh, own) = &self.sources[placement.source];
-            let shape = Arc::clone(&self.shapes[*mesh]);
+            let shape = Arc::clone(&self.shapes[mesh]);
             let pose = placement.transform.after(own);
             let towards = |ground: &MeshIndex| -ground.closest(pose.apply(shape.centre())).normal;
             let gravity = self.ground.as_ref().map(towards);
+            let pose = pose.after(&resized(&shape, self.larger));
             Body { pose, shape, frozen: placement.frozen.is_some(), gravity }
         };
         world.place(placements.iter().map(body).collect())?;
@@ -130,8 +146,10 @@ impl Physical {
     fn take_over(&self, world: &World, placements: &mut [Placement<3>]) {
         for (placement, body) in placements.iter_mut().zip(world.bodies()) {
             let own = &self.sources[placement.source].1;
-            if !body.frozen && body.pose != placement.transform.after(own) {
-                placement.transform = body.pose.after(&own.inverse());
+            let before = placement.transform.after(own).after(&resized(&body.shape, self.larger));
+            if !body.frozen && body.pose != before {
+                let pose = body.pose.after(&resized(&body.shape, 1.0 / self.larger));
+                placement.transform = pose.after(&own.inverse());
             }
         }
     }
@@ -171,8 +189,17 @@ fn gravity(job: &Space) -> Result<Option<Vector<3>>> {
     Err(Error::parameter("gravity", given.0.map(|x| x.to_string()).join(","), expected))
 }
 
-/// Walls, floors and containers at the place of the job.
-fn surroundings(job: &mut Space, request: &EngineRequest<3>, context: &RunContext<'_>) -> Result<Surroundings> {
+/// What makes a body larger about its middle.
+fn resized(shape: &Shape, factor: f64) -> Similarity<3> {
+    Similarity::about(shape.centre(), shape.centre(), Matrix::identity(), factor)
+}
+
+/// Walls, floors and containers at the place of the job. The floor is lower by the gap that is around elements.
+fn surroundings(
+    job: &mut Space,
+    request: &EngineRequest<3>,
+    (gap, context): (f64, &RunContext<'_>),
+) -> Result<Surroundings> {
     let (border, bounds) = (request.border, request.domain.bounds());
     let mut around = Surroundings::default();
     if let Some(inside) = &mut job.inside {
@@ -196,7 +223,7 @@ fn surroundings(job: &mut Space, request: &EngineRequest<3>, context: &RunContex
     } else {
         around.middles = Some(bounds);
     }
-    Ok(if request.ground.is_some() { around.floor(job.up.axis(), bounds.min[job.up.axis()]) } else { around })
+    Ok(if request.ground.is_some() { around.floor(job.up.axis(), bounds.min[job.up.axis()] - gap) } else { around })
 }
 
 fn summary(run: &Run) -> PhysicsSummary {

@@ -1,6 +1,9 @@
 //! Scenes of meshes as exemplars: each node is an element, nodes of one name are a class.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use arabesque_core::{
     Bounds, Budget, Build, Class, Element, Error, Exemplar, Grid, Outline, Placement, Result, Role, Similarity, Soft,
@@ -26,6 +29,8 @@ const MARGIN: f64 = 3.0;
 const THINNEST: f64 = 12.0;
 /// What is nearer to the floor than this share of its size stands on it.
 const NEAR: f64 = 0.12;
+/// The size of what is flatter counts as so many times its height.
+const FLATTEST: f64 = 4.0;
 /// A frame that is thinner than its elements by this factor is flat.
 const FLAT: f64 = 0.2;
 /// A frame is made wider by no more than this factor.
@@ -34,6 +39,8 @@ const WIDEST: f64 = 1.6;
 const MANY: usize = 64;
 /// Shares of all samples along each axis between which the middle of a heap is.
 const CORE: (f64, f64) = (0.3, 0.7);
+/// Vertices are the same where they differ by no more than files round, relative to their mesh.
+const ROUNDED: f64 = 1e-6;
 /// Points are scattered so that so many are in a square of their spacing.
 const PACKED: f64 = 0.7;
 
@@ -82,7 +89,9 @@ impl Bodies {
             warnings.push(Warning::new(message, "use --method structures, which continues both"));
             scene.points = arabesque_core::PointSet::default();
         }
-        if scene.nodes.len() == 1 && scene.components(budget)? > 1 {
+        // The parts of what is one element stay together.
+        let is_whole = scene.nodes.len() == 1 && scene.meshes[scene.nodes[0].mesh].parts.is_empty();
+        if is_whole && scene.components(budget)? > 1 {
             let frame = scene.frame;
             scene = scene.split_components(budget)?;
             scene.frame = frame;
@@ -93,13 +102,22 @@ impl Bodies {
         if let Some(bending) = bending((name, &scene), &found, (deform, samples), budget)? {
             return Ok((Self::bent((name, up), scene, found, bending)?, warnings));
         }
-        let bodies = bodies(name, &scene.meshes, budget)?;
+        Ok((Self::of(name, scene, up, budget)?, warnings))
+    }
+
+    /// Takes a scene of which nothing bends for an exemplar.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a mesh without area.
+    pub(crate) fn of(name: &str, scene: Scene, up: usize, budget: &Budget) -> Result<Self> {
+        let found = scene.classes();
+        let bodies = bodies(name, &scene, budget)?;
         let classes = found.names.into_iter().map(|name| Class { name }).collect();
         let mut elements = Vec::with_capacity(scene.nodes.len());
         let (mut first, mut seen) = (BTreeMap::new(), Vec::with_capacity(scene.nodes.len()));
         for (node, class) in scene.nodes.iter().zip(found.of_node) {
             budget.spend(1000)?;
-            let body = &bodies[node.mesh];
+            let body = &bodies[&node.mesh];
             let usual = *first.entry((class, node.mesh)).or_insert(node.transform.rotation);
             // Of the rotations that are the same to look at, the one that is most like that of the first: none is as good as another.
             let turn = body.symmetry.nearest(&node.transform.rotation, &usual);
@@ -117,9 +135,15 @@ impl Bodies {
         }
         let mut exemplar = framed(name, elements, classes, scene.frame)?;
         (exemplar.up, exemplar.seen) = (up, seen);
-        exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[node.mesh].solid)).collect();
+        exemplar.solids = scene.nodes.iter().map(|node| Arc::clone(&bodies[&node.mesh].solid)).collect();
+        let several = scene.nodes.iter().filter(|node| !scene.meshes[node.mesh].parts.is_empty()).count();
+        let told = match several {
+            0 => String::new(),
+            1 => "1 element of several meshes".into(),
+            n => format!("{n} elements of several meshes"),
+        };
         let (scene, exemplar) = (Arc::new(scene), Arc::new(exemplar));
-        Ok((Self { scene, exemplar, floor: None, told: String::new() }, warnings))
+        Ok(Self { scene, exemplar, floor: None, told })
     }
 
     /// A scene of which something bends.
@@ -175,7 +199,9 @@ impl Bodies {
         let mut number_of = BTreeMap::new();
         let (mut heights, mut classes) = (Vec::new(), exemplar.classes.clone());
         for element in &mut exemplar.elements {
-            let size = 2.0 * element.outline.radius(element.centre);
+            let high = element.outline.points().map(|p| p[up]).fold(f64::NEG_INFINITY, f64::max) - lowest(element);
+            // A coin on another does not lie on the floor.
+            let size = (2.0 * element.outline.radius(element.centre)).min(FLATTEST * high);
             let stands = bound[element.class] && lowest(element) - floor <= NEAR * size;
             heights.push(stands.then_some(element.centre[up] - floor));
             if stands {
@@ -195,12 +221,21 @@ impl Bodies {
     /// # Errors
     /// [`Error::Input`] for a mesh that the exemplar does not have.
     pub(crate) fn kept(&self, name: &str, kept: &Scene, budget: &Budget) -> Result<Vec<Placement<3>>> {
+        // The first node of every mesh that is more than a part.
+        let mut shown = BTreeMap::new();
+        self.scene.nodes.iter().enumerate().for_each(|(n, node)| {
+            shown.entry(node.mesh).or_insert(n);
+        });
         let source_of = |mesh: &SceneMesh| {
+            let size = mesh.mesh.bounds().size().norm();
+            let near = |(p, q): (&Vector<3>, &Vector<3>)| (*p - *q).norm() <= ROUNDED * size;
             let is_same = |own: &SceneMesh| {
-                own.mesh.positions == mesh.mesh.positions && own.mesh.triangles == mesh.mesh.triangles
+                let (own, mesh) = (&own.mesh, &mesh.mesh);
+                own.triangles == mesh.triangles
+                    && own.positions.len() == mesh.positions.len()
+                    && own.positions.iter().zip(&mesh.positions).all(near)
             };
-            let known = self.scene.meshes.iter().position(is_same)?;
-            self.scene.nodes.iter().position(|node| node.mesh == known)
+            shown.iter().find(|(own, _)| is_same(&self.scene.meshes[**own])).map(|(_, node)| *node)
         };
         let mut sources = Vec::with_capacity(kept.meshes.len());
         for mesh in &kept.meshes {
@@ -320,8 +355,12 @@ fn thickened(mut exemplar: Exemplar<3>) -> Exemplar<3> {
     exemplar
 }
 
-fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>> {
-    let one = |(number, shape): (usize, &SceneMesh)| {
+/// What every mesh is that some node shows, by its number.
+fn bodies(name: &str, scene: &Scene, budget: &Budget) -> Result<BTreeMap<usize, Body>> {
+    let shown: BTreeSet<usize> = scene.nodes.iter().map(|node| node.mesh).collect();
+    let is_many = shown.len() > MANY;
+    let one = |number: usize| {
+        let shape = &scene.meshes[number];
         let called = format!("{name}: mesh {number} {}", shape.name);
         let index = MeshIndex::new(&shape.mesh, called.trim_end(), budget)?;
         let area = index.area();
@@ -333,14 +372,14 @@ fn bodies(name: &str, meshes: &[SceneMesh], budget: &Budget) -> Result<Vec<Body>
         points.extend(corners(&shape.mesh));
         let centre = centre(&shape.mesh, &points);
         let solid = Arc::new(solid(&index, &points, centre, budget)?);
-        let symmetry = if meshes.len() > MANY {
+        let symmetry = if is_many {
             Symmetry::default()
         } else {
             Symmetry::of(&shape.mesh, &index, (centre, &points), budget)?
         };
-        Ok(Body { centre, points, colour: colour(&shape.mesh), solid, symmetry })
+        Ok((number, Body { centre, points, colour: colour(&shape.mesh), solid, symmetry }))
     };
-    meshes.iter().enumerate().map(one).collect()
+    shown.into_iter().map(one).collect()
 }
 
 /// The volume of a mesh: its distances on a grid around it.

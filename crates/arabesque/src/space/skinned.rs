@@ -52,7 +52,7 @@ fn bent(shape: &SceneMesh, positions: Vec<Vector<3>>, turned: &[Matrix<3>]) -> S
         ..own.clone()
     };
     let primitives = shape.primitives.iter().map(|p| turned_primitive(p, turned)).collect();
-    SceneMesh { name: shape.name.clone(), mesh, primitives }
+    SceneMesh { primitives, ..SceneMesh::new(shape.name.clone(), mesh) }
 }
 
 fn turned_primitive(primitive: &Primitive, turned: &[Matrix<3>]) -> Primitive {
@@ -74,7 +74,9 @@ fn without_unused(scene: Scene) -> Scene {
     let mut number = vec![None; scene.meshes.len()];
     scene.nodes.iter().for_each(|node| number[node.mesh] = Some(0));
     number.iter_mut().flatten().enumerate().for_each(|(n, entry)| *entry = n);
-    let kept = scene.meshes.into_iter().zip(&number).filter(|(_, n)| n.is_some()).map(|(mesh, _)| mesh);
+    // What is put together is written as one mesh, as what bends is.
+    let whole = |mesh: SceneMesh| SceneMesh { parts: Vec::new(), ..mesh };
+    let kept = scene.meshes.into_iter().zip(&number).filter(|(_, n)| n.is_some()).map(|(mesh, _)| whole(mesh));
     let meshes = kept.collect();
     let nodes = scene.nodes.into_iter().map(|node| SceneNode { mesh: number[node.mesh].unwrap_or(0), ..node });
     let nodes = nodes.collect();

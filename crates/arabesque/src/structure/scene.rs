@@ -78,7 +78,7 @@ impl Made for SceneMade {
         match sheet.format {
             Format::Glb => {
                 let bytes = write_scene(&self.scene, sheet.recipe, budget)?;
-                Ok(Encoded { bytes, warnings: Vec::new() })
+                Ok(Encoded { bytes, warnings: Vec::new(), companion: None })
             }
             Format::Png => {
                 let places: Vec<_> = (0..self.scene.meshes.len()).map(|m| self.scene.places(m)).collect();
@@ -91,7 +91,7 @@ impl Made for SceneMade {
                     )
                     .collect();
                 items.extend((!points.is_empty()).then_some(Item::Points(points)));
-                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new() })
+                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new(), companion: None })
             }
             Format::Csv => encode_points(&self.outcome.points, Item::Points(&self.outcome.points), sheet, self.said()),
             _ => {

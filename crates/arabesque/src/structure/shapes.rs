@@ -47,6 +47,8 @@ pub(super) fn exemplar(name: &str, bytes: &[u8], files: &Files) -> Result<(Cloud
         let message = format!("{name}: {} normals have no length: none of them is used", scene.zero_normals);
         warnings.push(Warning::new(message, "write the points again with all their normals, or without"));
     }
+    // Every element is one rigid thing here, whatever it is put together from.
+    scene.meshes.iter_mut().for_each(|mesh| mesh.parts.clear());
     let Scene { points, meshes, nodes, looks, .. } = scene;
     if nodes.is_empty() {
         return Ok((Cloud::Space(points), Shapes::default(), warnings));

@@ -125,6 +125,9 @@ fn print(report: &Report) -> Result<(), Failure> {
             rounded(style.width)
         )?;
     }
+    for told in &report.told {
+        writeln!(out, "  {told}")?;
+    }
     for known in &report.understood {
         writeln!(out, "  {known}")?;
     }

@@ -70,7 +70,7 @@ impl Job {
         match self {
             Self::Fill(_) | Self::Redo(_) => Format::Svg,
             Self::Space(_) if is(exemplar, Format::Csv) => Format::Csv,
-            Self::Space(_) if is(exemplar, Format::Glb) => Format::Glb,
+            Self::Space(_) if is(exemplar, Format::Glb) || is(exemplar, Format::Gltf) => Format::Glb,
             Self::Space(_) => Format::Obj,
             Self::Ribbon(ribbon) if is(&ribbon.along, Format::Obj) => Format::Glb,
             Self::Ribbon(_) => Format::Png,

@@ -1,6 +1,7 @@
 //! The two chunks of a GLB file: a document in JSON, and bytes.
 
-use arabesque_core::{Error, Result};
+use arabesque_core::{Budget, Error, Result};
+use base64::{Engine, engine::general_purpose::STANDARD};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -104,10 +105,47 @@ pub(super) fn chunks<'a>(name: &str, bytes: &'a [u8]) -> Result<(&'a [u8], &'a [
     }
 }
 
-/// The recipe in a file that this library wrote.
+/// A GLB file as text: the document alone, with its bytes inside it as Base64.
+///
+/// # Errors
+/// [`Error::Input`] for what is no GLB file, [`Error::Limit`] when the memory is used up.
+pub fn as_text(glb: &[u8], budget: &Budget) -> Result<Vec<u8>> {
+    let name = "GLB file";
+    let (text, binary) = chunks(name, glb)?;
+    let _held = budget.hold("a scene as text", glb.len().saturating_mul(IN_TEXT))?;
+    budget.spend(PER_BYTE.saturating_mul(glb.len() as u64))?;
+    let text = std::str::from_utf8(text).map_err(|e| Error::input(name, e.to_string(), "write GLB instead"))?;
+    let text = text.trim_end_matches([' ', '\0']);
+    // Within strings there are no quotes, so that this is the list itself.
+    let Some((before, after)) = text.rsplit_once(BUFFER) else { return Ok(format!("{text}\n").into_bytes()) };
+    let mut out = String::with_capacity(text.len() + binary.len() / 3 * 4 + BYTES.len() + 64);
+    out += before;
+    out += BUFFER;
+    out += "\"uri\":\"";
+    out += BYTES;
+    STANDARD.encode_string(binary, &mut out);
+    out += "\",";
+    out += after;
+    out.push('\n');
+    Ok(out.into_bytes())
+}
+
+/// How the list of buffers begins in a document.
+const BUFFER: &str = "\"buffers\":[{";
+/// How bytes in a text begin.
+const BYTES: &str = "data:application/octet-stream;base64,";
+/// Memory and work of a byte of a file that becomes text.
+const IN_TEXT: usize = 4;
+const PER_BYTE: u64 = 10;
+
+/// The recipe in a file that this library wrote, as GLB or as text.
 pub fn recipe_of(bytes: &[u8]) -> Option<String> {
-    let length = u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize;
-    let text = bytes.get(20..20_usize.checked_add(length)?)?;
+    let text = if is_glb(bytes) {
+        let length = u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize;
+        bytes.get(20..20_usize.checked_add(length)?)?
+    } else {
+        bytes
+    };
     let document: Value = serde_json::from_slice(text).ok()?;
     Some(document.get("asset")?.get("extras")?.get(RECIPE)?.as_str()?.to_owned())
 }

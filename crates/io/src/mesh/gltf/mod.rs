@@ -8,7 +8,7 @@ mod strips;
 mod tests;
 mod write;
 
-pub use container::{is_glb, is_gltf, recipe_of};
+pub use container::{as_text, is_glb, is_gltf, recipe_of};
 pub use placed::GlbElements;
 pub use read::{read_scene, read_scene_beside};
 pub use strips::write_glb;

@@ -285,7 +285,7 @@ impl<'a> Reader<'a> {
         let found: Vec<_> = (0..positions.len()).map(colour).collect();
         let colours = found.iter().any(Option::is_some).then(|| found.iter().map(|c| c.unwrap_or([1.0; 3])).collect());
         let mesh = TriangleMesh { positions, triangles, normals, colours, parts: Vec::new() };
-        let shape = SceneMesh { name: element.name.clone(), mesh, primitives };
+        let shape = SceneMesh { primitives, ..SceneMesh::new(element.name.clone(), mesh) };
         let node = SceneNode { mesh: self.scene.meshes.len(), ..SceneNode::default() };
         self.scene.nodes.push(SceneNode { name: element.name, ..node });
         self.scene.meshes.push(shape);

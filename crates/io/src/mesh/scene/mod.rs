@@ -3,6 +3,7 @@
 //! A [`Scene`] holds every mesh once and a node for each place of it. What files say beyond that, it carries along for those who write
 //! it again: materials, textures and pictures ([`Looks`]), the classes of elements ([`Scene::classes`]), the box of the pattern.
 
+mod assembly;
 mod classes;
 mod congruent;
 mod convention;
@@ -12,6 +13,7 @@ mod rotation;
 mod split;
 mod whole;
 
+pub(super) use assembly::{Branch, Tree};
 pub use classes::{Classes, stem};
 pub use convention::{Convention, Up};
 pub use look::{Alpha, Attributes, Looks, Material, Picture, Primitive, SLOTS, Sampler, Slot, Texture, TextureUse};

@@ -14,12 +14,15 @@ pub struct SceneMesh {
     /// How its triangles look, as runs of them with a material each; empty where nothing but the colours of `mesh` is known. Runs that
     /// do not fit the mesh count as none.
     pub primitives: Vec<Primitive>,
+    /// Where it is put together from several meshes of the scene: these, in its coordinates. They have no parts themselves, and `mesh` and
+    /// `primitives` are all of them together; without parts it is whole.
+    pub parts: Vec<SceneNode>,
 }
 
 impl SceneMesh {
     /// A mesh that looks as its own colours say.
     pub fn new(name: impl Into<String>, mesh: TriangleMesh) -> Self {
-        Self { name: name.into(), mesh, primitives: Vec::new() }
+        Self { name: name.into(), mesh, ..Self::default() }
     }
 }
 

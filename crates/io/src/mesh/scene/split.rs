@@ -16,15 +16,19 @@ const PER_CORNER: u64 = 150;
 const BYTES: usize = 200;
 
 impl Scene {
-    /// Number of connected components of the meshes, each mesh once: more than there are meshes where one is a scene in itself.
+    /// Number of connected components of the meshes, each mesh once: more than there are meshes where one is a scene in itself. A mesh of
+    /// several parts counts as one.
     ///
     /// # Errors
     /// Those of the budget.
     pub fn components(&self, budget: &Budget) -> Result<usize> {
-        self.meshes.iter().map(|mesh| Ok(components(&mesh.mesh, budget)?.len())).sum()
+        let count = |mesh: &SceneMesh| {
+            if mesh.parts.is_empty() { Ok(components(&mesh.mesh, budget)?.len()) } else { Ok(1) }
+        };
+        self.meshes.iter().map(count).sum()
     }
 
-    /// The same scene with a node for each connected component. Triangles are connected where their corners are at exactly one place.
+    /// The same scene with a node for each connected component, none of them put together from parts. Triangles are connected where their corners are at exactly one place.
     /// Components of one shape, but for where they are, how they are turned and how large, share a mesh; those whose triangles are
     /// joined in the same way, though bent, are of one class, which is called after the node and has a number where there are several.
     ///
@@ -75,12 +79,17 @@ impl Scene {
     pub fn share_shapes(self, budget: &Budget) -> Result<Self> {
         let budget = budget.stage("comparing meshes");
         let mut sharing = Sharing::new(&self.looks, &budget);
-        let mut places = Vec::with_capacity(self.meshes.len());
-        for mesh in &self.meshes {
+        let mut places = vec![(0, Similarity::identity()); self.meshes.len()];
+        // What is put together comes after its parts.
+        let (whole, together): (Vec<usize>, Vec<usize>) =
+            (0..self.meshes.len()).partition(|n| self.meshes[*n].parts.is_empty());
+        for number in whole.into_iter().chain(together) {
+            let mesh = &self.meshes[number];
             let all: Vec<usize> = (0..mesh.mesh.triangles.len()).collect();
-            let (centre, part) = centred(part_of(mesh, &all));
+            let (centre, mut part) = centred(part_of(mesh, &all));
+            part.parts = mesh.parts.iter().map(|own| in_place(own, &places, centre)).collect();
             let found = sharing.add(part)?;
-            places.push((found.mesh, Similarity::shift(centre).after(&found.place)));
+            places[number] = (found.mesh, Similarity::shift(centre).after(&found.place));
         }
         let nodes = self.nodes.iter().filter_map(|node| {
             let (mesh, place) = places.get(node.mesh)?;
@@ -150,7 +159,14 @@ fn part_of(whole: &SceneMesh, triangles: &[usize]) -> SceneMesh {
         parts: Vec::new(),
     };
     let primitives = whole.primitives.iter().filter_map(|p| primitive_of(p, triangles, &part, &used)).collect();
-    SceneMesh { name: whole.name.clone(), mesh: part, primitives }
+    SceneMesh { primitives, ..SceneMesh::new(whole.name.clone(), part) }
+}
+
+/// A part of a mesh, in terms of the meshes that are shared and of a mesh around the origin.
+fn in_place(part: &SceneNode, places: &[(usize, Similarity<3>)], centre: Vector<3>) -> SceneNode {
+    let (mesh, place) = places.get(part.mesh).copied().unwrap_or((part.mesh, Similarity::identity()));
+    let transform = Similarity::shift(-centre).after(&part.transform).after(&place);
+    SceneNode { mesh, transform, ..part.clone() }
 }
 
 /// What a primitive is in a part of its mesh; `None` for one that has no triangle there.

@@ -1,4 +1,4 @@
-//! The elements of a scene as nodes of its document.
+//! The elements of a scene as nodes of its document, those of several meshes with a node below them for each.
 
 use std::{collections::BTreeMap, ops::Range};
 
@@ -8,7 +8,7 @@ use serde_json::{Value, value::RawValue};
 
 use super::{
     looks::{ADVICE, Looks},
-    node::{NodeIn, NodeText, item},
+    node::{NodeIn, NodeText, item, place as place_of, with_children, with_mesh},
 };
 use crate::{
     mesh::gltf::container::{RECIPE, chunks, container},
@@ -152,27 +152,7 @@ impl GlbElements {
             binary: binary.to_vec(),
             text: String::new(),
         };
-        let mut known = BTreeMap::new();
-        for (number, raw) in raws.iter().enumerate() {
-            budget.spend(PER_ITEM)?;
-            let refused = |problem: String| Error::input(format!("{name}: node {number}"), problem, ADVICE);
-            let node: NodeIn<'_> = serde_json::from_str(raw.get()).map_err(|e| refused(e.to_string()))?;
-            let own = bounds.get(node.mesh).copied().flatten();
-            let text = NodeText::new(place(&text, raw), &node, own)
-                .ok_or_else(|| refused("a rotation that is none".into()))?;
-            if let Some(own) = own {
-                let most = budget.limits().coordinate;
-                let item = item(&node, &text, own, most);
-                let (item, class) = item.ok_or_else(|| refused("a place that is not finite, or stretched".into()))?;
-                let class = *known.entry(class).or_insert_with_key(|class: &String| {
-                    file.layout.classes.push(class.clone());
-                    file.layout.classes.len() - 1
-                });
-                file.layout.items.push(Item { id: file.of_item.len(), class, ..item });
-                file.of_item.push(number);
-            }
-            file.nodes.push(text);
-        }
+        file.read_nodes((name, &text), &raws, &bounds, &budget)?;
         if file.layout.items.is_empty() {
             return Err(Error::input(name, "a scene without meshes", "edit a result that has elements"));
         }
@@ -186,6 +166,108 @@ impl GlbElements {
     }
 }
 
+impl GlbElements {
+    /// Takes down the nodes of a document, and the elements that they are.
+    fn read_nodes(
+        &mut self,
+        (name, text): (&str, &str),
+        raws: &[&RawValue],
+        bounds: &[Option<Bounds<3>>],
+        budget: &Budget,
+    ) -> Result<()> {
+        let refused = |number: usize, what: String| Error::input(format!("{name}: node {number}"), what, ADVICE);
+        let (mut boxes, mut places) = (Vec::with_capacity(raws.len()), Vec::with_capacity(raws.len()));
+        let mut is_below = vec![false; raws.len()];
+        for (number, raw) in raws.iter().enumerate() {
+            budget.spend(PER_ITEM)?;
+            let node: NodeIn<'_> = serde_json::from_str(raw.get()).map_err(|e| refused(number, e.to_string()))?;
+            let own = node.mesh.and_then(|mesh| bounds.get(mesh).copied().flatten());
+            let text = NodeText::new(place(text, raw), &node, own)
+                .ok_or_else(|| refused(number, "a rotation that is none".into()))?;
+            let at = place_of(&node, &text, budget.limits().coordinate)
+                .ok_or_else(|| refused(number, "a place that is not finite, or stretched".into()))?;
+            if node.mesh.is_some() != node.children.is_empty() {
+                return Err(refused(number, "neither a mesh nor nodes below it, or both".into()));
+            }
+            for &child in &node.children {
+                match is_below.get_mut(child).filter(|_| child != number) {
+                    Some(below) => *below = true,
+                    None => return Err(refused(number, format!("node {child} below it, which does not exist"))),
+                }
+            }
+            boxes.push(own);
+            places.push(at);
+            self.nodes.push(text);
+        }
+        let mut known = BTreeMap::new();
+        for number in (0..raws.len()).filter(|&number| !is_below[number]) {
+            budget.spend(PER_ITEM)?;
+            let children = &self.nodes[number].children;
+            if children.iter().any(|&child| !self.nodes[child].children.is_empty()) {
+                return Err(refused(number, "nodes below nodes below it".into()));
+            }
+            let below = |all: Bounds<3>, &child: &usize| match &boxes[child] {
+                Some(own) => all.union(&moved_box(own, &places[child])),
+                None => all,
+            };
+            let whole = children.iter().fold(Bounds::EMPTY, below);
+            let Some(own) = boxes[number].or(Some(whole).filter(|whole| !whole.is_empty())) else { continue };
+            let (item, class) = item(&self.nodes[number], places[number], own);
+            let class = *known.entry(class).or_insert_with_key(|class: &String| {
+                self.layout.classes.push(class.clone());
+                self.layout.classes.len() - 1
+            });
+            self.layout.items.push(Item { id: self.of_item.len(), class, ..item });
+            self.of_item.push(number);
+        }
+        Ok(())
+    }
+
+    /// The text of a node as it is, or as an element that is changed, and those of the nodes below it.
+    fn texts(&self, number: usize, replaced: Option<(&Item<3>, &Replaced<3>)>, looks: &mut Looks) -> Result<Texts> {
+        let node = &self.nodes[number];
+        let own = |n: usize| &self.text[self.nodes[n].range.clone()];
+        let mut below = Vec::with_capacity(node.children.len());
+        for &child in &node.children {
+            let mesh = match (replaced, self.nodes[child].mesh) {
+                (Some((_, replaced)), Some(mesh)) => Some(looks.painted(mesh, &replaced.paint)?).filter(|new| *new != mesh),
+                _ => None,
+            };
+            below.push(mesh.and_then(|mesh| with_mesh(own(child), mesh)).unwrap_or_else(|| own(child).to_owned()));
+        }
+        let Some((item, replaced)) = replaced else { return Ok((own(number).to_owned(), below)) };
+        let mesh = node.mesh.map(|mesh| looks.painted(mesh, &replaced.paint)).transpose()?;
+        Ok((node.moved(item, replaced, mesh), below))
+    }
+}
+
+/// The text of a node, and those of the nodes below it.
+type Texts = (String, Vec<String>);
+
+/// The box around a box in another place.
+fn moved_box(own: &Bounds<3>, place: &arabesque_core::Similarity<3>) -> Bounds<3> {
+    let corner = |k: u8| Vector([0, 1, 2].map(|a| if k >> a & 1 == 1 { own.max[a] } else { own.min[a] }));
+    Bounds::around((0..8).map(|k| place.apply(corner(k))))
+}
+
+/// All nodes in order, those below others behind the rest, and how many are not below others.
+fn in_order(all: Vec<Texts>) -> Result<(Vec<String>, usize)> {
+    let top = all.len();
+    let (mut texts, mut behind) = (Vec::with_capacity(top), Vec::new());
+    for (text, below) in all {
+        if below.is_empty() {
+            texts.push(text);
+            continue;
+        }
+        let first = top + behind.len();
+        let missing = || Error::input("scene", "a node without the list of those below it", ADVICE);
+        texts.push(with_children(&text, first..first + below.len()).ok_or_else(missing)?);
+        behind.extend(below);
+    }
+    texts.extend(behind);
+    Ok((texts, top))
+}
+
 impl PlacedFile<3> for GlbElements {
     fn layout(&self) -> &Layout<3> {
         &self.layout
@@ -196,36 +278,34 @@ impl PlacedFile<3> for GlbElements {
         budget.spend(PER_BYTE.saturating_mul((self.text.len() + self.binary.len()) as u64))?;
         let index = self.layout.numbers();
         let mut looks = Looks::new(&self.text, &self.spans.meshes, self.spans.materials.as_ref())?;
-        let mut moved = |replaced: &Replaced<3>| -> Result<String> {
-            budget.spend(PER_ITEM)?;
-            let missing =
-                || Error::input("changes", format!("no element {}", replaced.base), "name an element of the file");
-            let number = *index.get(&replaced.base).ok_or_else(missing)?;
-            let node = &self.nodes[self.of_item[number]];
-            let mesh = looks.painted(node.mesh, &replaced.paint)?;
-            Ok(node.moved(&self.layout.items[number], replaced, mesh))
-        };
         let of_node: BTreeMap<usize, usize> = self.of_item.iter().enumerate().map(|(n, node)| (*node, n)).collect();
+        let is_below = |all: &mut Vec<bool>, node: &NodeText| node.children.iter().for_each(|&child| all[child] = true);
+        let mut below = vec![false; self.nodes.len()];
+        self.nodes.iter().for_each(|node| is_below(&mut below, node));
         let (mut texts, mut ids) = (Vec::with_capacity(self.nodes.len()), Vec::new());
-        for (number, node) in self.nodes.iter().enumerate() {
-            let id = of_node.get(&number).map(|n| self.layout.items[*n].id);
-            if id.is_some_and(|id| changes.removed.contains(&id)) {
+        for number in (0..self.nodes.len()).filter(|&number| !below[number]) {
+            let item = of_node.get(&number).map(|n| &self.layout.items[*n]);
+            if item.is_some_and(|item| changes.removed.contains(&item.id)) {
                 continue;
             }
-            ids.extend(id);
-            let replaced = id.and_then(|id| changes.replaced.get(&id));
-            texts.push(match replaced {
-                Some(replaced) => moved(replaced)?,
-                None => self.text[node.range.clone()].to_owned(),
-            });
+            ids.extend(item.map(|item| item.id));
+            budget.spend(PER_ITEM)?;
+            let replaced = item.and_then(|item| Some((item, changes.replaced.get(&item.id)?)));
+            texts.push(self.texts(number, replaced, &mut looks)?);
         }
         for (id, inserted) in &changes.inserted {
-            texts.push(moved(inserted)?);
+            budget.spend(PER_ITEM)?;
+            let missing =
+                || Error::input("changes", format!("no element {}", inserted.base), "name an element of the file");
+            let number = *index.get(&inserted.base).ok_or_else(missing)?;
+            let replaced = Some((&self.layout.items[number], inserted));
+            texts.push(self.texts(self.of_item[number], replaced, &mut looks)?);
             ids.push(*id);
         }
+        let (texts, top) = in_order(texts)?;
         let mut splices = Splices::default();
         looks.write(&self.spans.meshes, self.spans.materials.as_ref(), &mut splices);
-        let shown: Vec<String> = (0..texts.len()).map(|n| n.to_string()).collect();
+        let shown: Vec<String> = (0..top).map(|n| n.to_string()).collect();
         splices.put(self.spans.nodes.clone(), format!("[{}]", texts.join(",")));
         splices.put(self.spans.shown.clone(), format!("[{}]", shown.join(",")));
         self.say(&ids, recipe, &mut splices)?;

@@ -19,7 +19,10 @@ use crate::{
 pub(super) struct NodeText {
     pub(super) range: Range<usize>,
     name: Option<String>,
-    pub(super) mesh: usize,
+    /// The mesh that it shows; none where it has nodes below it.
+    pub(super) mesh: Option<usize>,
+    /// Numbers of the nodes below it.
+    pub(super) children: Vec<usize>,
     rotation: Option<([f64; 4], String)>,
     scale: Option<String>,
     extras: Option<String>,
@@ -32,7 +35,10 @@ pub(super) struct NodeText {
 pub(super) struct NodeIn<'a> {
     #[serde(borrow, default)]
     name: Option<&'a RawValue>,
-    pub(super) mesh: usize,
+    #[serde(default)]
+    pub(super) mesh: Option<usize>,
+    #[serde(default)]
+    pub(super) children: Vec<usize>,
     #[serde(default)]
     translation: Option<[f64; 3]>,
     #[serde(borrow, default)]
@@ -52,17 +58,18 @@ impl NodeText {
         };
         let reach = bounds.map_or(0.0, |b| b.size().0.into_iter().fold(0.0, f64::max));
         let (name, scale, extras) = (own(node.name), own(node.scale), own(node.extras));
-        Some(Self { range, name, mesh: node.mesh, rotation, scale, extras, reach })
+        let (mesh, children) = (node.mesh, node.children.clone());
+        Some(Self { range, name, mesh, children, rotation, scale, extras, reach })
     }
 
-    /// The node moved from its place, showing a mesh.
-    pub(super) fn moved(&self, item: &Item<3>, replaced: &Replaced<3>, mesh: usize) -> String {
+    /// The node moved from its place, showing a mesh or with an empty list of nodes below it.
+    pub(super) fn moved(&self, item: &Item<3>, replaced: &Replaced<3>, mesh: Option<usize>) -> String {
         let motion = &replaced.motion;
         let after = motion.after(&item.place);
         let extent = after.translation.0.iter().fold(self.reach * after.scale, |most, c| most.max(c.abs()));
         let mut parts = Vec::new();
         parts.extend(self.name.iter().map(|name| format!("\"name\":{name}")));
-        parts.push(format!("\"mesh\":{mesh}"));
+        parts.push(mesh.map_or_else(|| format!("{CHILDREN}]"), |mesh| format!("{MESH}{mesh}")));
         let translation = after.translation.0.map(|v| json_digits(v, extent));
         if translation.iter().any(|v| v != "0.0") {
             parts.push(format!("\"translation\":[{}]", translation.join(",")));
@@ -90,6 +97,39 @@ impl NodeText {
     }
 }
 
+/// How the lists of what is below a node, and the numbers of meshes, begin.
+const CHILDREN: &str = "\"children\":[";
+const MESH: &str = "\"mesh\":";
+
+/// The text of a node, as arabesque writes it, with the nodes of these numbers below it.
+pub(super) fn with_children(text: &str, children: Range<usize>) -> Option<String> {
+    let (before, after) = text.split_once(CHILDREN)?;
+    let (_, after) = after.split_once(']')?;
+    let list: Vec<String> = children.map(|n| n.to_string()).collect();
+    Some(format!("{before}{CHILDREN}{}]{after}", list.join(",")))
+}
+
+/// The text of a node, as arabesque writes it, with another mesh.
+pub(super) fn with_mesh(text: &str, mesh: usize) -> Option<String> {
+    let (before, after) = text.split_once(MESH)?;
+    Some(format!("{before}{MESH}{mesh}{}", after.trim_start_matches(|c: char| c.is_ascii_digit())))
+}
+
+/// Where a node stands: `None` where that is not finite, or stretches.
+pub(super) fn place(node: &NodeIn<'_>, text: &NodeText, most: f64) -> Option<Similarity<3>> {
+    let scale = match &text.scale {
+        None => 1.0,
+        Some(text) => {
+            let [x, y, z]: [f64; 3] = serde_json::from_str(text).ok()?;
+            let is_even = (x - y).abs().max((x - z).abs()) <= 1e-6 * x.abs();
+            Some(x).filter(|x| is_even && *x > 0.0 && *x <= most)?
+        }
+    };
+    let translation = Vector(node.translation.unwrap_or([0.0; 3]));
+    let rotation = text.rotation.as_ref().map_or_else(Matrix::identity, |(q, _)| matrix_of(*q));
+    translation.0.iter().all(|v| v.abs() <= most).then_some(Similarity { rotation, scale, translation })
+}
+
 /// The rotation of `b` and then that of `a`, of the length of `b`; w is not negative.
 fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     let ([x, y, z, w], [p, q, r, s]) = (a, b);
@@ -105,27 +145,13 @@ fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 }
 
 /// The element that a node is, and its class.
-pub(super) fn item(node: &NodeIn<'_>, text: &NodeText, bounds: Bounds<3>, most: f64) -> Option<(Item<3>, String)> {
-    let scale = match &text.scale {
-        None => 1.0,
-        Some(text) => {
-            let [x, y, z]: [f64; 3] = serde_json::from_str(text).ok()?;
-            let is_even = (x - y).abs().max((x - z).abs()) <= 1e-6 * x.abs();
-            Some(x).filter(|x| is_even && *x > 0.0 && *x <= most)?
-        }
-    };
-    let translation = Vector(node.translation.unwrap_or([0.0; 3]));
-    let rotation = text.rotation.as_ref().map_or_else(Matrix::identity, |(q, _)| matrix_of(*q));
-    if !translation.0.iter().all(|v| v.abs() <= most) {
-        return None;
-    }
-    let place = Similarity { rotation, scale, translation };
+pub(super) fn item(text: &NodeText, place: Similarity<3>, bounds: Bounds<3>) -> (Item<3>, String) {
     let extras: Value = text.extras.as_deref().and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default();
     let named = extras["class"].as_str().map(str::to_owned);
     let name = || text.name.as_deref().and_then(|name| serde_json::from_str(name).ok());
     let class = named.or_else(name).unwrap_or_default();
     let source = extras["source"].as_u64().and_then(|n| usize::try_from(n).ok());
     let centre = place.apply(bounds.centre());
-    let reach = 0.5 * bounds.size().norm() * scale;
-    Some((Item { id: 0, class: 0, source, place, centre, reach, kept: false }, class))
+    let reach = 0.5 * bounds.size().norm() * place.scale;
+    (Item { id: 0, class: 0, source, place, centre, reach, kept: false }, class)
 }

@@ -27,12 +27,13 @@ pub(super) fn to_scene(raw: Option<&RawValue>, most: f64, scene: &mut Scene) {
     scene.deformable = names.filter_map(|name| name.as_str().map(str::to_owned)).collect();
 }
 
-/// Adds what a node says of itself: `class`, `id` and `source`.
-pub(super) fn to_node(raw: Option<&RawValue>, node: &mut SceneNode) {
-    let Some(value) = raw.and_then(value_of) else { return };
+/// Adds what a node says of itself: `class`, `id` and `source`. Gives whether it says that all below it is one element (`element`).
+pub(super) fn to_node(raw: Option<&RawValue>, node: &mut SceneNode) -> bool {
+    let Some(value) = raw.and_then(value_of) else { return false };
     node.class = value.get("class").and_then(Value::as_str).filter(|c| !c.trim().is_empty()).map(str::to_owned);
     let number = |key: &str| value.get(key).and_then(Value::as_u64);
     (node.id, node.source) = (number("id"), number("source"));
+    value.get("element").and_then(Value::as_bool).unwrap_or(false)
 }
 
 #[cfg(test)]

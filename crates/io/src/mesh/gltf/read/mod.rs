@@ -29,7 +29,7 @@ use self::{
 use super::container::{chunks, is_glb};
 use crate::{
     file::{Beside, NothingBeside},
-    mesh::scene::{Attributes, Primitive, Scene, SceneMesh, SceneNode},
+    mesh::scene::{Attributes, Primitive, Scene, SceneMesh, SceneNode, Tree},
 };
 
 /// Reads a scene that refers to no other file.
@@ -64,17 +64,20 @@ pub fn read_scene_beside(name: &str, bytes: &[u8], beside: &dyn Beside, budget: 
         reshaped: Reshaped::default(),
         scene: Scene::default(),
     };
-    let places = placed(&binary)?;
+    let (places, branches) = placed(&binary)?;
     reader.check_size(&places)?;
+    let mut tree = Tree { branches, of_node: Vec::new() };
     for place in &places {
         reader.place(place)?;
+        tree.of_node.resize(reader.scene.nodes.len(), place.branch);
     }
     reader.warn();
-    let mut scene = reader.scene;
+    // Meshes of one shape are told apart by their looks.
+    let (looks, warnings) = materials::looks(&binary, &mut sources)?;
+    reader.scene.looks = looks;
+    let mut scene = reader.scene.assembled(&tree, &budget)?;
     let shown = document.scenes.get(document.scene.unwrap_or(0));
     extras::to_scene(shown.and_then(|s| s.extras.as_deref()), budget.limits().coordinate, &mut scene);
-    let (looks, warnings) = materials::looks(&binary, &mut sources)?;
-    scene.looks = looks;
     scene.warnings.extend(warnings);
     if scene.nodes.is_empty() && scene.points.is_empty() {
         return Err(Error::input(name, "no mesh and no points in its scene", "give a file with meshes or points"));
@@ -162,7 +165,7 @@ impl Reader<'_> {
                 }
                 None => (parts.mesh.clone(), parts.looks.clone()),
             };
-            self.scene.meshes.push(SceneMesh { name: parts.name.clone(), mesh, primitives });
+            self.scene.meshes.push(SceneMesh { primitives, ..SceneMesh::new(parts.name.clone(), mesh) });
             self.baked.insert((placed.mesh, steps), self.scene.meshes.len() - 1);
             self.scene.meshes.len() - 1
         });

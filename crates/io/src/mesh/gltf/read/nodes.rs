@@ -2,8 +2,8 @@
 
 use arabesque_core::{Error, Matrix, Result, Similarity, Vector};
 
-use super::{accessor::Binary, document::NodeRecord};
-use crate::mesh::scene::matrix_of;
+use super::{accessor::Binary, document::NodeRecord, extras::to_node};
+use crate::mesh::scene::{Branch, SceneNode, matrix_of};
 
 /// Work of one node or instance.
 const PER_NODE: u64 = 500;
@@ -95,27 +95,31 @@ pub(super) struct Placed<'a> {
     pub(super) node: usize,
     pub(super) mesh: usize,
     pub(super) place: Affine,
+    /// Number of the branch that the node is.
+    pub(super) branch: usize,
 }
 
-/// All places of meshes in the scene that the file shows first, in the order of the tree.
+/// All places of meshes in the scene that the file shows first, in the order of the tree, and its branches.
 ///
 /// # Errors
 /// [`Error::Input`] for nodes that do not exist, that hang below themselves or below two others, and for transforms that are no finite
 /// numbers; [`Error::Limit`] for trees that are too deep, and for too many instances.
-pub(super) fn placed<'a>(binary: &Binary<'a>) -> Result<Vec<Placed<'a>>> {
+pub(super) fn placed<'a>(binary: &Binary<'a>) -> Result<(Vec<Placed<'a>>, Vec<Branch>)> {
     let document = binary.document;
     let roots = match document.scenes.get(document.scene.unwrap_or(0)) {
         Some(scene) => scene.nodes.clone(),
         None => roots(&document.nodes),
     };
-    let mut walk = Walk { binary, seen: vec![false; document.nodes.len()], found: Vec::new() };
-    let mut open: Vec<(usize, Affine, usize)> = roots.iter().rev().map(|&n| (n, Affine::identity(), 1)).collect();
-    while let Some((number, above, depth)) = open.pop() {
-        let here = walk.visit(number, &above, depth)?;
-        let children = document.nodes[number].children.iter().rev();
-        open.extend(children.map(|&child| (child, here, depth + 1)));
+    let (found, branches) = (Vec::new(), Vec::new());
+    let mut walk = Walk { binary, seen: vec![false; document.nodes.len()], found, branches };
+    let root = (Affine::identity(), None, 1);
+    let mut open: Vec<(usize, Above)> = roots.iter().rev().map(|&n| (n, root)).collect();
+    while let Some((number, above)) = open.pop() {
+        let here = walk.visit(number, &above)?;
+        let below = (here, Some(walk.branches.len() - 1), above.2 + 1);
+        open.extend(document.nodes[number].children.iter().rev().map(|&child| (child, below)));
     }
-    Ok(walk.found)
+    Ok((walk.found, walk.branches))
 }
 
 /// The nodes that are below no other.
@@ -129,10 +133,14 @@ fn roots(nodes: &[NodeRecord]) -> Vec<usize> {
     (0..nodes.len()).filter(|&n| !below[n]).collect()
 }
 
+/// What a node hangs below: a place, the number of a branch, and how deep that is.
+type Above = (Affine, Option<usize>, usize);
+
 struct Walk<'a, 'b> {
     binary: &'b Binary<'a>,
     seen: Vec<bool>,
     found: Vec<Placed<'a>>,
+    branches: Vec<Branch>,
 }
 
 impl<'a> Walk<'a, '_> {
@@ -142,7 +150,7 @@ impl<'a> Walk<'a, '_> {
     }
 
     /// Takes down the mesh of a node, and gives its transform to the scene.
-    fn visit(&mut self, number: usize, above: &Affine, depth: usize) -> Result<Affine> {
+    fn visit(&mut self, number: usize, &(above, branch, depth): &Above) -> Result<Affine> {
         let budget = self.binary.budget;
         budget.spend(PER_NODE)?;
         budget.within(&format!("{}: depth of nodes", self.binary.name), depth, ("depth", budget.limits().depth))?;
@@ -156,6 +164,7 @@ impl<'a> Walk<'a, '_> {
         if !here.is_finite() {
             return self.fail(number, "its transform is not finite".into());
         }
+        self.branches.push(self.branch(node, branch, &here));
         let Some(mesh) = node.mesh else { return Ok(here) };
         let Some(record) = self.binary.document.meshes.get(mesh) else {
             return self.fail(number, format!("its mesh {mesh} does not exist"));
@@ -167,11 +176,22 @@ impl<'a> Walk<'a, '_> {
         };
         for place in places {
             budget.spend(PER_NODE)?;
-            self.found.push(Placed { name, node: number, mesh, place: here.after(&place) });
+            let branch = self.branches.len() - 1;
+            self.found.push(Placed { name, node: number, mesh, place: here.after(&place), branch });
         }
         let what = format!("{}: meshes in their places", self.binary.name);
         budget.within(&what, self.found.len(), ("nodes", budget.limits().nodes))?;
         Ok(here)
+    }
+
+    fn branch(&self, node: &NodeRecord, above: Option<usize>, here: &Affine) -> Branch {
+        let mut said = SceneNode::default();
+        let is_element = to_node(node.extras.as_deref(), &mut said);
+        let name = node.name.clone().unwrap_or_default();
+        let (place, stretch) = if here.is_flat() { (Similarity::identity(), None) } else { here.parted() };
+        let place = (!here.is_flat() && stretch.is_none()).then_some(place);
+        let SceneNode { class, id, source, .. } = said;
+        Branch { name, above, place, class, id, source, is_element }
     }
 
     /// The places of a mesh that `EXT_mesh_gpu_instancing` lists.

@@ -71,7 +71,7 @@ pub fn write_scene(scene: &Scene, recipe: Option<&str>, budget: &Budget) -> Resu
     write_scene_with(scene, &GltfOptions { recipe, ..GltfOptions::default() }, budget)
 }
 
-/// Writes a scene: the meshes that nodes show, the materials that these have, and their pictures, each once.
+/// Writes a scene: the meshes that nodes show (what is put together as a node with its parts below it; as one mesh with `instancing`), the materials that these have, and their pictures, each once.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Unsupported`] for numbers of groups and elements that floats do not hold, [`arabesque_core::Error::Input`]
@@ -81,19 +81,21 @@ pub fn write_scene_with(scene: &Scene, options: &GltfOptions<'_>, budget: &Budge
     let _held = budget.hold("the bytes of the scene", size_of_file(scene))?;
     let mut buffer = Buffer::default();
     let mut looks = LooksOut::new(&scene.looks);
-    let numbers = nodes::shown(scene)?;
+    let numbers = nodes::shown(scene, options.instancing)?;
     let mut meshes = Vec::new();
     for mesh in numbers.iter().map(|&n| &scene.meshes[n]) {
         let primitives = primitives_of(mesh, &mut buffer, &mut looks, budget)?;
         meshes.push(json!({ "name": mesh.name, "primitives": primitives }));
     }
     let mut out = NodesOut { scene, numbers: &numbers, budget };
-    let mut nodes = if options.instancing { out.instanced(&mut buffer)? } else { out.single()? };
+    let (mut nodes, below) = if options.instancing { (out.instanced(&mut buffer)?, Vec::new()) } else { out.single()? };
     if !scene.points.is_empty() {
         nodes.push(Node::new("points", meshes.len()));
         let primitive = points_of(&scene.points, &mut buffer, &mut looks, budget)?;
         meshes.push(json!({ "name": "points", "primitives": [primitive] }));
     }
+    let top = nodes.len();
+    let nodes = nodes::with_children(nodes, below);
     let looks = looks.finish(&mut buffer);
     let instanced = nodes.iter().any(|node| node.is_instanced()).then(|| nodes::INSTANCING.to_owned());
     let document = Document {
@@ -101,7 +103,7 @@ pub fn write_scene_with(scene: &Scene, options: &GltfOptions<'_>, budget: &Budge
         extensions_used: instanced.iter().chain(&looks.extensions).cloned().collect(),
         extensions_required: instanced.iter().chain(&looks.required).cloned().collect(),
         scene: 0,
-        scenes: [scene_record(nodes.len(), scene)],
+        scenes: [scene_record(top, scene)],
         nodes,
         meshes,
         materials: looks.materials,

@@ -19,7 +19,10 @@ pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 pub(super) struct Node<'a> {
     #[serde(skip_serializing_if = "str::is_empty")]
     name: &'a str,
-    mesh: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mesh: Option<usize>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    children: Vec<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     translation: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -34,7 +37,7 @@ pub(super) struct Node<'a> {
 
 impl<'a> Node<'a> {
     pub(super) fn new(name: &'a str, mesh: usize) -> Self {
-        Self { name, mesh, translation: None, rotation: None, scale: None, extensions: None, extras: None }
+        Self { name, mesh: Some(mesh), children: Vec::new(), translation: None, rotation: None, scale: None, extensions: None, extras: None }
     }
 
     pub(super) fn is_instanced(&self) -> bool {
@@ -42,24 +45,40 @@ impl<'a> Node<'a> {
     }
 }
 
-/// Numbers of the meshes that nodes show, in order.
+/// Numbers of the meshes that nodes show, in order; of what is put together, those of the parts, unless it is written as `one`.
 ///
 /// # Errors
-/// [`Error::Input`] for a node whose mesh does not exist.
-pub(super) fn shown(scene: &Scene) -> Result<Vec<usize>> {
+/// [`Error::Input`] for a node or a part whose mesh does not exist.
+pub(super) fn shown(scene: &Scene, one: bool) -> Result<Vec<usize>> {
     let mut used = vec![false; scene.meshes.len()];
+    let missing = |mesh: usize, what: String| {
+        let problem = format!("mesh {mesh} where there are {}", scene.meshes.len());
+        Error::input(what, problem, "add the mesh, or remove the node")
+    };
     for (number, node) in scene.nodes.iter().enumerate() {
-        let Some(used) = used.get_mut(node.mesh) else {
-            let problem = format!("mesh {} where there are {}", node.mesh, scene.meshes.len());
-            return Err(Error::input(
-                format!("node {number} of the scene"),
-                problem,
-                "add the mesh, or remove the node",
-            ));
+        let Some(shape) = scene.meshes.get(node.mesh) else {
+            return Err(missing(node.mesh, format!("node {number} of the scene")));
         };
-        *used = !scene.meshes[node.mesh].mesh.triangles.is_empty();
+        if std::mem::replace(&mut used[node.mesh], true) {
+            continue;
+        }
+        if let Some(part) = shape.parts.iter().find(|part| part.mesh >= scene.meshes.len()) {
+            return Err(missing(part.mesh, format!("part {} of a mesh", part.name)));
+        }
     }
-    Ok((0..used.len()).filter(|&n| used[n]).collect())
+    let is_seen = |n: usize| !scene.meshes[n].mesh.triangles.is_empty();
+    let nodes = (0..used.len()).filter(|&n| used[n]);
+    let mut numbers: Vec<usize> = nodes
+        .flat_map(|n| match scene.meshes[n].parts.as_slice() {
+            [] => vec![n],
+            _ if one => vec![n],
+            parts => parts.iter().map(|part| part.mesh).collect(),
+        })
+        .filter(|&n| is_seen(n))
+        .collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    Ok(numbers)
 }
 
 /// What nodes are made of.
@@ -76,15 +95,27 @@ impl<'a> NodesOut<'a, '_> {
         self.scene.nodes.iter().filter_map(|node| Some((node, self.numbers.binary_search(&node.mesh).ok()?)))
     }
 
-    /// A node for each place.
-    pub(super) fn single(&mut self) -> Result<Vec<Node<'a>>> {
+    /// A node for each place, and the nodes below each of them.
+    pub(super) fn single(&mut self) -> Result<(Vec<Node<'a>>, Vec<Vec<Node<'a>>>)> {
         let reaches = self.reaches();
-        let mut nodes = Vec::with_capacity(self.scene.nodes.len());
-        for (node, mesh) in self.written() {
-            self.budget.spend(PER_NODE)?;
-            nodes.push(record(node, mesh, reaches[mesh]));
+        let number = |mesh: usize| self.numbers.binary_search(&mesh).ok();
+        let mut whole: BTreeMap<usize, f64> = BTreeMap::new();
+        let (mut nodes, mut below) = (Vec::with_capacity(self.scene.nodes.len()), Vec::new());
+        for node in &self.scene.nodes {
+            let shape = &self.scene.meshes[node.mesh];
+            self.budget.spend(PER_NODE.saturating_mul(1 + shape.parts.len() as u64))?;
+            if shape.parts.is_empty() {
+                nodes.extend(number(node.mesh).map(|mesh| record(node, mesh, reaches[mesh])));
+            } else {
+                let reach = || shape.mesh.bounds().size().0.into_iter().fold(0.0, f64::max);
+                nodes.push(record_above(node, *whole.entry(node.mesh).or_insert_with(reach)));
+                let parts = shape.parts.iter().filter_map(|part| Some((part, number(part.mesh)?)));
+                let parts = parts.map(|(part, mesh)| record(part, mesh, reaches[mesh])).collect();
+                below.resize_with(nodes.len() - 1, Vec::new);
+                below.push(parts);
+            }
         }
-        Ok(nodes)
+        Ok((nodes, below))
     }
 
     /// How far each mesh that is written reaches.
@@ -133,6 +164,22 @@ fn instances(places: &[Similarity<3>], buffer: &mut Buffer) -> Value {
         attributes["SCALE"] = buffer.instances(&scales).into();
     }
     attributes
+}
+
+/// The node of an element whose parts hang below it.
+fn record_above(node: &SceneNode, reach: f64) -> Node<'_> {
+    let mut node = Node { mesh: None, ..record(node, 0, reach) };
+    node.extras.get_or_insert_with(|| json!({}))["element"] = true.into();
+    node
+}
+
+/// Puts the nodes below others behind all of them.
+pub(super) fn with_children<'a>(mut nodes: Vec<Node<'a>>, below: Vec<Vec<Node<'a>>>) -> Vec<Node<'a>> {
+    for (number, children) in below.into_iter().enumerate() {
+        nodes[number].children = (nodes.len()..nodes.len() + children.len()).collect();
+        nodes.extend(children);
+    }
+    nodes
 }
 
 /// A node, with nine digits of its place; what changes nothing is left out.

@@ -86,7 +86,9 @@ pub use arabesque_core::{
     Unobserved, Warning, Watch,
 };
 pub use arabesque_ribbons::Closing;
-pub use artwork::{Artwork, Companion, Encoded, Geometry, PhysicsSummary, PlacedPoint, ReliefSummary, RibbonSummary, Summary};
+pub use artwork::{
+    Artwork, Companion, Encoded, Geometry, PhysicsSummary, PlacedPoint, ReliefSummary, RibbonSummary, Summary,
+};
 pub use edit::{Change, EditSession, PlacedItem, Proposal};
 pub use exemplar::LoadedExemplar;
 pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};

@@ -7,8 +7,8 @@ use std::{
 };
 
 use arabesque::{
-    Artwork, Companion, Encoded, EnergyPoint, Error, Format, Job, OutputOptions, Prepared, Recipe, Resources, StopReason,
-    Stopper, Summary, Warning, in_pool, io::file,
+    Artwork, Companion, Encoded, EnergyPoint, Error, Format, Job, OutputOptions, Prepared, Recipe, Resources,
+    StopReason, Stopper, Summary, Warning, in_pool, io::file,
 };
 use clap::Args;
 

@@ -3,7 +3,9 @@
 use arabesque_core::{Budget, Similarity, TriangleMesh, Vector};
 use arabesque_io::{
     mesh::{
-        gltf::{GlbElements, GltfOptions, Scene, SceneMesh, SceneNode, as_text, read_scene, recipe_of, write_scene_with},
+        gltf::{
+            GlbElements, GltfOptions, Scene, SceneMesh, SceneNode, as_text, read_scene, recipe_of, write_scene_with,
+        },
         obj,
     },
     placed::{Changes, Paint, PlacedFile, Replaced},
@@ -13,7 +15,9 @@ use serde_json::{Value, json};
 /// A tetrahedron of this size.
 fn wedge(size: f64) -> TriangleMesh {
     TriangleMesh {
-        positions: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|p| Vector(p) * size).to_vec(),
+        positions: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            .map(|p| Vector(p) * size)
+            .to_vec(),
         triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
         ..TriangleMesh::default()
     }

@@ -1,7 +1,7 @@
 //! How near elements come to one another where they lie in a heap: files often leave a gap between what touches.
 
 use arabesque_core::{Bounds, Budget, Error, Result};
-use rapier3d::parry::query;
+use rapier3d::parry::{bounding_volume::BoundingVolume, query};
 
 use crate::{setting::Body, units::Units};
 

@@ -63,10 +63,12 @@ impl Elements {
                 }
             }
             Format::Glb => Ok(Self::Space(Box::new(GlbElements::open(name, bytes, budget)?))),
-            Format::Png | Format::Obj | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
-                what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
-                advice: EDITABLE.into(),
-            }),
+            Format::Png | Format::Obj | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => {
+                Err(Error::Unsupported {
+                    what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
+                    advice: EDITABLE.into(),
+                })
+            }
         }
     }
 

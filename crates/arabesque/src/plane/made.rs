@@ -152,10 +152,12 @@ impl Made for PlaneMade {
                 let text = csv::write_points(exemplar, &self.outcome.placements, size[0].max(size[1]), sheet.recipe);
                 Ok(Encoded { bytes: text.into_bytes(), warnings: self.left_out()?, companion: None })
             }
-            Format::Obj | Format::Glb | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
-                what: format!("a drawing of the plane as {}", sheet.format.name()),
-                advice: "write svg, png, json or csv; obj holds curves in space (--box), glb ribbons".into(),
-            }),
+            Format::Obj | Format::Glb | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => {
+                Err(Error::Unsupported {
+                    what: format!("a drawing of the plane as {}", sheet.format.name()),
+                    advice: "write svg, png, json or csv; obj holds curves in space (--box), glb ribbons".into(),
+                })
+            }
         }
     }
 

@@ -26,7 +26,10 @@ use crate::{
     plane::{snapshot, unfinished},
     recipe::Format,
     solid::write::{Said, encode_mesh, picture},
-    space::{scene::Bodies, skinned::skinned},
+    space::{
+        scene::Bodies,
+        skinned::{skinned, without_unused},
+    },
     spacing::spacing,
 };
 
@@ -96,7 +99,11 @@ impl VolumeMade {
             Format::Glb => {
                 let scene = scene.converted(&self.convention, &Convention::default());
                 let options = GltfOptions { recipe: sheet.recipe, instancing: sheet.output.instancing };
-                Ok(Encoded { bytes: write_scene_with(&scene, &options, budget)?, warnings: Vec::new(), companion: None })
+                Ok(Encoded {
+                    bytes: write_scene_with(&scene, &options, budget)?,
+                    warnings: Vec::new(),
+                    companion: None,
+                })
             }
             Format::Obj => {
                 // What has a name has its materials in a file beside it.
@@ -111,7 +118,7 @@ impl VolumeMade {
             }
             Format::Json => {
                 let options = PlacementsOptions { recipe: sheet.recipe, centre_lines };
-                let text = write_placements(&scene, &options, budget)?;
+                let text = write_placements(&without_unused(scene), &options, budget)?;
                 Ok(Encoded { bytes: text.into_bytes(), warnings: Vec::new(), companion: None })
             }
             Format::Ply if sheet.output.centres => {
@@ -164,13 +171,7 @@ impl Made for VolumeMade {
                 let page = json::Frame { view: frame, unit: None, recipe: sheet.recipe };
                 (json::write_json(exemplar, outcome, &page)?, Vec::new())
             }
-            Format::Svg
-            | Format::Png
-            | Format::Glb
-            | Format::Gltf
-            | Format::Ply
-            | Format::Usda
-            | Format::Toml => {
+            Format::Svg | Format::Png | Format::Glb | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => {
                 let what = format!("a result in space as {}", sheet.format.name());
                 let advice = "write obj (curves), csv (points) or json (both)";
                 return Err(Error::Unsupported { what, advice: advice.into() });

@@ -25,8 +25,8 @@ mod suiting;
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, Snapshot, StopReason, Warning,
-    Watch,
+    Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, Snapshot, StopReason,
+    Warning, Watch,
 };
 use arabesque_io::mesh::scene::Convention;
 use arabesque_patterns::Prepared as Engine;
@@ -77,11 +77,8 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
             Bodies::read(preparation.exemplar.name(), scene, (space.up.axis(), &space.deform, params.samples), budget)?;
         preparation.warnings.extend(warnings);
         let others = space.floor || space.on.is_some();
-        let (bodies, stacks) = if space.stacks() {
-            stacked(preparation.exemplar.name(), bodies, budget)?
-        } else {
-            (bodies, None)
-        };
+        let (bodies, stacks) =
+            if space.stacks() { stacked(preparation.exemplar.name(), bodies, budget)? } else { (bodies, None) };
         let bodies = if space.stands() { bodies.on_floor(others, &space.constrain)? } else { bodies };
         preparation.exemplar = preparation.exemplar.embedding(&bytes);
         let exemplar = Arc::clone(&bodies.exemplar);
@@ -279,8 +276,7 @@ pub(crate) fn scene_understood(input: &Input, bytes: &[u8], resources: &Resource
         return Ok(None);
     }
     let space = Space::default();
-    let (bodies, warnings) =
-        Bodies::read(input.name(), scene, (space.up.axis(), &space.deform, None), files.budget())?;
+    let (bodies, warnings) = Bodies::read(input.name(), scene, (space.up.axis(), &space.deform, None), files.budget())?;
     let mut told = Vec::new();
     told.extend(Some(bodies.told.clone()).filter(|told| !told.is_empty()));
     let exemplar = Arc::clone(&bodies.exemplar);

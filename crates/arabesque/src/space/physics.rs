@@ -6,8 +6,8 @@ use std::{
 };
 
 use arabesque_core::{
-    Between, Border, Budget, Error, Matrix, Outcome, Placement, Request as EngineRequest, Result, Similarity, StopReason,
-    Vector, Warning,
+    Between, Border, Budget, Error, Matrix, Outcome, Placement, Request as EngineRequest, Result, Similarity,
+    StopReason, Vector, Warning,
 };
 use arabesque_patterns::Deform;
 use arabesque_physics::{Body, PhysicsParams, Run, Shape, Side, Surface, Surroundings, World, clearance};
@@ -83,8 +83,11 @@ impl Physical {
             _ => None,
         };
         let sources: Vec<_> = scene.nodes.iter().map(|node| (node.mesh, node.transform)).collect();
-        let body = |(mesh, pose): &(usize, Similarity<3>)| {
-            Body { pose: *pose, shape: Arc::clone(&shapes[mesh]), frozen: false, gravity: None }
+        let body = |(mesh, pose): &(usize, Similarity<3>)| Body {
+            pose: *pose,
+            shape: Arc::clone(&shapes[mesh]),
+            frozen: false,
+            gravity: None,
         };
         let larger = 1.0 + clearance(&sources.iter().map(body).collect::<Vec<_>>(), &budget)?;
         let mut half: Vec<f64> = sources.iter().map(|(mesh, pose)| 0.5 * shapes[mesh].size() * pose.scale).collect();

@@ -29,8 +29,8 @@ const MARGIN: f64 = 3.0;
 const THINNEST: f64 = 12.0;
 /// What is nearer to the floor than this share of its size stands on it.
 const NEAR: f64 = 0.12;
-/// The size of what is flatter counts as so many times its height.
-const FLATTEST: f64 = 4.0;
+/// What is over the floor by more than this share of its own height does not stand on it.
+const OVER: f64 = 0.9;
 /// A frame that is thinner than its elements by this factor is flat.
 const FLAT: f64 = 0.2;
 /// A frame is made wider by no more than this factor.
@@ -201,8 +201,8 @@ impl Bodies {
         for element in &mut exemplar.elements {
             let high = element.outline.points().map(|p| p[up]).fold(f64::NEG_INFINITY, f64::max) - lowest(element);
             // A coin on another does not lie on the floor.
-            let size = (2.0 * element.outline.radius(element.centre)).min(FLATTEST * high);
-            let stands = bound[element.class] && lowest(element) - floor <= NEAR * size;
+            let near = (2.0 * NEAR * element.outline.radius(element.centre)).min(OVER * high);
+            let stands = bound[element.class] && lowest(element) - floor <= near;
             heights.push(stands.then_some(element.centre[up] - floor));
             if stands {
                 let old = element.class;
@@ -372,11 +372,8 @@ fn bodies(name: &str, scene: &Scene, budget: &Budget) -> Result<BTreeMap<usize, 
         points.extend(corners(&shape.mesh));
         let centre = centre(&shape.mesh, &points);
         let solid = Arc::new(solid(&index, &points, centre, budget)?);
-        let symmetry = if is_many {
-            Symmetry::default()
-        } else {
-            Symmetry::of(&shape.mesh, &index, (centre, &points), budget)?
-        };
+        let symmetry =
+            if is_many { Symmetry::default() } else { Symmetry::of(&shape.mesh, &index, (centre, &points), budget)? };
         Ok((number, Body { centre, points, colour: colour(&shape.mesh), solid, symmetry }))
     };
     shown.into_iter().map(one).collect()

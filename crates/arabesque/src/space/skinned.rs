@@ -69,8 +69,8 @@ fn turned_primitive(primitive: &Primitive, turned: &[Matrix<3>]) -> Primitive {
     Primitive { attributes: attributes.into(), ..primitive.clone() }
 }
 
-/// The same scene without the meshes that no node shows.
-fn without_unused(scene: Scene) -> Scene {
+/// The same scene without the meshes that no node shows, each whole.
+pub(super) fn without_unused(scene: Scene) -> Scene {
     let mut number = vec![None; scene.meshes.len()];
     scene.nodes.iter().for_each(|node| number[node.mesh] = Some(0));
     number.iter_mut().flatten().enumerate().for_each(|(n, entry)| *entry = n);

@@ -79,7 +79,8 @@ fn together(scene: &Scene, groups: &[Vec<usize>]) -> Scene {
         }
         let frame = Similarity::shift(scene.nodes[group[0]].transform.translation);
         let back = frame.inverse();
-        let part = |&n: &usize| SceneNode { transform: back.after(&scene.nodes[n].transform), ..scene.nodes[n].clone() };
+        let part =
+            |&n: &usize| SceneNode { transform: back.after(&scene.nodes[n].transform), ..scene.nodes[n].clone() };
         let mut mesh = scene.put_together(&class, group.iter().map(part).collect());
         mesh.parts.clear();
         meshes.push(mesh);
@@ -137,13 +138,11 @@ fn members(exemplar: &Exemplar<3>, budget: &Budget) -> Result<Option<Vec<Vec<usi
     let floor_area = around(&mut (0..count));
     let is_small = |group: &Vec<usize>| {
         group.len() == 1
-            || group.len() as f64 <= MEMBERS * count as f64
-                && around(&mut group.iter().copied()) <= AREA * floor_area
+            || group.len() as f64 <= MEMBERS * count as f64 && around(&mut group.iter().copied()) <= AREA * floor_area
     };
     let stacks = groups.iter().filter(|group| group.len() > 1).count();
-    let are_stacks = groups.len() >= GROUPS
-        && stacks >= STACKS
-        && groups.iter().all(|group| has_floor(group) && is_small(group));
+    let are_stacks =
+        groups.len() >= GROUPS && stacks >= STACKS && groups.iter().all(|group| has_floor(group) && is_small(group));
     Ok(are_stacks.then_some(groups))
 }
 
@@ -211,7 +210,8 @@ mod tests {
 
     /// Crates at these places, y up.
     fn crates(places: &[[f64; 3]]) -> Bodies {
-        let node = |(k, at): (usize, &[f64; 3])| SceneNode::new(format!("crate.{k}"), 0, Similarity::shift(Vector(*at)));
+        let node =
+            |(k, at): (usize, &[f64; 3])| SceneNode::new(format!("crate.{k}"), 0, Similarity::shift(Vector(*at)));
         let scene = Scene {
             meshes: vec![SceneMesh::new("crate", cuboid([1.0; 3]))],
             nodes: places.iter().enumerate().map(node).collect(),
@@ -222,12 +222,17 @@ mod tests {
 
     #[test]
     fn stacks_apart_are_one_element_each_and_come_apart_again() {
-        let places = [[0.0, 0.5, 0.0], [0.1, 1.52, 0.0], [3.0, 0.5, 1.0], [6.0, 0.5, 0.0], [6.0, 1.5, 0.1], [9.0, 0.5, 2.0]];
+        let places =
+            [[0.0, 0.5, 0.0], [0.1, 1.52, 0.0], [3.0, 0.5, 1.0], [6.0, 0.5, 0.0], [6.0, 1.5, 0.1], [9.0, 0.5, 2.0]];
         let (whole, stacks) = stacked("t", crates(&places), &Budget::default()).unwrap();
         let stacks = stacks.unwrap();
         assert_eq!((whole.exemplar.elements.len(), stacks.count()), (4, (2, 4)));
-        let placement =
-            |source| Placement { source, transform: Similarity::shift(Vector([5.0, 0.0, 0.0])), control: Vec::new(), frozen: None };
+        let placement = |source| Placement {
+            source,
+            transform: Similarity::shift(Vector([5.0, 0.0, 0.0])),
+            control: Vec::new(),
+            frozen: None,
+        };
         let apart = stacks.taken_apart(&[placement(0), placement(1)]);
         assert_eq!(apart.iter().map(|p| p.source).collect::<Vec<_>>(), [0, 1, 2]);
         let upper = stacks.single.placed(&apart, None).nodes[1].transform.translation;
@@ -239,7 +244,8 @@ mod tests {
         // One heap, a row on the floor, and something that lies on nothing.
         let heap: Vec<_> = (0..12).map(|k| [f64::from(k % 4), 0.5 + f64::from(k / 4), 0.0]).collect();
         let row: Vec<_> = (0..8).map(|k| [1.01 * f64::from(k), 0.5, 0.0]).collect();
-        let floats = [[0.0, 0.5, 0.0], [0.0, 1.5, 0.0], [3.0, 0.5, 0.0], [3.0, 1.5, 0.0], [6.0, 0.5, 0.0], [9.0, 3.0, 0.0]];
+        let floats =
+            [[0.0, 0.5, 0.0], [0.0, 1.5, 0.0], [3.0, 0.5, 0.0], [3.0, 1.5, 0.0], [6.0, 0.5, 0.0], [9.0, 3.0, 0.0]];
         for places in [&heap[..], &row[..], &floats[..]] {
             assert!(stacked("t", crates(places), &Budget::default()).unwrap().1.is_none());
         }

@@ -10,6 +10,8 @@ use crate::{
     text::short::short,
 };
 
+/// Comment that files of materials start with.
+pub const MATERIALS_TITLE: &str = "# materials of elements";
 /// Words of one line that are looked at.
 const WORDS: usize = 16;
 
@@ -60,7 +62,7 @@ pub(super) fn read_materials(text: &str, most: usize) -> Vec<Material> {
 /// Materials as text, under the given names.
 pub(super) fn materials_text<'a>(materials: impl Iterator<Item = (&'a str, &'a Material)>) -> String {
     let share = Decimals::for_extent(1.0);
-    let mut out = String::from("# materials\n");
+    let mut out = format!("{MATERIALS_TITLE}\n");
     for (name, material) in materials {
         let [r, g, b] = material.screen_colour().map(|c| share.format(c));
         out += &format!("newmtl {name}\nKd {r} {g} {b}\n");

@@ -12,8 +12,6 @@ use crate::{
 
 /// Comment that files of scenes start with.
 pub const SCENE_TITLE: &str = "# elements";
-/// Comment that the files of their materials start with.
-pub const MATERIALS_TITLE: &str = "# materials of elements";
 /// Work and bytes of one vertex or triangle.
 const PER_LINE: u64 = 900;
 const LINE_BYTES: usize = 100;
@@ -73,8 +71,7 @@ pub fn write_scene(scene: &Scene, mtl: Option<&str>, recipe: Option<&str>, budge
         warnings.push(Warning::new(message, "write glb to keep them"));
     }
     writer.out += &recipe.map(records::recipe_comments).unwrap_or_default();
-    let text = || materials_text(names.iter().map(String::as_str).zip(materials));
-    let mtl = mtl.map(|_| format!("{MATERIALS_TITLE}\n{}", text()));
+    let mtl = mtl.map(|_| materials_text(names.iter().map(String::as_str).zip(materials)));
     Ok(ObjScene { obj: writer.out, mtl, warnings })
 }
 

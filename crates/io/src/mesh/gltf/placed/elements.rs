@@ -230,7 +230,9 @@ impl GlbElements {
         let mut below = Vec::with_capacity(node.children.len());
         for &child in &node.children {
             let mesh = match (replaced, self.nodes[child].mesh) {
-                (Some((_, replaced)), Some(mesh)) => Some(looks.painted(mesh, &replaced.paint)?).filter(|new| *new != mesh),
+                (Some((_, replaced)), Some(mesh)) => {
+                    Some(looks.painted(mesh, &replaced.paint)?).filter(|new| *new != mesh)
+                }
                 _ => None,
             };
             below.push(mesh.and_then(|mesh| with_mesh(own(child), mesh)).unwrap_or_else(|| own(child).to_owned()));

@@ -37,7 +37,16 @@ pub(super) struct Node<'a> {
 
 impl<'a> Node<'a> {
     pub(super) fn new(name: &'a str, mesh: usize) -> Self {
-        Self { name, mesh: Some(mesh), children: Vec::new(), translation: None, rotation: None, scale: None, extensions: None, extras: None }
+        Self {
+            name,
+            mesh: Some(mesh),
+            children: Vec::new(),
+            translation: None,
+            rotation: None,
+            scale: None,
+            extensions: None,
+            extras: None,
+        }
     }
 
     pub(super) fn is_instanced(&self) -> bool {

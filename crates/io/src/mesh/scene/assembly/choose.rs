@@ -17,6 +17,9 @@ const TOUCH: f64 = 0.05;
 const NEAR: f64 = 0.25;
 /// What is merely alike has no more parts of one kind.
 const REPEATED: usize = 6;
+/// So many alike are known as things by being smaller than this share of what they cover together.
+const SEVERAL: usize = 4;
+const SMALL: f64 = 0.34;
 /// What stands beside elements is one if it is larger than they are by no more than this factor.
 const LARGER: f64 = 2.0;
 
@@ -64,6 +67,7 @@ impl Look<'_> {
         let mut found = vec![false; self.candidates.len()];
         let by_meshes = self.sorted_by(|c| c.meshes.clone());
         for members in by_meshes.values().filter(|members| members.len() > 1) {
+            let area = self.area(members);
             let (mut variants, is_mixed) = (Vec::<Vec<usize>>::new(), self.is_mixed(members[0]));
             for &k in members {
                 self.budget.spend(PER_NODE * (self.candidates[k].nodes.len() * (1 + variants.len().min(8))) as u64)?;
@@ -84,7 +88,7 @@ impl Look<'_> {
                         let is_small = is_mixed || touches && self.candidates[k].nodes.len() <= REPEATED;
                         is_small && siblings < if touches { count } else { 2 }.max(2)
                     } else {
-                        is_mixed && siblings < 2 && self.is_one_thing(k)
+                        is_mixed && siblings < 2 && (self.is_one_thing(k) || self.is_small(k, area))
                     };
                 }
             }
@@ -99,8 +103,9 @@ impl Look<'_> {
         self.budget.spend(PER_NODE * self.candidates.len() as u64)?;
         for members in by_names.values().filter(|members| members.len() > 1) {
             let kinds: BTreeSet<&String> = self.candidates[members[0]].names.1.iter().collect();
+            let area = self.area(members);
             for &k in members.iter().filter(|_| kinds.len() > 1) {
-                found[k] = self.siblings(k, &by_names) < 2 && self.is_one_thing(k);
+                found[k] = self.siblings(k, &by_names) < 2 && (self.is_one_thing(k) || self.is_small(k, area));
             }
         }
         Ok(found)
@@ -159,9 +164,22 @@ impl Look<'_> {
 
     /// Whether a candidate may be one thing though no other is a copy of it.
     fn is_one_thing(&self, k: usize) -> bool {
-        let meshes = &self.candidates[k].meshes;
-        let most = meshes.chunk_by(|a, b| a == b).map(<[usize]>::len).max().unwrap_or(0);
-        most <= REPEATED && self.hangs_together(k, NEAR)
+        self.most_of_one_kind(k) <= REPEATED && self.hangs_together(k, NEAR)
+    }
+
+    /// How far several alike reach together; nothing where there are few.
+    fn area(&self, members: &[usize]) -> f64 {
+        let around = |all: Bounds<3>, k: &usize| all.union(&self.around(&self.candidates[*k].nodes));
+        if members.len() < SEVERAL { 0.0 } else { members.iter().fold(Bounds::EMPTY, around).size().norm() }
+    }
+
+    /// Whether a candidate of few parts is small beside what all that are like it cover, whatever is between its parts.
+    fn is_small(&self, k: usize, area: f64) -> bool {
+        self.most_of_one_kind(k) <= REPEATED && self.size(&self.candidates[k].nodes) <= SMALL * area
+    }
+
+    fn most_of_one_kind(&self, k: usize) -> usize {
+        self.candidates[k].meshes.chunk_by(|a, b| a == b).map(<[usize]>::len).max().unwrap_or(0)
     }
 
     /// Whether the parts of a candidate are one group of boxes no farther apart than a share of their usual size.

@@ -4,10 +4,14 @@ mod build;
 mod choose;
 mod tree;
 
-pub(in crate::mesh) use tree::{Branch, Tree};
 use arabesque_core::{Budget, Result};
+pub(in crate::mesh) use tree::{Branch, Tree};
 
-use self::{build::built, choose::Look, tree::{boxes, candidates}};
+use self::{
+    build::built,
+    choose::Look,
+    tree::{boxes, candidates},
+};
 use super::model::Scene;
 
 /// Work of one node.

@@ -6,8 +6,8 @@ use std::{
 };
 
 use arabesque_core::{
-    Between, Border, Budget, Error, Matrix, Outcome, Placement, Request as EngineRequest, Result, Similarity,
-    StopReason, Vector, Warning,
+    Between, Border, Bounds, Buckets, Budget, Domain, Error, Matrix, Outcome, Placement, Request as EngineRequest,
+    Result, Similarity, StopReason, Vector, Warning,
 };
 use arabesque_patterns::Deform;
 use arabesque_physics::{Body, PhysicsParams, Run, Shape, Side, Surface, Surroundings, World, clearance};
@@ -24,6 +24,14 @@ use crate::{
 /// The strongest gravity, where that of the earth is 1.
 const STRONGEST: f64 = 10.0;
 
+/// How often a heap that has sunk is filled up again, and by what share at most.
+const REFILLS: usize = 3;
+const MORE: f64 = 0.25;
+/// An element has room where others are no nearer than this share of their mean size.
+const FREE: f64 = 0.95;
+/// Work of a place that is looked at.
+const PER_PLACE: u64 = 1000;
+
 /// Elements as bodies, and what is around them.
 #[derive(Debug)]
 pub(super) struct Physical {
@@ -33,6 +41,8 @@ pub(super) struct Physical {
     sources: Vec<(usize, Similarity<3>)>,
     /// How much larger than elements their colliders are, so that what touches keeps the gap that it has in the exemplar.
     larger: f64,
+    /// Whether the exemplar is a heap, of which most elements touch others.
+    is_heap: bool,
     surroundings: Surroundings,
     gravity: Vector<3>,
     /// The mesh towards which elements fall, where they do.
@@ -89,7 +99,8 @@ impl Physical {
             frozen: false,
             gravity: None,
         };
-        let larger = 1.0 + clearance(&sources.iter().map(body).collect::<Vec<_>>(), &budget)?;
+        let gap = clearance(&sources.iter().map(body).collect::<Vec<_>>(), &budget)?;
+        let (larger, is_heap) = (1.0 + gap.unwrap_or(0.0), gap.is_some());
         let mut half: Vec<f64> = sources.iter().map(|(mesh, pose)| 0.5 * shapes[mesh].size() * pose.scale).collect();
         half.sort_by(f64::total_cmp);
         let gap = (larger - 1.0) * half.get(half.len() / 2).copied().unwrap_or(0.0);
@@ -99,6 +110,7 @@ impl Physical {
             sources,
             surroundings: surroundings(job, request, (gap, context))?,
             larger,
+            is_heap,
             gravity: if ground.is_some() { Vector::ZERO } else { gravity.unwrap_or_else(|| down(job)) },
             ground,
             params,
@@ -117,9 +129,20 @@ impl Physical {
     /// # Errors
     /// Where the scene is too wide for physics.
     pub(super) fn settle(&self, outcome: &mut Outcome<3>, budget: &Budget) -> Result<PhysicsSummary> {
-        let mut world = self.world(&outcome.placements)?;
-        let run = world.settle(&budget.stage("settling"))?;
-        self.take_over(&world, &mut outcome.placements);
+        let given = outcome.placements.clone();
+        let budget = budget.stage("settling");
+        let mut run = self.rest(&mut outcome.placements, &budget)?;
+        for _ in 0..if self.is_heap { REFILLS } else { 0 } {
+            let most = (MORE * given.len() as f64) as usize + given.len();
+            let room = most.min(budget.limits().output_elements).saturating_sub(outcome.placements.len());
+            let more = self.sunk(&given, &outcome.placements, room, &budget)?;
+            if run.stopped != StopReason::Finished || more.is_empty() {
+                break;
+            }
+            outcome.placements.extend(more);
+            let again = self.rest(&mut outcome.placements, &budget)?;
+            run = Run { steps: run.steps + again.steps, before: run.before, ..again };
+        }
         if let Ok(mut trouble) = self.trouble.lock() {
             outcome.warnings.extend(trouble.take());
         }
@@ -128,6 +151,53 @@ impl Physical {
             outcome.stopped = run.stopped;
         }
         Ok(summary(&run))
+    }
+
+    /// Steps until everything is at rest.
+    fn rest(&self, placements: &mut [Placement<3>], budget: &Budget) -> Result<Run> {
+        let mut world = self.world(placements)?;
+        let run = world.settle(budget)?;
+        self.take_over(&world, placements);
+        Ok(run)
+    }
+
+    /// Elements again that were at places where there is room for them now, since the heap has sunk: at most `room`.
+    fn sunk(
+        &self,
+        given: &[Placement<3>],
+        placements: &[Placement<3>],
+        room: usize,
+        budget: &Budget,
+    ) -> Result<Vec<Placement<3>>> {
+        let middle = |placement: &Placement<3>| {
+            let (mesh, own) = &self.sources[placement.source];
+            let (pose, shape) = (placement.transform.after(own), &self.shapes[mesh]);
+            (pose.apply(shape.centre()), shape.size() * pose.scale * self.larger)
+        };
+        let mut all: Vec<(Vector<3>, f64)> = placements.iter().map(middle).collect();
+        let largest = all.iter().map(|(_, size)| *size).fold(0.0, f64::max);
+        let bounds = Bounds::around(all.iter().map(|(p, _)| *p).chain(given.iter().map(|p| middle(p).0)));
+        let mut near = Buckets::new(&Domain::Box(bounds), largest, largest);
+        (0..).zip(&all).for_each(|(k, (p, _))| near.insert(k, *p));
+        let mut found = Vec::new();
+        for placement in given.iter().filter(|placement| placement.frozen.is_none()) {
+            budget.spend(PER_PLACE)?;
+            if found.len() >= room {
+                break;
+            }
+            let (place, size) = middle(placement);
+            let mut is_free = true;
+            near.near(place, largest, |k| {
+                let (p, other) = all[k as usize];
+                is_free &= (p - place).norm() >= FREE * 0.5 * (size + other);
+            });
+            if is_free {
+                near.insert(all.len() as u32, place);
+                all.push((place, size));
+                found.push(placement.clone());
+            }
+        }
+        Ok(found)
     }
 
     fn world(&self, placements: &[Placement<3>]) -> Result<World> {

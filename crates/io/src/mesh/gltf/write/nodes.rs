@@ -90,6 +90,8 @@ pub(super) fn shown(scene: &Scene, one: bool) -> Result<Vec<usize>> {
     Ok(numbers)
 }
 
+type Nodes<'a> = Vec<Node<'a>>;
+
 /// What nodes are made of.
 pub(super) struct NodesOut<'a, 'b> {
     pub(super) scene: &'a Scene,
@@ -105,7 +107,7 @@ impl<'a> NodesOut<'a, '_> {
     }
 
     /// A node for each place, and the nodes below each of them.
-    pub(super) fn single(&mut self) -> Result<(Vec<Node<'a>>, Vec<Vec<Node<'a>>>)> {
+    pub(super) fn single(&mut self) -> Result<(Nodes<'a>, Vec<Nodes<'a>>)> {
         let reaches = self.reaches();
         let number = |mesh: usize| self.numbers.binary_search(&mesh).ok();
         let mut whole: BTreeMap<usize, f64> = BTreeMap::new();
@@ -183,7 +185,7 @@ fn record_above(node: &SceneNode, reach: f64) -> Node<'_> {
 }
 
 /// Puts the nodes below others behind all of them.
-pub(super) fn with_children<'a>(mut nodes: Vec<Node<'a>>, below: Vec<Vec<Node<'a>>>) -> Vec<Node<'a>> {
+pub(super) fn with_children<'a>(mut nodes: Nodes<'a>, below: Vec<Nodes<'a>>) -> Nodes<'a> {
     for (number, children) in below.into_iter().enumerate() {
         nodes[number].children = (nodes.len()..nodes.len() + children.len()).collect();
         nodes.extend(children);

@@ -10,7 +10,11 @@ use super::{
 };
 use crate::mesh::{
     colour::linear,
-    scene::{Attributes, Primitive, Scene, SceneMesh, SceneNode, stem},
+    scene::{
+        classes::stem,
+        look::{Attributes, Primitive},
+        model::{Scene, SceneMesh, SceneNode},
+    },
 };
 
 /// Parts are in the same places where they differ by less than this share of an element.

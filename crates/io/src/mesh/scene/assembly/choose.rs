@@ -6,7 +6,7 @@ use std::ops::Range;
 use arabesque_core::{Bounds, Budget, DisjointSets, Result, Similarity};
 
 use super::tree::{Candidate, Tree};
-use crate::mesh::scene::Scene;
+use crate::mesh::scene::model::Scene;
 
 /// Work of one node that is compared.
 const PER_NODE: u64 = 300;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use arabesque_core::{Bounds, Similarity, Vector};
 
-use crate::mesh::scene::{Scene, stem};
+use crate::mesh::scene::{classes::stem, model::Scene};
 
 /// A node of a file, with whatever hangs below it.
 #[derive(Clone, Debug)]

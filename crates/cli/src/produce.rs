@@ -39,7 +39,7 @@ pub(crate) struct RunOptions {
     /// Stop this long after the start of the command and write the best so far: seconds, or 1m30s
     #[arg(long, value_name = "TIME", value_parser = duration::parse)]
     pub(crate) time_limit: Option<Duration>,
-    /// File format, where the extension of OUT does not say: svg, png, json, csv, obj, glb, ply or toml (the recipe alone)
+    /// File format, where the extension of OUT does not say: svg, png, json, csv, obj, glb, gltf, ply, usda or toml (the recipe alone)
     #[arg(long, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
     /// Leave the recipe out of the result, which then cannot be repeated by `arabesque run`

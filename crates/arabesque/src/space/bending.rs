@@ -79,7 +79,9 @@ pub(super) fn bending(
             Deform::Classes(names) => names.contains(class),
             Deform::Auto | Deform::Off => scene.deformable.contains(class),
         };
-        let may = asked || (*deform == Deform::Auto && meshes.len() > 1);
+        // What is put together from parts is as stiff as these, though they may be in other places in each.
+        let is_whole = meshes.iter().all(|&mesh| scene.meshes[mesh].parts.is_empty());
+        let may = asked || (*deform == Deform::Auto && meshes.len() > 1 && is_whole);
         let members = Members::new(scene, meshes, may, budget)?;
         let build = if may { members.build(scene, asked, budget)? } else { Build::Rigid };
         told.extend(members.told(class, build));

@@ -70,7 +70,7 @@ struct Place {
     /// Structures and scenes of meshes: fill a closed mesh
     #[arg(long, value_name = "MESH", group = "where")]
     inside: Option<String>,
-    /// Scenes of meshes: what lies on the floor in the exemplar (its lowest place) lies on the floor of the result
+    /// Scenes of meshes: what lies on the floor in the exemplar (its lowest place) lies on the floor of the result, and stacks that stand apart stay stacks
     #[arg(long)]
     floor: bool,
     /// Scenes of meshes: where the elements of a class may lie: floor as with --floor, free anywhere; may be given several times

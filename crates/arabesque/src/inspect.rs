@@ -18,7 +18,6 @@ use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
     recipe::{Format, Input, NO_RECIPE, Reading},
     resources::Resources,
-    space::scene_understood,
     spacing::{length, spacing},
 };
 
@@ -157,17 +156,23 @@ const LINE: usize = 110;
 /// Neighbours that a neighbourhood of the suggested radius holds on average.
 const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 
-/// Reads an exemplar and says what was understood.
+/// What was understood of a scene of meshes, and what is to be told of it.
+pub(crate) fn of_scene(input: &Input, exemplar: &Exemplar<3>, told: Vec<String>, warnings: Vec<Warning>) -> Report {
+    Report { told, warnings, ..describe(input, "scene of meshes", exemplar) }
+}
+
+/// What was understood of an exemplar that is no scene of meshes.
 ///
 /// # Errors
-/// As [`LoadedExemplar::read`] and [`Resources::read`].
-pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources) -> Result<Report> {
-    let bytes = resources.read(input)?;
+/// As [`LoadedExemplar::read`].
+pub(crate) fn of_other(
+    input: &Input,
+    bytes: &[u8],
+    reading: impl Into<Reading>,
+    resources: &Resources,
+) -> Result<Report> {
     let budget = resources.budget();
-    if let Some((exemplar, told, warnings)) = scene_understood(input, &bytes, resources)? {
-        return Ok(Report { told, warnings, ..describe(input, "scene of meshes", &exemplar) });
-    }
-    Ok(match LoadedExemplar::read(input, &bytes, reading, &budget)? {
+    Ok(match LoadedExemplar::read(input, bytes, reading, &budget)? {
         LoadedExemplar::Drawing(drawing, known) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
             report.repeat = RepeatReport::of(&drawing.exemplar, known, &budget)?;

@@ -57,6 +57,7 @@ mod artwork;
 mod edit;
 mod exemplar;
 mod inspect;
+mod inspected;
 mod measure;
 mod method;
 mod plane;
@@ -91,7 +92,8 @@ pub use artwork::{
 };
 pub use edit::{Change, EditSession, PlacedItem, Proposal};
 pub use exemplar::LoadedExemplar;
-pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport, inspect};
+pub use inspect::{ClassReport, RepeatReport, Report, StyleReport, UnderstoodReport};
+pub use inspected::inspect;
 pub use measure::{Family, FamilyFault, Measure, MeasureOptions, MeasureReport, Measurements, Verdict, measure};
 pub use pool::in_pool;
 pub use prepared::{Prepared, Request};

@@ -27,9 +27,8 @@ const STRONGEST: f64 = 10.0;
 /// How often a heap that has sunk is filled up again, and by what share at most.
 const REFILLS: usize = 3;
 const MORE: f64 = 0.25;
-/// An element has room where others are no nearer than this share of their mean size: in a heap, and on top of it.
+/// An element has room where others are no nearer than this share of their mean size.
 const FREE: f64 = 0.95;
-const ON_TOP: f64 = 0.8;
 /// Work of a place that is looked at.
 const PER_PLACE: u64 = 1000;
 
@@ -180,8 +179,6 @@ impl Physical {
         let bounds = Bounds::around(all.iter().map(|(p, _)| *p).chain(given.iter().map(|p| middle(p).0)));
         let mut near = Buckets::new(&Domain::Box(bounds), largest, largest);
         (0..).zip(&all).for_each(|(k, (p, _))| near.insert(k, *p));
-        let up = if self.ground.is_some() { Vector::ZERO } else { -self.gravity.unit_or_zero() };
-        let top = given.iter().map(|p| middle(p).0.dot(up)).fold(f64::NEG_INFINITY, f64::max);
         let mut found = Vec::new();
         for placement in given.iter().filter(|placement| placement.frozen.is_none()) {
             budget.spend(PER_PLACE)?;
@@ -189,21 +186,15 @@ impl Physical {
                 break;
             }
             let (place, size) = middle(placement);
-            let under = top - place.dot(up);
-            // What goes on top of the heap sinks into the hollows there.
-            let (lift, free) =
-                if up != Vector::ZERO && under < size { (up * under, ON_TOP) } else { (Vector::ZERO, FREE) };
-            let place = place + lift;
             let mut is_free = true;
             near.near(place, largest, |k| {
                 let (p, other) = all[k as usize];
-                is_free &= (p - place).norm() >= free * 0.5 * (size + other);
+                is_free &= (p - place).norm() >= FREE * 0.5 * (size + other);
             });
             if is_free {
                 near.insert(all.len() as u32, place);
                 all.push((place, size));
-                let transform = Similarity::shift(lift).after(&placement.transform);
-                found.push(Placement { transform, ..placement.clone() });
+                found.push(placement.clone());
             }
         }
         Ok(found)

@@ -5,5 +5,6 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod lost;
+mod scenes;
 #[cfg(unix)]
 mod system;

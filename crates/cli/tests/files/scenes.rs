@@ -1,13 +1,10 @@
 //! Scenes of meshes: formats of one file and of two, elements of several meshes, stacks.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
-
-mod common;
-
 use std::fs;
 
-use common::{Folder, example};
 use serde_json::{Value, json};
+
+use crate::common::{Folder, example};
 
 const FILL: &str = "fill kernels.glb --box 3x3x3 --set iterations=1";
 

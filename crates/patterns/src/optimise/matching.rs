@@ -130,7 +130,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
                 let d2 = d2 + difference(level, library, (row.source, &row.star), near[column].sample);
                 assignment.pair(column as u32, row.weight * d2);
             });
-            meter.spend(PRICE.0 + PRICE.1 * looked as u64)?;
+            meter.spend(PRICE.0 + PRICE.1 * row.star.price() * looked as u64)?;
             if self.assignment.end_row() > limit {
                 return Ok(f32::INFINITY);
             }
@@ -150,7 +150,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);
             let columns = level.neighbours_of_key(i, row.key);
-            meter.spend(PRICE.0 + PRICE.1 * columns.len() as u64)?;
+            meter.spend(PRICE.0 + PRICE.1 * row.star.price() * columns.len() as u64)?;
             for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();

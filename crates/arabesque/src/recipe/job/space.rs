@@ -141,9 +141,10 @@ impl Space {
         self.floor || self.on.is_some() || self.constrain.values().any(|rule| *rule == Constraint::Floor)
     }
 
-    /// Whether what lies on something on the floor is to stay there: where all stand on a floor, and nothing says otherwise of a class.
+    /// Whether what lies on something on the floor is to stay there: where all stand on a level floor,
+    /// and nothing says otherwise of a class.
     pub(crate) fn stacks(&self) -> bool {
-        (self.floor || self.on.is_some()) && self.constrain.is_empty() && self.keep.is_none()
+        self.floor && self.on.is_none() && self.constrain.is_empty() && self.keep.is_none()
     }
 
     /// Covers the mesh of a file.

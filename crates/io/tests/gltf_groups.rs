@@ -1,5 +1,7 @@
 //! Nodes of a glTF file that belong together, read, written and changed.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 use arabesque_core::{Budget, Similarity, TriangleMesh, Vector};
 use arabesque_io::{
     mesh::{

@@ -205,7 +205,7 @@ mod tests {
         let artwork = run(&gems(36, false), false).unwrap();
         let nodes = artwork.summary().elements;
         for format in [Format::Ply, Format::Obj] {
-            let Encoded { bytes, warnings } = encoded(&artwork, format);
+            let Encoded { bytes, warnings, .. } = encoded(&artwork, format);
             let name = format!("out.{}", format.name());
             let mesh = arabesque_io::geometry::read_geometry(&name, &bytes, &Budget::default()).unwrap();
             assert_eq!((mesh.points.len(), mesh.triangles.len()), (4 * nodes, 4 * nodes), "{name}");

@@ -83,7 +83,7 @@ fn paint_is_a_material_of_a_copy_of_the_mesh() {
     let painted = changed(&bytes, &Changes { replaced: [(1, red)].into(), ..Changes::default() });
     let document = String::from_utf8_lossy(&painted).into_owned();
     assert!(document.contains("\"baseColorFactor\":[1.0,0.0,0.0,1.0]"), "{document}");
-    assert_eq!(open(&painted).nodes.iter().map(|node| node.mesh).collect::<Vec<_>>(), [0, 1, 0]);
+    assert_eq!(open(&painted).nodes.iter().map(|node| node.mesh).collect::<Vec<_>>(), [Some(0), Some(1), Some(0)]);
     let stroke = vec![Paint { property: "stroke".into(), value: "red".into() }];
     let stroke = Replaced { base: 1, motion: Similarity::identity(), paint: stroke };
     let refused = Changes { replaced: [(1, stroke)].into(), ..Changes::default() };

@@ -230,7 +230,8 @@ impl Assignment {
         self.reset();
         let mut total = 0.0;
         while let Some((row, slot)) = self.nearest_open_pair() {
-            meter.spend(STEP * self.outlier.len() as u64)?;
+            // Rows whose cheapest column is gone look through theirs again.
+            meter.spend(STEP * (self.outlier.len() + self.pairs.len() / 4) as u64)?;
             self.take(row, slot);
             total += self.pairs[slot].1;
         }

@@ -142,7 +142,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
                 let d2 = d2 + difference.of(level, near[column].sample);
                 assignment.pair(column as u32, row.weight * d2);
             });
-            meter.spend(PRICE.0 + PRICE.1 * looked as u64)?;
+            meter.spend(PRICE.0 + PRICE.1 * difference.price() * looked as u64)?;
             if self.assignment.end_row() > limit {
                 return Ok(f32::INFINITY);
             }
@@ -163,7 +163,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             self.assignment.begin_row(f32::INFINITY);
             let columns = level.neighbours_of_key(i, row.key);
             let difference = Difference::new(self, row.source, row.sample);
-            meter.spend(PRICE.0 + PRICE.1 * columns.len() as u64)?;
+            meter.spend(PRICE.0 + PRICE.1 * difference.price() * columns.len() as u64)?;
             for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
@@ -253,6 +253,14 @@ impl<'a, const D: usize> Difference<'a, D> {
             return Self::Edges(&matcher.stars[sample], level.single2);
         }
         Self::Attributes(matcher.library.differences.from(source))
+    }
+
+    /// Work to compare it with another one, relative to the work for a line that goes on.
+    fn price(&self) -> u64 {
+        match self {
+            Self::Edges(star, _) => star.price(),
+            Self::Attributes(_) => 1,
+        }
     }
 
     /// Difference from sample `i` of the exemplar, one of the same key.

@@ -16,6 +16,7 @@ use crate::{
         order::{self, ExemplarOrder},
     },
     irregular::Irregular,
+    orderly::Orderly,
     params::{Params, Repeats},
     regular::{Filled, Regular},
     repeat::Repeat,
@@ -35,6 +36,8 @@ pub struct Prepared<const D: usize> {
     pub(crate) params: Params,
     /// Its repeat, where it has one that is to be used.
     regular: Option<Arc<Regular>>,
+    /// The lines that it keeps to, where it has no repeat.
+    orderly: Option<Arc<Orderly>>,
     /// Its elements as samples that move by themselves, where some bend.
     soft: Option<Arc<Softness<D>>>,
     /// What the engine needs; where there is a repeat, worked out when a request first needs it.
@@ -172,6 +175,10 @@ where
             no_areas(exemplar, "that do not repeat")?;
         }
         let soft = Softness::new(exemplar, params, budget)?.map(Arc::new);
+        let orderly = match Vector::<D>::plane_exemplar(exemplar) {
+            Some(plane) if params.repeat != Repeats::Off && regular.is_none() => Orderly::new(plane, budget)?.map(Arc::new),
+            _ => None,
+        };
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
         // Of elements alike, those at one place of the cell may lie on others, and those at another place below them.
@@ -190,10 +197,11 @@ where
             order,
             params: params.clone(),
             regular,
+            orderly,
             soft,
             irregular: OnceLock::new(),
         };
-        if prepared.regular.is_none() && prepared.soft.is_none() {
+        if prepared.regular.is_none() && prepared.orderly.is_none() && prepared.soft.is_none() {
             prepared.irregular(budget)?;
         }
         Ok(prepared)
@@ -331,6 +339,11 @@ where
                     advice: told.first().map_or("leave repeat=exact out", |w| w.advice.as_str()).to_owned(),
                 });
             }
+        }
+        if let Some(orderly) = &self.orderly
+            && let Some(outcome) = Vector::<D>::fill_orderly(orderly, &self.exemplar, request, watch)?
+        {
+            return Ok(outcome);
         }
         self.refuse_bent_areas(request, told.first())?;
         let mut outcome = self.irregular(&request.budget)?.filled(request, watch)?;

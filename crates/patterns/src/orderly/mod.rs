@@ -1,0 +1,40 @@
+//! Drawings that do not repeat and still keep to lines of their own: walls, traces and streets on squared paper
+//! ([`ruled`]).
+//!
+//! Neighbourhoods of samples would bend what is straight there, since nothing tells them that it is. Such drawings are
+//! continued on their lattice, node by node, so that what is straight stays straight and what lies in line stays in line.
+
+pub(crate) mod ruled;
+
+use arabesque_core::{Budget, Exemplar, Outcome, Request, Result, Snapshot, Watch};
+
+use ruled::Ruled;
+
+/// An exemplar that keeps to lines of its own, ready for any number of runs.
+#[derive(Clone, Debug)]
+pub struct Orderly(Ruled);
+
+impl Orderly {
+    /// Finds what the exemplar keeps to; `None` where it keeps to nothing.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
+        Ok(Ruled::new(exemplar, budget)?.map(Self))
+    }
+
+    /// Fills a domain; `None` where the request asks for what only the engine for irregular patterns does.
+    ///
+    /// # Errors
+    /// [`arabesque_core::Error::Limit`] when the output would be too large, or a limit is reached before there is anything;
+    /// [`arabesque_core::Error::Stopped`] when somebody asks to stop so early; [`arabesque_core::Error::NoResult`] when nothing
+    /// fits into the domain.
+    pub(crate) fn fill(
+        &self,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Option<Outcome<2>>> {
+        self.0.fill(exemplar, request, watch)
+    }
+}

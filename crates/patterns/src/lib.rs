@@ -20,7 +20,8 @@
 //! | find places like one of a result, for edits that spread | [`alike`] | [Ma 2011 §6.3] |
 //!
 //! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly. One that does not
-//! repeat and still keeps to lines of its own, such as a maze, is continued along them by `orderly`. Elements that bend are
+//! repeat and still keeps to lines of its own, such as a maze, is continued along them by `orderly`; a layer that
+//! repeats over one that does not is taken by itself (`apart`). Elements that bend are
 //! laid out and moved by `soft`, sample by sample.
 //!
 //! Everything knows only what stands above it in this list: `exemplar` (worked out once), `output` (what is made, in
@@ -46,6 +47,7 @@
 //! Not handled: interleaved physics; anything outside two and three dimensions.
 
 pub mod alike;
+mod apart;
 mod border;
 mod curves;
 mod dimension;

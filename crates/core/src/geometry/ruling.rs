@@ -150,11 +150,8 @@ fn fitted(places: &[f64], all: &[f64], mut step: f64) -> Option<(f64, f64)> {
     let mut start = places[0];
     // A step is known the better, the farther places are reached by it.
     for reach in [6.0, 30.0, f64::INFINITY] {
-        let near: Vec<(f64, f64)> = places
-            .iter()
-            .map(|x| (((x - start) / step).round(), *x))
-            .filter(|(n, _)| *n <= reach)
-            .collect();
+        let near: Vec<(f64, f64)> =
+            places.iter().map(|x| (((x - start) / step).round(), *x)).filter(|(n, _)| *n <= reach).collect();
         let count = near.len() as f64;
         let mean = |f: &dyn Fn(&(f64, f64)) -> f64| near.iter().map(f).sum::<f64>() / count;
         let (n, x) = (mean(&|p| p.0), mean(&|p| p.1));

@@ -1,7 +1,7 @@
 //! Deciding node by node what is drawn, by what is drawn around such nodes of the exemplar [Efros 1999], then mending what
 //! stands nowhere in it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use arabesque_core::{Budget, DisjointSets, Result, Stage, Stream};
 
@@ -26,6 +26,9 @@ const BROKEN: f64 = 100.0;
 const RING: f64 = 40.0;
 /// Costs within this share, and so many steps, of the least are as good.
 const AS_GOOD: (f64, f64) = (0.15, 0.2);
+/// What it costs to draw a node as more are drawn than in the exemplar, for each time as many as there should be, and how many are drawn before
+/// that is known.
+const BALANCE: (f64, f64) = (0.5, 30.0);
 /// What it costs to go on copying where a neighbour stopped: patches of the exemplar are not to come again whole.
 const COPY: f64 = 0.03;
 /// Rounds of mending.
@@ -64,12 +67,13 @@ impl Context {
     }
 }
 
-/// Decides everything about all nodes. `sources` gets the node of the exemplar that each was copied from.
+/// Decides everything about all nodes.
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop.
 pub(crate) fn grow(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> {
     let mut sets = DisjointSets::new(net.nodes.len());
+    let mut used: BTreeMap<Look, usize> = BTreeMap::new();
     let mut sources: Vec<Option<u32>> = vec![None; net.nodes.len()];
     for k in 0..net.nodes.len() {
         let context = Context::of(net, k);
@@ -85,18 +89,24 @@ pub(crate) fn grow(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> 
             .collect();
         for &n in &net.sheet.told {
             let (star, look) = (net.sheet.star(n as usize), net.sheet.looks[n as usize]);
-            let mut cost = if net.looks[k].steps_differ(&look) {
-                BROKEN * f64::from(net.looks[k].differs(&look))
-            } else {
-                0.0
-            };
+            let mut cost =
+                if net.looks[k].steps_differ(&look) { BROKEN * f64::from(net.looks[k].differs(&look)) } else { 0.0 };
             if net.sheet.is_forest && net.would_close(k, &net.new_ends(k, star), &mut sets) {
                 cost += RING;
             }
+            if (1..8).step_by(2).any(|way| {
+                let (here, there) = (net.crossing(k, way), net.sheet.crossing(n as usize, way));
+                net.stars[k].steps[way].is_none() && here.is_some() && there.is_some() && here != there
+            }) {
+                cost += BROKEN;
+            }
+            let expected = net.sheet.share[n as usize] * (k as f64 + BALANCE.1);
+            cost += BALANCE.0
+                * ((used.get(&look).copied().unwrap_or(0) as f64 + 1.0) / (expected + 1.0) - 1.0).clamp(-1.0, 2.0);
             if copied.contains(&Some(n)) {
                 cost += COPY;
             }
-            let most = (1.0 + AS_GOOD.0) * best + AS_GOOD.1;
+            let most = as_good(best);
             if cost > most {
                 continue;
             }
@@ -104,25 +114,30 @@ pub(crate) fn grow(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> 
             best = best.min(cost);
             costs.push((cost, n));
         }
-        let good: Vec<u32> =
-            costs.iter().filter(|c| c.0 <= (1.0 + AS_GOOD.0) * best + AS_GOOD.1).map(|c| c.1).collect();
+        let good: Vec<u32> = costs.iter().filter(|c| c.0 <= as_good(best)).map(|c| c.1).collect();
         let mut stream = Stream::new(seed, GROW, k as u64);
         let Some(&chosen) = good.get(stream.below(good.len())) else { continue };
         let star = *net.sheet.star(chosen as usize);
         for end in net.new_ends(k, &star) {
             sets.join(k, end);
         }
+        *used.entry(net.sheet.looks[chosen as usize]).or_default() += 1;
         net.copy(k, &star, false);
         sources[k] = Some(chosen);
     }
     mend(net, seed, budget)
 }
 
+/// The cost up to which others are as good as the best.
+fn as_good(best: f64) -> f64 {
+    best + AS_GOOD.0 * best.abs() + AS_GOOD.1
+}
+
 /// Draws nodes anew that look like none of the exemplar, or lie beside such.
 fn mend(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> {
     let seen: BTreeSet<Look> = net.sheet.told.iter().map(|&n| net.sheet.looks[n as usize]).collect();
     for round in 0..ROUNDS {
-        let odd: Vec<usize> = (0..net.nodes.len()).filter(|&k| !seen.contains(&net.looks[k])).collect();
+        let odd: Vec<usize> = (0..net.nodes.len()).filter(|&k| is_odd(net, k, &seen)).collect();
         if odd.is_empty() {
             break;
         }
@@ -138,6 +153,11 @@ fn mend(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> {
     Ok(())
 }
 
+/// Whether a node looks like none of the exemplar, or lines cross beside it as they never do there.
+fn is_odd(net: &Net<'_>, k: usize, seen: &BTreeSet<Look>) -> bool {
+    !seen.contains(&net.looks[k]) || (!net.sheet.has_crossings && net.crosses(k))
+}
+
 /// Draws a node anew where fewer nodes around are odd for it.
 fn redraw(
     net: &mut Net<'_>,
@@ -150,7 +170,7 @@ fn redraw(
     around.push(k);
     around.sort_unstable();
     around.dedup();
-    let odd = |net: &Net<'_>| around.iter().filter(|&&n| !seen.contains(&net.looks[n])).count();
+    let odd = |net: &Net<'_>| around.iter().filter(|&&n| is_odd(net, n, seen)).count();
     let before = odd(net);
     if before == 0 {
         return Ok(());

@@ -7,7 +7,7 @@ use arabesque_core::DisjointSets;
 use crate::{
     orderly::ruled::{
         sheet::Sheet,
-        star::{Look, Star, beside, opposite},
+        star::{CROSSED, Look, Star, beside, opposite},
     },
     regular::grid::Grid,
     repeat::lattice::Node,
@@ -86,6 +86,18 @@ impl<'a> Net<'a> {
 
     pub(crate) fn look_again(&mut self, k: usize) {
         self.looks[k] = Look::of(&self.stars[k], &self.sheet.styles, &self.sheet.classes);
+    }
+
+    /// Whether the slanted step that would cross the one from a node is drawn, if that is decided.
+    pub(crate) fn crossing(&self, k: usize, way: usize) -> Option<bool> {
+        let other = self.number(beside(self.nodes[k], CROSSED[way / 2].0))?;
+        self.stars[other].steps[CROSSED[way / 2].1].map(|curve| curve > 0)
+    }
+
+    /// Whether a slanted step from a node crosses another.
+    pub(crate) fn crosses(&self, k: usize) -> bool {
+        let is_drawn = |way: usize| self.stars[k].steps[way].is_some_and(|curve| curve > 0);
+        [1, 3, 5, 7].into_iter().any(|way| is_drawn(way) && self.crossing(k, way) == Some(true))
     }
 
     /// The nodes at the other ends of the steps that copying a star would draw anew.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use arabesque_core::{Bounds, Budget, Curve, Element, Exemplar, Result, Role, Ruling, Vector, corners, ruling};
 
 use crate::{
-    orderly::ruled::star::{Look, Star, beside, opposite},
+    orderly::ruled::star::{CROSSED, Look, Star, beside, opposite},
     repeat::lattice::{Lattice, Node},
 };
 
@@ -42,6 +42,10 @@ pub(crate) struct Sheet {
     pub(crate) classes: Vec<u32>,
     /// Whether no lines close around anything.
     pub(crate) is_forest: bool,
+    /// Whether slanted steps cross between nodes.
+    pub(crate) has_crossings: bool,
+    /// For each node the share of the told nodes that look like it.
+    pub(crate) share: Vec<f64>,
     /// Steps along the walls, which are left out.
     pub(crate) walls: usize,
 }
@@ -97,7 +101,22 @@ impl Sheet {
         let stars = vec![Star { steps: [Some(0); 8], thing: Some(0) }; count];
         let (looks, told) = (Vec::new(), Vec::new());
         let origin = ruling.origin;
-        Some(Self { lattice, origin, low, size, stars, looks, told, styles, classes, is_forest: false, walls: 0 })
+        let (is_forest, has_crossings, walls, share) = (false, false, 0, Vec::new());
+        Some(Self {
+            lattice,
+            origin,
+            low,
+            size,
+            stars,
+            looks,
+            told,
+            styles,
+            classes,
+            is_forest,
+            has_crossings,
+            share,
+            walls,
+        })
     }
 
     /// The number of a node on the sheet.
@@ -179,6 +198,23 @@ impl Sheet {
         }
         self.looks = self.stars.iter().map(|star| Look::of(star, &self.styles, &self.classes)).collect();
         self.is_forest = self.is_without_rings();
+        let crosses = |&n: &u32| [1, 3].into_iter().any(|way| self.is_crossed(n as usize, way));
+        self.has_crossings = self.told.iter().any(crosses);
+        let mut counts: BTreeMap<Look, usize> = BTreeMap::new();
+        self.told.iter().for_each(|&n| *counts.entry(self.looks[n as usize]).or_default() += 1);
+        let all = self.told.len() as f64;
+        self.share = self.looks.iter().map(|look| counts.get(look).map_or(0.0, |&count| count as f64 / all)).collect();
+    }
+
+    /// Whether a slanted step from a node is drawn, and the one that crosses it.
+    fn is_crossed(&self, n: usize, way: usize) -> bool {
+        self.stars[n].steps[way].is_some_and(|curve| curve > 0) && self.crossing(n, way) == Some(true)
+    }
+
+    /// Whether the slanted step that would cross the one from a node is drawn, where that is told.
+    pub(crate) fn crossing(&self, n: usize, way: usize) -> Option<bool> {
+        let other = self.number(beside(self.node(n), CROSSED[way / 2].0))?;
+        self.stars[other].steps[CROSSED[way / 2].1].map(|curve| curve > 0)
     }
 
     /// The part of the frame of which everything is told: to a wall around the content, where there is one.

@@ -5,6 +5,9 @@ use crate::repeat::lattice::Node;
 /// The eight ways from a node to the nodes around it; the opposite of way `k` is `k + 4` modulo 8.
 pub(crate) const WAYS: [Node; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
+/// For the slanted ways, in their order, where the step that crosses it begins: the way to that node, and the way from there.
+pub(crate) const CROSSED: [(usize, usize); 4] = [(0, 3), (4, 1), (4, 7), (0, 5)];
+
 /// The opposite way.
 pub(crate) fn opposite(way: usize) -> usize {
     (way + 4) % 8

@@ -232,9 +232,6 @@ where
                 advice,
             ));
         }
-        if regular.is_none() {
-            no_areas(exemplar, "that do not repeat")?;
-        }
         let soft = Softness::new(exemplar, params, budget)?.map(Arc::new);
         let orderly = match Vector::<D>::plane_exemplar(exemplar) {
             Some(plane) if params.repeat != Repeats::Off && regular.is_none() => {
@@ -242,6 +239,9 @@ where
             }
             _ => None,
         };
+        if regular.is_none() && orderly.is_none() {
+            no_areas(exemplar, "that do not repeat")?;
+        }
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
         // Of elements alike, those at one place of the cell may lie on others, and those at another place below them.

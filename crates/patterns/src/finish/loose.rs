@@ -1,7 +1,7 @@
 //! Loose ends of lines that the exemplar does not have: contour lines end nowhere but at the frame.
 //!
-//! Ends that face one another are joined where nothing lies between them; lines of an exemplar without any loose end are then left
-//! out where they still have one, the shortest first.
+//! Ends that face one another are joined where nothing lies between them; where the exemplar has no loose end, short lines that still have
+//! one are then left out.
 
 use arabesque_core::{
     Border, Bounds, Budget, Domain, Drawn, Exemplar, GridIndex, Path, Request, Result, Vector, cubic_at,
@@ -16,6 +16,8 @@ const ON: f64 = 0.12;
 const GAP: f64 = 2.6;
 /// How far what joins them keeps from other lines.
 const CLEAR: f64 = 0.3;
+/// Lines with a loose end that are no longer are left out.
+const SHORT: f64 = 6.0;
 /// Steps in which lines are looked at.
 const STEP: f64 = 0.1;
 
@@ -34,10 +36,15 @@ pub(crate) struct LooseEnds {
     /// Number in a unit of area.
     density: f64,
     /// Mean distance between lines.
-    apart: f64,
+    pub(crate) apart: f64,
 }
 
 impl LooseEnds {
+    /// Whether there are none.
+    pub(crate) fn are_none(&self) -> bool {
+        self.density == 0.0
+    }
+
     /// Counts them; `None` for an exemplar without lines.
     ///
     /// # Errors
@@ -84,7 +91,12 @@ impl LooseEnds {
         let left = page.loose(&joined, budget)?;
         if self.density == 0.0 && left.len() as f64 > expected {
             let mut is_kept = vec![true; joined.len()];
-            left.iter().for_each(|end| is_kept[end.line] = false);
+            // A long line would leave a gap that the exemplar does not have either.
+            let is_short = |end: &&End| {
+                let points = along(&joined[end.line].path, STEP * page.apart);
+                points.len() as f64 <= SHORT / STEP
+            };
+            left.iter().filter(is_short).for_each(|end| is_kept[end.line] = false);
             let mut kept = is_kept.iter();
             joined.retain(|_| kept.next().copied().unwrap_or(true));
         }

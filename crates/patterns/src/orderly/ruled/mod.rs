@@ -10,6 +10,8 @@ mod grow;
 mod net;
 mod sheet;
 mod star;
+#[cfg(test)]
+mod tests;
 
 use arabesque_core::{
     Border, Budget, Domain, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Similarity,

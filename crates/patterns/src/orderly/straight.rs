@@ -232,7 +232,7 @@ impl Straightening<'_> {
         let is_ring = closed && last > 0 && runs[0].direction != runs[last].direction;
         let meet = |k: usize, l: usize, near: Vector<2>| {
             let lines = [(runs[k].direction, offsets[first + k]), (runs[l].direction, offsets[first + l])];
-            self.meet(lines, near).unwrap_or_else(|| place(k, near))
+            self.meet(lines, near).map_or_else(|| [place(k, near), place(l, near)], |met| [met; 2])
         };
         let end = |k: usize, p: Vector<2>| -> Result<Vector<2>> {
             let mut best: Option<(f64, Vector<2>)> = None;
@@ -256,13 +256,16 @@ impl Straightening<'_> {
             )?;
             Ok(best.map_or_else(|| self.to_border(place(k, p), p), |b| b.1))
         };
-        points.push(if is_ring { meet(last, 0, runs[0].ends[0]) } else { end(0, runs[0].ends[0])? });
+        points.push(if is_ring { meet(last, 0, runs[0].ends[0])[1] } else { end(0, runs[0].ends[0])? });
         for k in 0..last {
-            points.push(meet(k, k + 1, runs[k].ends[1]));
+            points.extend(meet(k, k + 1, runs[k].ends[1]));
         }
-        points.push(if is_ring { points[0] } else { end(last, runs[last].ends[1])? });
-        if closed && !is_ring {
-            points[last + 1] = points[0];
+        if is_ring {
+            points.extend([meet(last, 0, runs[0].ends[0])[0], points[0]]);
+        } else if closed {
+            points.push(points[0]);
+        } else {
+            points.push(end(last, runs[last].ends[1])?);
         }
         Ok(points)
     }

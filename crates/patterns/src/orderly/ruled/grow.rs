@@ -77,7 +77,8 @@ pub(crate) fn grow(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> 
     let mut sources: Vec<Option<u32>> = vec![None; net.nodes.len()];
     for k in 0..net.nodes.len() {
         let context = Context::of(net, k);
-        budget.spend(COMPARE * (net.sheet.told.len() * (8 + context.near.len())) as u64)?;
+        let looked = net.sheet.told.len() * (8 + context.near.len()) + 8 * net.sheet.kinds.len().pow(2);
+        budget.spend(COMPARE * looked as u64)?;
         let mut costs: Vec<(f64, u32)> = Vec::new();
         let mut best = f64::INFINITY;
         let copied: Vec<Option<u32>> = (4..8)
@@ -87,22 +88,14 @@ pub(crate) fn grow(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> 
                 net.sheet.number(beside(source, (way + 4) % 8)).map(|n| n as u32)
             })
             .collect();
+        let mut known: BTreeMap<Look, f64> = BTreeMap::new();
         for &n in &net.sheet.told {
             let (star, look) = (net.sheet.star(n as usize), net.sheet.looks[n as usize]);
-            let mut cost =
-                if net.looks[k].steps_differ(&look) { BROKEN * f64::from(net.looks[k].differs(&look)) } else { 0.0 };
-            if net.sheet.is_forest && net.would_close(k, &net.new_ends(k, star), &mut sets) {
-                cost += RING;
-            }
-            if (1..8).step_by(2).any(|way| {
-                let (here, there) = (net.crossing(k, way), net.sheet.crossing(n as usize, way));
-                net.stars[k].steps[way].is_none() && here.is_some() && there.is_some() && here != there
-            }) {
-                cost += BROKEN;
-            }
+            let misfit = *known.entry(look).or_insert_with(|| misfit(net, k, (star, look), &mut sets));
+            let mut cost = misfit + if breaks_crossing(net, k, n as usize) { BROKEN } else { 0.0 };
             let expected = net.sheet.share[n as usize] * (k as f64 + BALANCE.1);
-            cost += BALANCE.0
-                * ((used.get(&look).copied().unwrap_or(0) as f64 + 1.0) / (expected + 1.0) - 1.0).clamp(-1.0, 2.0);
+            let drawn = used.get(&look).copied().unwrap_or(0) as f64;
+            cost += BALANCE.0 * ((drawn + 1.0) / (expected + 1.0) - 1.0).clamp(-1.0, 2.0);
             if copied.contains(&Some(n)) {
                 cost += COPY;
             }
@@ -126,6 +119,28 @@ pub(crate) fn grow(net: &mut Net<'_>, seed: u64, budget: &Budget) -> Result<()> 
         sources[k] = Some(chosen);
     }
     mend(net, seed, budget)
+}
+
+/// What it costs that a star does not suit what is drawn at a node and around it.
+fn misfit(net: &Net<'_>, k: usize, (star, look): (&Star, Look), sets: &mut DisjointSets) -> f64 {
+    let mut cost = 0.0;
+    if net.looks[k].steps_differ(&look) {
+        cost += BROKEN * f64::from(net.looks[k].differs(&look));
+    } else if !net.leaves_room(k, star) {
+        cost += BROKEN;
+    }
+    if net.sheet.is_forest && net.would_close(k, &net.new_ends(k, star), sets) {
+        cost += RING;
+    }
+    cost
+}
+
+/// Whether a slanted step would cross another, or cross none, other than it does at a node of the exemplar.
+fn breaks_crossing(net: &Net<'_>, k: usize, n: usize) -> bool {
+    (1..8).step_by(2).any(|way| {
+        let (here, there) = (net.crossing(k, way), net.sheet.crossing(n, way));
+        net.stars[k].steps[way].is_none() && here.is_some() && there.is_some() && here != there
+    })
 }
 
 /// The cost up to which others are as good as the best.

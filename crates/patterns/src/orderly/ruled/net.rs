@@ -100,6 +100,17 @@ impl<'a> Net<'a> {
         [1, 3, 5, 7].into_iter().any(|way| is_drawn(way) && self.crossing(k, way) == Some(true))
     }
 
+    /// Whether every node around could still look like one of the exemplar if a star were copied to a node.
+    pub(crate) fn leaves_room(&self, k: usize, from: &Star) -> bool {
+        (0..8).filter(|&way| self.stars[k].steps[way].is_none()).all(|way| {
+            let Some(other) = self.number(beside(self.nodes[k], way)) else { return true };
+            let mut star = self.stars[other];
+            star.steps[opposite(way)] = from.steps[way];
+            let look = Look::of(&star, &self.sheet.styles, &self.sheet.classes);
+            self.sheet.kinds.iter().any(|kind| !look.steps_differ(kind))
+        })
+    }
+
     /// The nodes at the other ends of the steps that copying a star would draw anew.
     pub(crate) fn new_ends(&self, k: usize, from: &Star) -> Vec<usize> {
         let open = (0..8).filter(|&way| self.stars[k].steps[way].is_none() && from.steps[way].is_some_and(|c| c > 0));

@@ -44,6 +44,8 @@ pub(crate) struct Sheet {
     pub(crate) is_forest: bool,
     /// Whether slanted steps cross between nodes.
     pub(crate) has_crossings: bool,
+    /// The looks of the told nodes, each once.
+    pub(crate) kinds: Vec<Look>,
     /// For each node the share of the told nodes that look like it.
     pub(crate) share: Vec<f64>,
     /// Steps along the walls, which are left out.
@@ -101,7 +103,7 @@ impl Sheet {
         let stars = vec![Star { steps: [Some(0); 8], thing: Some(0) }; count];
         let (looks, told) = (Vec::new(), Vec::new());
         let origin = ruling.origin;
-        let (is_forest, has_crossings, walls, share) = (false, false, 0, Vec::new());
+        let (is_forest, has_crossings, walls, share, kinds) = (false, false, 0, Vec::new(), Vec::new());
         Some(Self {
             lattice,
             origin,
@@ -114,6 +116,7 @@ impl Sheet {
             classes,
             is_forest,
             has_crossings,
+            kinds,
             share,
             walls,
         })
@@ -202,6 +205,7 @@ impl Sheet {
         self.has_crossings = self.told.iter().any(crosses);
         let mut counts: BTreeMap<Look, usize> = BTreeMap::new();
         self.told.iter().for_each(|&n| *counts.entry(self.looks[n as usize]).or_default() += 1);
+        self.kinds = counts.keys().copied().collect();
         let all = self.told.len() as f64;
         self.share = self.looks.iter().map(|look| counts.get(look).map_or(0.0, |&count| count as f64 / all)).collect();
     }

@@ -130,3 +130,53 @@ fn is_clear(exemplar: &Exemplar<2>, in_layer: &[bool], budget: &Budget) -> Resul
     }
     Ok(met as f64 <= MEET * rest.len() as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use arabesque_core::{Bounds, Class, Element, Outline, Similarity, Stage, Stream, Vector};
+
+    use super::*;
+
+    fn square(at: Vector<2>, half: f64, class: usize) -> Element<2> {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let ring = corners.iter().map(|&(x, y)| at + Vector::xy(x, y) * half).collect();
+        let (outline, pose) = (Outline { rings: vec![ring] }, Similarity::shift(at));
+        let (colour, lean, role) = ([0.0; 3], [Vector::ZERO; 3], Role::Source);
+        Element { class, centre: at, pose, outline, colour, lean, role }
+    }
+
+    /// Squares on a lattice, or strewn, among small ones that are strewn and keep clear of them.
+    fn drawing(on_lattice: bool) -> Exemplar<2> {
+        let mut stream = Stream::new(4, Stage::TEST, 0);
+        let mut free = |least: f64| Vector::xy(stream.range(least, 200.0 - least), stream.range(least, 200.0 - least));
+        let node = |k: i32| Vector::xy(20.0 + 40.0 * f64::from(k % 5), 20.0 + 40.0 * f64::from(k / 5));
+        let mut elements: Vec<_> =
+            (0..25).map(|k| square(if on_lattice { node(k) } else { free(8.0) }, 6.0, 0)).collect();
+        while elements.len() < 120 {
+            let p = free(3.0);
+            if elements.iter().all(|e| (e.centre - p).norm() > if e.class == 0 { 12.0 } else { 5.0 }) {
+                elements.push(square(p, 1.0, 1));
+            }
+        }
+        let classes = ["large", "small"].map(|name| Class { name: name.into() }).to_vec();
+        Exemplar::new("t", elements, classes, Bounds::new(Vector::ZERO, Vector::xy(200.0, 200.0))).unwrap()
+    }
+
+    #[test]
+    fn a_lattice_among_things_that_are_strewn_is_a_layer_of_its_own() {
+        let exemplar = drawing(true);
+        assert!(Regular::new(&exemplar, &Budget::default()).unwrap().is_none(), "all of it does not repeat");
+        let layer = regular_layer(&exemplar, &Budget::default()).unwrap().unwrap();
+        assert!(layer.is_clear);
+        assert!(exemplar.elements.iter().zip(&layer.elements).all(|(e, is_in)| (e.class == 0) == *is_in));
+        let sides = layer.regular.repeat.lattice.vectors.map(Vector::norm);
+        assert!(sides.iter().all(|side| (side - 40.0).abs() < 0.1), "{sides:?}");
+    }
+
+    #[test]
+    fn things_that_are_all_strewn_have_no_layer_that_repeats() {
+        assert!(regular_layer(&drawing(false), &Budget::default()).unwrap().is_none());
+    }
+}

@@ -354,3 +354,84 @@ fn simplified(points: &[Vector<2>], tolerance: f64) -> Vec<Vector<2>> {
     }
     points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(p, _)| *p).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use arabesque_core::{Bounds, Class, Contents, Curve};
+
+    use super::*;
+
+    fn page() -> Bounds<2> {
+        Bounds::new(Vector::ZERO, Vector::xy(100.0, 100.0))
+    }
+
+    /// Streets across and along, 20 apart.
+    fn streets() -> Exemplar<2> {
+        let at = (0..5).map(|k| 10.0 + 20.0 * f64::from(k));
+        let lines = at.flat_map(|s| [[s, 0.0, s, 100.0], [0.0, s, 100.0, s]]);
+        let curve = |[a, b, c, d]: [f64; 4]| {
+            let path = Path::polyline(&[Vector::xy(a, b), Vector::xy(c, d)]);
+            Curve { path, style: 0, width: 1.0, colour: [0.0; 3] }
+        };
+        let styles = vec![Class { name: "a".into() }];
+        let contents = Contents { curves: lines.map(curve).collect(), styles, ..Contents::default() };
+        Exemplar::with_curves("t", contents, page()).unwrap()
+    }
+
+    fn straightened(lines: &[&[[f64; 2]]]) -> Vec<Vec<Vector<2>>> {
+        let drawn = |line: &&[[f64; 2]]| Drawn {
+            path: Path::polyline(&line.iter().map(|p| Vector(*p)).collect::<Vec<_>>()),
+            source: 0,
+            scale: 1.0,
+            frozen: None,
+        };
+        let straight = Straight::of(&streets()).unwrap();
+        let made =
+            straight.straightened(lines.iter().map(drawn).collect(), &Request::new(Domain::Box(page()))).unwrap();
+        made.iter().map(|drawn| corners(&drawn.path).unwrap()).collect()
+    }
+
+    #[test]
+    fn a_line_that_wanders_becomes_straight_and_its_corner_right() {
+        let made =
+            straightened(&[&[[0.0, 50.0], [20.0, 50.6], [40.0, 49.8], [60.0, 50.2], [60.5, 70.0], [59.8, 100.0]]]);
+        let line: Vec<_> = made[0].iter().copied().filter(|p| page().contains(*p)).collect();
+        assert!(
+            line.windows(2).all(|p| {
+                let step = p[1] - p[0];
+                step[0].abs() < 1e-9 || step[1].abs() < 1e-9
+            }),
+            "{line:?}"
+        );
+        assert_eq!(made[0].len(), 3);
+    }
+
+    #[test]
+    fn a_line_ends_on_the_line_that_it_ended_on_and_goes_on_as_the_one_it_went_on_as() {
+        let made = straightened(&[
+            &[[0.0, 50.0], [30.0, 50.4], [100.0, 50.1]],
+            &[[40.0, 0.0], [40.4, 25.0], [40.2, 50.3]],
+            &[[40.2, 50.3], [39.8, 80.0], [40.1, 100.0]],
+        ]);
+        let (across, above, below) = (made[0][0][1], &made[1], &made[2]);
+        assert!((above[above.len() - 1][1] - across).abs() < 1e-9 && (below[0][1] - across).abs() < 1e-9, "{made:?}");
+        assert!((above[0][0] - below[0][0]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn lines_that_bend_or_run_anywhere_have_no_directions() {
+        let mut bent = streets();
+        bent.curves[0].path.cubics[0][1] += Vector::xy(3.0, 0.0);
+        assert!(Straight::of(&bent).is_none());
+        let mut strewn = streets();
+        for (k, curve) in (0..).map(f64::from).zip(&mut strewn.curves) {
+            curve.path = Path::polyline(&[
+                Vector::xy(50.0, 50.0),
+                Vector::xy(50.0 + (0.31 * k).cos() * 40.0, 50.0 + (0.31 * k).sin() * 40.0),
+            ]);
+        }
+        assert!(Straight::of(&strewn).is_none());
+    }
+}

@@ -5,6 +5,8 @@
 
 mod find;
 mod lay;
+#[cfg(test)]
+mod tests;
 
 use arabesque_core::{
     Border, Budget, Domain, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Similarity,

@@ -1,7 +1,6 @@
 //! Loose ends of lines that the exemplar does not have: contour lines end nowhere but at the frame.
 //!
-//! Ends that face one another are joined where nothing lies between them; where the exemplar has no loose end, short lines that still have
-//! one are then left out.
+//! Ends that face one another are joined where nothing lies between them.
 
 use arabesque_core::{
     Border, Bounds, Budget, Domain, Drawn, Exemplar, GridIndex, Path, Request, Result, Vector, cubic_at,
@@ -16,8 +15,6 @@ const ON: f64 = 0.12;
 const GAP: f64 = 2.6;
 /// How far what joins them keeps from other lines.
 const CLEAR: f64 = 0.3;
-/// Lines with a loose end that are no longer are left out.
-const SHORT: f64 = 6.0;
 /// Steps in which lines are looked at.
 const STEP: f64 = 0.1;
 
@@ -64,7 +61,7 @@ impl LooseEnds {
         Ok(Some(Self { density: ends.len() as f64 / area, apart }))
     }
 
-    /// Joins loose ends, and leaves out lines that have some, until there are no more of them than in the exemplar.
+    /// Joins loose ends until there are no more of them than in the exemplar, or none that can be joined.
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
@@ -87,20 +84,7 @@ impl LooseEnds {
             return Ok(curves);
         }
         let most = (loose.len() as f64 - expected) / 2.0;
-        let mut joined = page.joined(curves, &loose, most.ceil() as usize, budget)?;
-        let left = page.loose(&joined, budget)?;
-        if self.density == 0.0 && left.len() as f64 > expected {
-            let mut is_kept = vec![true; joined.len()];
-            // A long line would leave a gap that the exemplar does not have either.
-            let is_short = |end: &&End| {
-                let points = along(&joined[end.line].path, STEP * page.apart);
-                points.len() as f64 <= SHORT / STEP
-            };
-            left.iter().filter(is_short).for_each(|end| is_kept[end.line] = false);
-            let mut kept = is_kept.iter();
-            joined.retain(|_| kept.next().copied().unwrap_or(true));
-        }
-        Ok(joined)
+        page.joined(curves, &loose, most.ceil() as usize, budget)
     }
 }
 
@@ -267,7 +251,6 @@ fn chained(lines: Vec<Drawn<2>>, ends: &[End], joints: &[Joint]) -> Vec<Drawn<2>
     for joint in joints {
         let [(i, side), (j, other)] = joint.ends.map(|e| home[ends[e].line][ends[e].side]);
         let Some(mut first) = lines[i].take() else { continue };
-        let moved: [(usize, usize); 2];
         if side == 0 {
             first.path = first.path.reversed();
         }
@@ -284,7 +267,7 @@ fn chained(lines: Vec<Drawn<2>>, ends: &[End], joints: &[Joint]) -> Vec<Drawn<2>
         let rest = if other == 0 { second.path } else { second.path.reversed() };
         first.path.cubics.push(joint.cubic);
         first.path.cubics.extend(rest.cubics);
-        moved = [(i, 1 - side), (j, 1 - other)];
+        let moved = [(i, 1 - side), (j, 1 - other)];
         for place in home.iter_mut().flatten() {
             if *place == moved[0] {
                 *place = (i, 0);
@@ -346,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_that_face_one_another_are_joined_and_others_left_out_with_their_lines() {
+    fn ends_that_face_one_another_are_joined() {
         let exemplar = exemplar();
         let budget = Budget::default();
         let ends = LooseEnds::of(&exemplar, &budget).unwrap().unwrap();
@@ -361,7 +344,7 @@ mod tests {
         ]);
         let request = Request::new(Domain::Box(page()));
         let mended = ends.mended(curves, &exemplar, &request).unwrap();
-        assert_eq!(mended.len(), 8);
+        assert_eq!(mended.len(), 9);
         let joined = &mended[7].path;
         assert!((joined.start().unwrap() - Vector::xy(0.0, 80.0)).norm() < 1e-9 && joined.cubics.len() == 3);
         assert!((joined.end().unwrap() - Vector::xy(100.0, 82.0)).norm() < 1e-9);

@@ -257,8 +257,8 @@ impl Straightening<'_> {
             Ok(best.map_or_else(|| self.to_border(place(k, p), p), |b| b.1))
         };
         points.push(if is_ring { meet(last, 0, runs[0].ends[0])[1] } else { end(0, runs[0].ends[0])? });
-        for k in 0..last {
-            points.extend(meet(k, k + 1, runs[k].ends[1]));
+        for (k, run) in runs[..last].iter().enumerate() {
+            points.extend(meet(k, k + 1, run.ends[1]));
         }
         if is_ring {
             points.extend([meet(last, 0, runs[0].ends[0])[0], points[0]]);

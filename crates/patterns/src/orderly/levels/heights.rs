@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Result, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Path, Result, Vector};
 
 /// Places for the distance of lines, and along the shorter side of the frame, at least and at most.
 const PLACES: (f64, f64, f64) = (6.0, 40.0, 220.0);
@@ -41,12 +41,12 @@ struct Survey {
 }
 
 impl Heights {
-    /// The heights of an exemplar whose lines lie `apart` in the mean; `None` where its lines are no levels.
+    /// The heights of an exemplar whose lines, and `rings` beside them, lie `apart` in the mean; `None` where its lines are no levels.
     ///
     /// # Errors
     /// When the budget is used up, or somebody asks to stop.
-    pub(crate) fn of(exemplar: &Exemplar<2>, apart: f64, budget: &Budget) -> Result<Option<Self>> {
-        let survey = Survey::new(exemplar, apart, budget)?;
+    pub(crate) fn of(exemplar: &Exemplar<2>, rings: &[Path<2>], apart: f64, budget: &Budget) -> Result<Option<Self>> {
+        let survey = Survey::new(exemplar, rings, apart, budget)?;
         let far = survey.depths(0, budget)?;
         // From one end of what the lines part, heights rise to the other.
         let end = (0..far.len()).max_by_key(|&n| far[n]).unwrap_or(0);
@@ -60,7 +60,7 @@ impl Heights {
 }
 
 impl Survey {
-    fn new(exemplar: &Exemplar<2>, apart: f64, budget: &Budget) -> Result<Self> {
+    fn new(exemplar: &Exemplar<2>, rings: &[Path<2>], apart: f64, budget: &Budget) -> Result<Self> {
         let sides = exemplar.window.size();
         let shorter = sides[0].min(sides[1]);
         let step = (apart / PLACES.0).clamp(shorter / PLACES.2, shorter / PLACES.1);
@@ -69,8 +69,8 @@ impl Survey {
         budget.spend(WORK.0 * count as u64)?;
         let between = [vec![Between::default(); count], vec![Between::default(); count]];
         let mut survey = Self { size, step, corner: exemplar.window.min, between };
-        for curve in &exemplar.curves {
-            let points = curve.path.flatten(0.1 * step);
+        for path in exemplar.curves.iter().map(|curve| &curve.path).chain(rings) {
+            let points = path.flatten(0.1 * step);
             budget.spend(WORK.1 * points.len() as u64)?;
             for pair in points.windows(2) {
                 survey.cross([pair[0], pair[1]].map(|p| (p - survey.corner) * (1.0 / step)));
@@ -179,16 +179,16 @@ impl Survey {
         }
         let unit = apart / self.step;
         let extent = Vector::xy(self.size[0] as f64, self.size[1] as f64);
-        let index = GridIndex::new(&places, unit, &Domain::Box(arabesque_core::Bounds::new(Vector::ZERO, extent)));
+        let index = GridIndex::new(&places, unit, &Domain::Box(Bounds::new(Vector::ZERO, extent)));
         let mut values = Vec::with_capacity(depth.len());
-        for n in 0..depth.len() {
+        for (n, &level) in depth.iter().enumerate() {
             // The nearest line below and above.
             let mut near = [f64::INFINITY; 2];
             for reach in [0.5, 1.5, REACH] {
                 budget.spend(index.within(place(n), reach * unit, |k, offset| {
-                    if levels[k] == depth[n] {
+                    if levels[k] == level {
                         near[1] = near[1].min(offset.norm());
-                    } else if levels[k] + 1 == depth[n] {
+                    } else if levels[k] + 1 == level {
                         near[0] = near[0].min(offset.norm());
                     }
                 }))?;
@@ -203,7 +203,7 @@ impl Survey {
                 [_, high] if high.is_finite() => 1.0 - rise(high),
                 _ => 0.5,
             };
-            values.push((f64::from(depth[n]) - 0.5 + part) as f32);
+            values.push((f64::from(level) - 0.5 + part) as f32);
         }
         Ok(values)
     }

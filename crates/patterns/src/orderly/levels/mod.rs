@@ -6,8 +6,8 @@
 mod heights;
 
 use arabesque_core::{
-    Border, Bounds, Budget, Cubic, Domain, Drawn, Error, Exemplar, Forecast, Outcome, Path, Progress, Request, Result,
-    Ring, Snapshot, StopReason, Vector, Watch,
+    Border, Bounds, Budget, Cubic, Curve, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Path, Progress,
+    Request, Result, Ring, Snapshot, StopReason, Vector, Watch, ring,
 };
 
 use crate::{
@@ -36,8 +36,12 @@ const MOST: usize = 4_000_000;
 const BEYOND: usize = 4;
 /// Rings shorter than this, in mean distances of lines, are not drawn.
 const SPECK: f64 = 0.8;
-/// Widths of one pen.
+/// Widths and colours of one pen.
 const PEN: f64 = 0.02;
+const COLOUR: f64 = 0.02;
+/// How thick the line of a ring may be, and how large a dot, in widths of the pen.
+const THICK: f64 = 2.0;
+const DOT: f64 = 4.0;
 
 /// Levels, ready for any number of runs.
 #[derive(Clone, Debug)]
@@ -52,19 +56,19 @@ impl Levels {
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
         let lines = &exemplar.curves;
-        let others = !exemplar.elements.is_empty() || !exemplar.areas.is_empty() || exemplar.hole.is_some();
-        if lines.len() < LINES || others {
+        if lines.len() < LINES || !exemplar.areas.is_empty() || exemplar.hole.is_some() {
             return Ok(None);
         }
-        let is_like = |curve: &arabesque_core::Curve<2>| {
-            curve.style == lines[0].style && (curve.width / lines[0].width - 1.0).abs() < PEN
-        };
+        let is_like =
+            |curve: &Curve<2>| curve.style == lines[0].style && (curve.width / lines[0].width - 1.0).abs() < PEN;
         if !lines.iter().all(is_like) {
             return Ok(None);
         }
         let budget = &budget.stage("looking for levels");
         let Some(ends) = LooseEnds::of(exemplar, budget)?.filter(LooseEnds::are_none) else { return Ok(None) };
-        let Some(heights) = Heights::of(exemplar, ends.apart, budget)? else { return Ok(None) };
+        let rings: Option<Vec<Vec<Path<2>>>> = exemplar.elements.iter().map(|e| thin_ring(e, &lines[0])).collect();
+        let Some(rings) = rings else { return Ok(None) };
+        let Some(heights) = Heights::of(exemplar, &rings.concat(), ends.apart, budget)? else { return Ok(None) };
         let Heights { size, step, values } = heights;
         // Heights differ by one from line to line.
         let sheet = Sheet { sources: vec![0], size, step, apart: ends.apart, values, far: 1.0, is_height: true };
@@ -155,6 +159,29 @@ impl Levels {
     }
 }
 
+/// The line of an element that is a ring drawn with the pen of a curve, such as the top of a hill; nothing for a dot. `None` for anything
+/// else.
+fn thin_ring(element: &Element<2>, pen: &Curve<2>) -> Option<Vec<Path<2>>> {
+    let is_like = element.colour.iter().zip(pen.colour).all(|(a, b)| (a - b).abs() < COLOUR);
+    match element.outline.rings.as_slice() {
+        _ if !is_like => None,
+        [only] => {
+            let size = Bounds::around(only.iter().copied()).size();
+            (size[0].max(size[1]) < DOT * pen.width).then(Vec::new)
+        }
+        [a, b] => {
+            let (outer, inner) = if ring::area(a).abs() > ring::area(b).abs() { (a, b) } else { (b, a) };
+            let nearest =
+                |p: &Vector<2>| inner.iter().copied().min_by(|x, y| (*x - *p).norm2().total_cmp(&(*y - *p).norm2()));
+            let mut points: Vec<Vector<2>> = outer.iter().filter_map(|p| Some((*p + nearest(p)?) * 0.5)).collect();
+            let is_thin = outer.iter().all(|p| nearest(p).is_some_and(|q| (q - *p).norm() < THICK * pen.width));
+            points.extend(points.first().copied());
+            (is_thin && points.len() > 3).then(|| vec![Path::polyline(&points)])
+        }
+        _ => None,
+    }
+}
+
 /// The sides of a ring.
 fn sides(ring: &[Vector<2>]) -> impl Iterator<Item = (Vector<2>, Vector<2>)> + '_ {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
@@ -175,7 +202,7 @@ fn smooth(ring: &Ring<2>) -> Path<2> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
-    use arabesque_core::{Class, Contents, Curve, Unobserved};
+    use arabesque_core::{Class, Contents, Unobserved};
 
     use super::*;
 

@@ -9,7 +9,7 @@ use arabesque_io::{
     svg::{self, Dashes, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, Parts, ReadOptions, Reason, Unit},
     table::csv::{self, Points},
 };
-use arabesque_patterns::{Regular, regular, repeat::Extent, takes_fills};
+use arabesque_patterns::{Regular, regular, repeat::Extent};
 
 use crate::recipe::{Input, Reading};
 
@@ -126,22 +126,9 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
     if drawing.exemplar.areas.is_empty() || known.is_some() {
         return Ok((drawing, known));
     }
-    // Without a repeat, lines are what areas are made of best, where they are lines; others are continued as fills.
+    // Without a repeat, lines are all that can be made of areas.
     let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
-    match svg::read_exemplar(text, &options) {
-        Ok(lines) if !takes_fills(&drawing.exemplar) || are_lines(&lines, drawing.exemplar.areas.len()) => {
-            Ok((lines, None))
-        }
-        Ok(_) | Err(Error::Unsupported { .. }) if takes_fills(&drawing.exemplar) => Ok((drawing, None)),
-        lines => Ok((lines?, None)),
-    }
-}
-
-/// Whether all of these areas have become lines.
-fn are_lines(drawing: &Drawing, areas: usize) -> bool {
-    let is_line = |reason: Reason| matches!(reason, Reason::Traced | Reason::Band | Reason::HandBand);
-    let lines: usize = drawing.understood.iter().filter(|known| is_line(known.reason)).map(|known| known.count).sum();
-    lines >= areas && !drawing.understood.iter().any(|known| known.reason == Reason::Large)
+    Ok((svg::read_exemplar(text, &options)?, None))
 }
 
 /// A page whose repeat cannot be told and that shows no more elements than this is taken for one period.
@@ -176,9 +163,9 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
     if let Some(period) = period.filter(|_| !is_net) {
         return Ok((period, None));
     }
-    // Areas beside strokes need a repeat, and a handful of things shows no arrangement.
+    // Areas need a repeat, and a handful of elements shows no arrangement.
     let is_enough = |Exemplar { elements, curves, areas, .. }: &Exemplar<2>| {
-        (areas.is_empty() || curves.is_empty()) && elements.len() + curves.len() + areas.len() > FEW
+        areas.is_empty() && elements.len() + curves.len() > FEW
     };
     let tiling = match &page {
         Ok(page) if is_enough(&page.exemplar) => svg::Tiling::Likely,

@@ -77,7 +77,6 @@ pub use dimension::Dimension;
 pub use finish::clearance::overlap_ratio;
 #[doc(hidden)]
 pub use orderly::Orderly;
-pub use orderly::takes_fills;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Repeats, Search, Switch};
 #[doc(hidden)]
 pub use prepared::Compiled;

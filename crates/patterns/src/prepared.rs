@@ -239,7 +239,7 @@ where
             }
             _ => None,
         };
-        if regular.is_none() && orderly.is_none() {
+        if regular.is_none() {
             no_areas(exemplar, "that do not repeat")?;
         }
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);

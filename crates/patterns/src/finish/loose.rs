@@ -33,15 +33,10 @@ pub(crate) struct LooseEnds {
     /// Number in a unit of area.
     density: f64,
     /// Mean distance between lines.
-    pub(crate) apart: f64,
+    apart: f64,
 }
 
 impl LooseEnds {
-    /// Whether there are none.
-    pub(crate) fn are_none(&self) -> bool {
-        self.density == 0.0
-    }
-
     /// Counts them; `None` for an exemplar without lines.
     ///
     /// # Errors

@@ -1,22 +1,17 @@
 //! Drawings that do not repeat and still keep to lines of their own: walls, traces and tiles of lines on squared paper
-//! (`ruled`), boards in rows (`boards`), fills of any width (`ink`), levels of
-//! heights (`levels`); and straight lines of others, made straight again (`straight`).
+//! (`ruled`), boards in rows (`boards`); and straight lines of others, made straight again (`straight`).
 //!
 //! Neighbourhoods of samples would bend what is straight there, since nothing tells them that it is. Such drawings are
 //! continued on their own terms, node by node or board by board, so that what is straight stays straight and what lies in line stays
 //! in line.
 
 pub(crate) mod boards;
-pub(crate) mod ink;
-pub(crate) mod levels;
 pub(crate) mod ruled;
 pub(crate) mod straight;
 
 use arabesque_core::{Budget, Exemplar, Outcome, Request, Result, Snapshot, Watch};
 
 use boards::Boards;
-use ink::Ink;
-use levels::Levels;
 use ruled::Ruled;
 
 /// An exemplar that keeps to lines of its own, ready for any number of runs.
@@ -29,16 +24,6 @@ enum Kind {
     Ruled(Ruled),
     /// Boards in rows.
     Boards(Boards),
-    /// Fills of any width.
-    Ink(Ink),
-    /// Levels of heights.
-    Levels(Levels),
-}
-
-/// Whether all that an exemplar draws are fills that can be continued although they do not repeat: areas of a few paints, and pieces
-/// painted like them.
-pub fn takes_fills(exemplar: &Exemplar<2>) -> bool {
-    ink::takes(exemplar)
 }
 
 impl Orderly {
@@ -50,13 +35,7 @@ impl Orderly {
         if let Some(ruled) = Ruled::new(exemplar, budget)? {
             return Ok(Some(Self(Kind::Ruled(ruled))));
         }
-        if let Some(boards) = Boards::new(exemplar, budget)? {
-            return Ok(Some(Self(Kind::Boards(boards))));
-        }
-        if let Some(levels) = Levels::new(exemplar, budget)? {
-            return Ok(Some(Self(Kind::Levels(levels))));
-        }
-        Ok(Ink::new(exemplar, budget)?.map(|ink| Self(Kind::Ink(ink))))
+        Ok(Boards::new(exemplar, budget)?.map(|boards| Self(Kind::Boards(boards))))
     }
 
     /// Fills a domain; `None` where the request asks for what only the engine for irregular patterns does.
@@ -74,8 +53,6 @@ impl Orderly {
         match &self.0 {
             Kind::Ruled(ruled) => ruled.fill(exemplar, request, watch),
             Kind::Boards(boards) => boards.fill(exemplar, request, watch),
-            Kind::Ink(ink) => ink.fill(exemplar, request, watch),
-            Kind::Levels(levels) => levels.fill(exemplar, request, watch),
         }
     }
 }

@@ -6,7 +6,8 @@ target=$1 seconds=$2
 shift 2
 case $target in
 recipe) length=8000 ;;
-fill) length=1500 ;;
+edit) length=10000 ;;
+fill | jobs) length=1500 ;;
 *) length=4000 ;;
 esac
 dictionary=

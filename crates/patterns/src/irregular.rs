@@ -178,10 +178,15 @@ where
     ///
     /// # Errors
     /// As there.
-    pub(crate) fn without_overlaps(&self, placements: &mut Vec<Placement<D>>, request: &Request<D>) -> Result<()> {
+    pub(crate) fn without_overlaps(
+        &self,
+        placements: &mut Vec<Placement<D>>,
+        laps: bool,
+        request: &Request<D>,
+    ) -> Result<()> {
         let Some(sampled) = self.levels.last() else { return Ok(()) };
         let extent = Extent::new(request, &sampled.exemplar, &sampled.library, sampled.level.base)?;
-        solids::take_out(placements, &self.exemplar, &sampled.library, &extent)
+        solids::take_out(placements, laps, (&self.exemplar, &sampled.library), &extent)
     }
 
     /// What a run will take, by what its samples take in each iteration.

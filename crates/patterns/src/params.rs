@@ -122,9 +122,9 @@ params! {
         levels "levels": usize = 3, in 1..=5;
         /// Iterations of search and assignment per level, at most.
         iterations "iterations": usize = 7, in 0..=1000;
-        /// Share by which an iteration must lower the energy of elements for another one to follow.
-        /// 0 for all iterations, as with strokes and after white noise.
-        rest "rest": f64 = 0.02, in 0.0..=1.0;
+        /// Share by which an iteration must lower the energy for another one to follow.
+        /// 0 for all iterations, as after white noise.
+        rest "rest": f64 = 0.1, in 0.0..=1.0;
         /// Neighbourhood radius, the same at every level.
         radius "radius": Option<f64> = None, in 1e-9..=1e9, auto "chosen from the numbers of neighbours", unit "exemplar units";
         /// Samples in an average neighbourhood at the coarsest level.

@@ -405,12 +405,17 @@ where
     }
 
     /// Elements with a volume that somebody else has placed, without those that lie deeper in others than in the exemplar or do not suit
-    /// the border.
+    /// the border. Where rows lie on one another anyhow, as those of shingles do (`laps`), overlaps are left.
     ///
     /// # Errors
     /// [`Error::NoResult`] when nothing is left; when a limit is reached, or somebody asks to stop, the result is what it is by then.
-    pub fn without_overlaps(&self, mut placements: Vec<Placement<D>>, request: &Request<D>) -> Result<Outcome<D>> {
-        let ended = self.irregular(&request.budget)?.without_overlaps(&mut placements, request).err();
+    pub fn without_overlaps(
+        &self,
+        mut placements: Vec<Placement<D>>,
+        laps: bool,
+        request: &Request<D>,
+    ) -> Result<Outcome<D>> {
+        let ended = self.irregular(&request.budget)?.without_overlaps(&mut placements, laps, request).err();
         if placements.is_empty() {
             return Err(ended.unwrap_or_else(|| {
                 let advice = "make the domain larger, lower the scale, or allow elements to cross its border";

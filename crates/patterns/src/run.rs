@@ -46,8 +46,8 @@ const NOISE_FLOOR: f64 = 0.3;
 /// Elements are never removed below this share of their number at the end, and not at all below it after patch copy.
 const FLOOR: f64 = 0.95;
 
-/// Iterations of a level before it may be at rest.
-const SETTLING: usize = 2;
+/// Iterations of a level before it may be at rest, of elements and where there are strokes: these join while the energy hardly falls.
+const SETTLING: (usize, usize) = (1, 3);
 
 /// Moves below this share of the mean spacing do not make the neighbours search again.
 const NOTICEABLE: f64 = 0.04;
@@ -391,8 +391,9 @@ where
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<()> {
         let k = steps.k;
-        // What starts in disorder gains and loses elements for a while, and strokes join when the energy has long come to rest.
-        let is_ordered = self.params.initialisation != Initialisation::WhiteNoise && !self.has_strokes();
+        // What starts in disorder gains and loses elements for a while, and its strokes join when the energy has long come to rest.
+        let is_ordered = self.params.initialisation != Initialisation::WhiteNoise;
+        let settling = if self.has_strokes() { SETTLING.1 } else { SETTLING.0 };
         let rest = if is_ordered && self.params.rest > 0.0 { self.params.rest } else { f64::NEG_INFINITY };
         let mut before = f64::INFINITY;
         for iteration in steps.before..steps.before + self.iterations {
@@ -402,7 +403,7 @@ where
             let changed = self.assign(state, &self.contexts[k], self.floor(k, iteration), steps.votes)?;
             let progress = self.progress(k, iteration + 1, state);
             heard(watch.step(&progress, &|| self.snapshot(&self.contexts[k], state)), &progress)?;
-            let is_at_rest = iteration >= steps.before + SETTLING && energy > (1.0 - rest) * before;
+            let is_at_rest = iteration >= steps.before + settling && energy > (1.0 - rest) * before;
             if !changed || searched == 0 || is_at_rest {
                 break;
             }

@@ -141,7 +141,7 @@ impl<'a> Bench<'a> {
             alike[(i + 1) % alike.len()]
         };
         Pairings {
-            matcher: Matcher::new(level, state.library, Matching::Robust, prices),
+            matcher: Matcher::new(level, state.library, &level.stars, Matching::Robust, prices),
             pairs: (0..level.position.len()).map(|i| (surroundings(state, i as u32), next(i))).collect(),
             count: state.living().len(),
         }
@@ -254,10 +254,9 @@ fn surroundings(state: &State<'_, 2>, i: u32) -> Surroundings<2> {
         offset: Vector(near.offset.map(f64::from)),
         weight: near.weight,
         frozen: false,
-        star: level.stars[near.sample],
     };
     let rows = level.neighbours(i).iter().filter(|n| n.weight > 0.0).map(row).collect();
-    Surroundings { source: level.element[i], star: level.stars[i], rows }
+    Surroundings { sample: i, source: level.element[i], rows }
 }
 
 /// The first step of a run at its coarsest level.

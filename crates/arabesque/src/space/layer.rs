@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Bounds, Budget, Domain, Element, Exemplar, Matrix, OrientationField, Outcome, Outline, Placement,
+    Bounds, Budget, Domain, Element, Exemplar, GridIndex, Matrix, OrientationField, Outcome, Outline, Placement,
     Request as EngineRequest, Result, Similarity, Snapshot, Stage, Stream, Vector, Watch,
 };
 use arabesque_patterns::{Params, Prepared as Engine, Regular, repeat::Extent};
@@ -21,6 +21,14 @@ const SINGLE: f64 = 0.5;
 const ROOM: f64 = 1.08;
 const MOST: f64 = 0.9;
 
+/// Elements lie on one another from this share of their sizes; those that touch do not.
+const LAP: f64 = 0.1;
+
+/// Things that lie on one another are doubled when they are nearer than this share of the least distance of the exemplar.
+const DOUBLED: f64 = 0.6;
+/// Work to look for what is near a thing.
+const NEAR: u64 = 2000;
+
 /// A layer as a drawing.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
@@ -35,6 +43,8 @@ pub(super) struct Layer {
     middle: f64,
     /// The direction of rows that can slip along one another.
     rows: Option<Vector<2>>,
+    /// Whether rows lie on one another.
+    laps: bool,
     centres: Vec<Vector<3>>,
 }
 
@@ -74,7 +84,9 @@ impl Layer {
         let middle = exemplar.window.centre()[across];
         let centres = exemplar.elements.iter().map(|e| e.centre).collect();
         let rows = engine.repeating().and_then(|regular| rows(&drawing, regular.repeat().lattice.vectors));
-        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, rows, centres }))
+        let laps = rows.is_some_and(|(_, laps)| laps);
+        let rows = rows.map(|(way, _)| way);
+        Ok(Some(Self { axes, across, up: exemplar.up, drawing, engine, middle, rows, laps, centres }))
     }
 
     /// Fills a box, in the middle of which the layer lies; `None` where that turns it about another axis.
@@ -184,8 +196,34 @@ impl Layer {
             }
         }
         let sites = lattice.even_rows(&shell.index, &axes, sites, &budget)?;
-        let placements = sites.iter().map(|site| self.on_mesh(shell, &site.at, shown[site.item], scale)).collect();
-        solids.without_overlaps(placements, request).map(Some)
+        let mut placements: Vec<_> =
+            sites.iter().map(|site| self.on_mesh(shell, &site.at, shown[site.item], scale)).collect();
+        if self.laps {
+            budget.spend(NEAR * placements.len() as u64)?;
+            self.take_out_doubled(&mut placements, wider);
+        }
+        solids.without_overlaps(placements, self.laps, request).map(Some)
+    }
+
+    /// Takes out what is far nearer to another one than any two elements of the exemplar are: things that lie on one another anyhow are not
+    /// told by their overlaps.
+    fn take_out_doubled(&self, placements: &mut Vec<Placement<3>>, wider: f64) {
+        let nearest = |p: Vector<3>| {
+            let ways = self.centres.iter().map(|&c| (c - p).norm()).filter(|way| *way > 0.0);
+            ways.fold(f64::INFINITY, f64::min)
+        };
+        let least = DOUBLED * wider * self.centres.iter().map(|&c| nearest(c)).fold(f64::INFINITY, f64::min);
+        if !least.is_finite() {
+            return;
+        }
+        let places: Vec<_> = placements.iter().map(|p| p.transform.apply(self.centres[p.source])).collect();
+        let index = GridIndex::new(&places, least, &Domain::Box(Bounds::around(places.iter().copied()).grown(least)));
+        let mut gone = vec![false; places.len()];
+        for (i, &place) in places.iter().enumerate() {
+            index.within(place, least, |j, _| gone[i] |= j < i && !gone[j]);
+        }
+        let mut gone = gone.into_iter();
+        placements.retain(|_| gone.next() != Some(true));
     }
 
     /// An element of the exemplar over a point of a mesh, off by what it is off in the exemplar.
@@ -235,21 +273,61 @@ fn is_single(exemplar: &Exemplar<3>, axis: usize) -> bool {
     spread < SINGLE * sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The direction of rows of a lattice that lie beside one another, so that they could slip: a short vector of it, x rather than y.
-fn rows(drawing: &Exemplar<2>, [a, b]: [Vector<2>; 2]) -> Option<Vector<2>> {
+/// The direction of rows of a lattice that could slip along one another: a short vector of it, x rather than y. Rows that lie beside one
+/// another can, and so can those that lie on one another anyhow, as shingles do: which of the two it is comes second.
+fn rows(drawing: &Exemplar<2>, [a, b]: [Vector<2>; 2]) -> Option<(Vector<2>, bool)> {
     let cell = a.cross(b).abs();
     let combinations = (-2_i8..=2).flat_map(|i| (-2_i8..=2).map(move |j| (f64::from(i), f64::from(j))));
     let mut ways: Vec<Vector<2>> = combinations.map(|(i, j)| a * i + b * j).filter(|v| v.norm() > 0.0).collect();
     ways.sort_by(|v, w| v[1].abs().total_cmp(&w[1].abs()).then(v.norm().total_cmp(&w.norm())));
     let fit = |(way, apart): &(Vector<2>, f64)| {
         let widths = drawing.elements.iter().map(|e| {
-            let across = e.outline.points().map(|p| way.cross(p));
-            let (low, high) = across.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+            let (low, high) = range(&e.outline, left(*way));
             high - low
         });
-        widths.filter(|width| *width <= apart * ROOM).count() as f64 >= MOST * drawing.elements.len() as f64
+        let beside = widths.filter(|width| *width <= apart * ROOM).count() as f64;
+        if beside >= MOST * drawing.elements.len() as f64 {
+            return Some(false);
+        }
+        lap(drawing, *way, *apart).then_some(true)
     };
-    ways.into_iter().map(|way| (way.unit_or_zero(), cell / way.norm())).find(fit).map(|(way, _)| way)
+    let mut rows = ways.into_iter().map(|way| (way.unit_or_zero(), cell / way.norm()));
+    rows.find_map(|row| fit(&row).map(|laps| (row.0, laps)))
+}
+
+/// Whether rows along `way`, so far apart, lie on one another: most elements on two or more of the rows beside theirs, as tiles in bond do.
+fn lap(drawing: &Exemplar<2>, way: Vector<2>, apart: f64) -> bool {
+    let across = left(way);
+    let on_others = |e: &Element<2>| {
+        let others = drawing.elements.iter().filter(|o| {
+            let off = across.dot(o.centre - e.centre).abs();
+            off > 0.5 * apart && off < 1.5 * apart && laps(&e.outline, &o.outline)
+        });
+        others.take(2).count() == 2
+    };
+    drawing.elements.iter().filter(|e| on_others(e)).count() * 2 > drawing.elements.len()
+}
+
+/// Whether two convex outlines lie on one another by more than [`LAP`] of what either measures in any direction.
+fn laps(a: &Outline<2>, b: &Outline<2>) -> bool {
+    let rings = a.rings.iter().chain(&b.rings);
+    let mut edges = rings.flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
+    edges.all(|(p, q)| {
+        let normal = left(*q - *p).unit_or_zero();
+        let ([a0, a1], [b0, b1]) = (<[f64; 2]>::from(range(a, normal)), <[f64; 2]>::from(range(b, normal)));
+        a1.min(b1) - a0.max(b0) > LAP * (a1 - a0).min(b1 - b0)
+    })
+}
+
+/// A vector turned by a quarter.
+fn left(v: Vector<2>) -> Vector<2> {
+    Vector::xy(-v[1], v[0])
+}
+
+/// From where to where an outline reaches along a direction.
+fn range(outline: &Outline<2>, along: Vector<2>) -> (f64, f64) {
+    let places = outline.points().map(|p| along.dot(p));
+    places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
 /// The convex hull of points of the plane, counter-clockwise.

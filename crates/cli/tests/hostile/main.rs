@@ -7,13 +7,16 @@
 
 mod case;
 mod drawings;
+mod edits;
 mod numbers;
 mod options;
 mod outlines;
 mod pictures;
+mod points;
 mod recipes;
 mod reliefs;
 mod ribbons;
+mod scenes;
 mod structure;
 mod tables;
 
@@ -23,13 +26,16 @@ use case::{Case, check_all};
 fn corpus() -> Vec<(&'static str, Vec<Case>)> {
     vec![
         ("drawings", drawings::cases()),
+        ("edits", edits::cases()),
         ("numbers", numbers::cases()),
         ("options", options::cases()),
         ("outlines", outlines::cases()),
         ("pictures", pictures::cases()),
+        ("points", points::cases()),
         ("recipes", recipes::cases()),
         ("reliefs", reliefs::cases()),
         ("ribbons", ribbons::cases()),
+        ("scenes", scenes::cases()),
         ("structure", structure::cases()),
         ("tables", tables::cases()),
     ]
@@ -39,12 +45,17 @@ fn corpus() -> Vec<(&'static str, Vec<Case>)> {
 fn there_are_at_least_four_hundred_cases() {
     let counts: Vec<_> = corpus().iter().map(|(name, cases)| (*name, cases.len())).collect();
     let total: usize = counts.iter().map(|(_, n)| n).sum();
-    assert!(total >= 400, "{total}: {counts:?}");
+    assert!(total >= 520, "{total}: {counts:?}");
 }
 
 #[test]
 fn drawings_of_elements() {
     check_all(drawings::cases());
+}
+
+#[test]
+fn edits_of_results() {
+    check_all(edits::cases());
 }
 
 #[test]
@@ -68,6 +79,11 @@ fn pictures_as_fields_and_areas() {
 }
 
 #[test]
+fn points_as_structures_and_surfaces() {
+    check_all(points::cases());
+}
+
+#[test]
 fn recipes_and_results() {
     check_all(recipes::cases());
 }
@@ -75,6 +91,11 @@ fn recipes_and_results() {
 #[test]
 fn reliefs() {
     check_all(reliefs::cases());
+}
+
+#[test]
+fn scenes_in_space() {
+    check_all(scenes::cases());
 }
 
 #[test]

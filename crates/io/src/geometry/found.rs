@@ -24,6 +24,14 @@ impl Cloud {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// How many normals have no length.
+    pub(crate) fn zero_normals(&self) -> usize {
+        match self {
+            Self::Plane(points) => points.normals.iter().flatten().filter(|n| **n == Vector::ZERO).count(),
+            Self::Space(points) => points.normals.iter().flatten().filter(|n| **n == Vector::ZERO).count(),
+        }
+    }
 }
 
 /// Points with attributes and, where the file has faces, the triangles between them.
@@ -86,9 +94,8 @@ impl Geometry {
 impl From<TriangleMesh> for Geometry {
     fn from(mesh: TriangleMesh) -> Self {
         let TriangleMesh { positions, triangles, normals, colours, parts } = mesh;
-        let zero_normals = normals.iter().flatten().filter(|n| **n == Vector::ZERO).count();
         let points = Cloud::Space(PointSet { positions, normals, colours, ..PointSet::default() });
-        Self { points, triangles, parts, zero_normals, warnings: Vec::new() }
+        Self { zero_normals: points.zero_normals(), triangles, parts, ..Self::of_points(points) }
     }
 }
 

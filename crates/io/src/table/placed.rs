@@ -159,7 +159,9 @@ impl<const D: usize> PlacedFile<D> for CsvElements<D> {
                 splices.put(row.range.clone(), self.row(replaced, &index)?);
             }
         }
-        let mut tail = String::new();
+        // The last row may end where the file does.
+        let is_open = self.end > 0 && !self.text[..self.end].ends_with('\n');
+        let mut tail = String::from(if is_open { "\n" } else { "" });
         for (id, inserted) in &changes.inserted {
             budget.spend(PER_ITEM)?;
             ids.push(*id);
@@ -234,6 +236,13 @@ mod tests {
         assert_eq!(file.layout.classes, ["dot", "a,\"b\nc"]);
         assert_eq!(file.layout.items[2].centre, Vector::xy(-1.0, 0.25));
         assert_eq!(changed(TABLE, &Changes::default()), TABLE);
+    }
+
+    #[test]
+    fn a_row_is_added_behind_one_that_ends_with_the_file() {
+        let more =
+            changed("x,y,class\n1,2,dot", &Changes { inserted: vec![(1, moved(0, 1.0, 0.0))], ..Changes::default() });
+        assert_eq!(open(&more).layout.items.len(), 2, "{more}");
     }
 
     #[test]

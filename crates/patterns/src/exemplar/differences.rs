@@ -53,6 +53,13 @@ impl Differences {
         Self { feature, column, row, table }
     }
 
+    /// An element, ready to be compared with others of its class.
+    #[inline]
+    pub(crate) fn from(&self, a: u32) -> Differing<'_> {
+        let row = self.row[a];
+        Differing { differences: self, element: a, row: if row == NONE { &[] } else { &self.table[row as usize..] } }
+    }
+
     /// Squared difference of the attributes of two elements of one class.
     #[inline]
     pub(crate) fn of(&self, a: u32, b: u32) -> f32 {
@@ -61,6 +68,26 @@ impl Differences {
             return self.feature[a].distance2(&self.feature[b]);
         }
         self.table[(row + self.column[b]) as usize]
+    }
+}
+
+/// One element with its row of the table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Differing<'a> {
+    differences: &'a Differences,
+    element: u32,
+    /// Empty where there is none.
+    row: &'a [f32],
+}
+
+impl Differing<'_> {
+    /// What [`Differences::of`] says of it and another.
+    #[inline]
+    pub(crate) fn of(&self, other: u32) -> f32 {
+        match self.row.get(self.differences.column[other] as usize) {
+            Some(&known) => known,
+            None => self.differences.of(self.element, other),
+        }
     }
 }
 
@@ -96,6 +123,7 @@ mod tests {
         for members in classes {
             for (&a, &b) in members.iter().flat_map(|a| members.iter().map(move |b| (a, b))) {
                 assert_eq!(differences.of(a, b), feature[a].distance2(&feature[b]));
+                assert_eq!(differences.from(a).of(b), differences.of(a, b));
             }
         }
     }
@@ -107,5 +135,6 @@ mod tests {
         let differences = Differences::new(feature.clone(), [&members[..]].into_iter());
         assert!(differences.table.is_empty());
         assert_eq!(differences.of(3, 1400), feature[3_u32].distance2(&feature[1400_u32]));
+        assert_eq!(differences.from(3).of(1400), differences.of(3, 1400));
     }
 }

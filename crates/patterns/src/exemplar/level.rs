@@ -37,6 +37,9 @@ const LANES: usize = 8;
 /// Samples whose similar ones may be looked for at the same time.
 const SEARCHED: usize = 64;
 
+/// Most entries of the table of runs, and entries a sample that are always allowed.
+const TABLE: (usize, usize) = (1 << 20, 16);
+
 /// A run of neighbours with the same key.
 #[derive(Clone, Copy, Debug)]
 struct Run {
@@ -82,6 +85,8 @@ pub(crate) struct Level<const D: usize> {
     across: [Vec<f32>; D],
     run_starts: Numbered<u32>,
     runs: Vec<Run>,
+    /// Where the neighbours of each sample and key are, as numbers into those of the sample; empty where it would be too large.
+    table: Vec<[u32; 2]>,
     /// Most similar samples of each sample, best first [Ma 2011 §4.2]; found when they are first asked for.
     alike: Numbered<OnceLock<Vec<u32>>>,
     /// Held while the similar samples of a sample are looked for, so that nobody else does the same work.
@@ -141,6 +146,7 @@ impl<const D: usize> Level<D> {
             across: std::array::from_fn(|_| Vec::new()),
             run_starts: Numbered::filled(0, 1),
             runs: Vec::new(),
+            table: Vec::new(),
             alike: Numbered::new(),
             searched: (0..SEARCHED).map(|_| Mutex::new(())).collect(),
             held: Arc::new(vec![held]),
@@ -190,10 +196,14 @@ impl<const D: usize> Level<D> {
                 )?;
                 held.push(block);
             }
-            found.sort_by_key(|(key, near)| (*key, near.sample));
+            // From left to right: then most of a run is left out by its first coordinate.
+            found.sort_by(|(key, a), (other, b)| {
+                key.cmp(other).then(a.offset[0].total_cmp(&b.offset[0])).then(a.sample.cmp(&b.sample))
+            });
             self.push_runs(&found);
         }
         self.across.iter_mut().for_each(|across| across.extend([f32::INFINITY; LANES]));
+        held.extend(self.tabulate(budget)?);
         held.extend(Arc::into_inner(std::mem::take(&mut self.held)).unwrap_or_default());
         self.held = Arc::new(held);
         Ok(())
@@ -210,6 +220,25 @@ impl<const D: usize> Level<D> {
         }
         self.starts.push(self.near.len() as u32);
         self.run_starts.push(self.runs.len() as u32);
+    }
+
+    /// Notes where the neighbours of each key are, unless there are too many keys. Returns the memory for that.
+    fn tabulate(&mut self, budget: &Budget) -> Result<Option<Held>> {
+        let (count, keys) = (self.position.len(), self.of_key.len());
+        if count * keys > TABLE.0 && keys > TABLE.1 {
+            return Ok(None);
+        }
+        let held = budget.hold("neighbourhoods of the exemplar", count * keys * size_of::<[u32; 2]>())?;
+        budget.spend((count * keys) as u64)?;
+        let mut table = vec![[0; 2]; count * keys];
+        for i in 0..count as u32 {
+            for run in &self.runs[range(&self.run_starts, i)] {
+                let base = self.starts[i];
+                table[i as usize * keys + run.key as usize] = [run.start - base, run.end - base];
+            }
+        }
+        self.table = table;
+        Ok(Some(held))
     }
 
     /// Makes everything from element `base` on the nodes of `net`. Edge sets are compared when `with_edges`.
@@ -249,7 +278,7 @@ impl<const D: usize> Level<D> {
         Ok(self.alike[i].get_or_init(|| found))
     }
 
-    /// Neighbours of sample `i`, sorted by key.
+    /// Neighbours of sample `i`, sorted by key, and those of a key by their first coordinate.
     pub(crate) fn neighbours(&self, i: u32) -> &[Near<D>] {
         &self.near[range(&self.starts, i)]
     }
@@ -267,7 +296,17 @@ impl<const D: usize> Level<D> {
     ) -> usize {
         let of_key = self.neighbours_of_key(i, key);
         let base = self.starts[i] as usize;
+        // A little more, so that rounding leaves out none.
+        let reach = most.sqrt() * 1.0001;
+        let (low, high) = (offset[0] - reach, offset[0] + reach);
+        let along = &self.across[0][base..];
         for first in of_key.clone().step_by(LANES) {
+            if along[first] > high {
+                break;
+            }
+            if along[of_key.end.min(first + LANES) - 1] < low {
+                continue;
+            }
             let mut distance2 = [0.0_f32; LANES];
             for (across, &own) in self.across.iter().zip(&offset) {
                 let Some(several) = across[base + first..].first_chunk::<LANES>() else { continue };
@@ -285,7 +324,11 @@ impl<const D: usize> Level<D> {
     }
 
     /// Those of a key, as a range into [`Level::neighbours`].
+    #[inline]
     pub(crate) fn neighbours_of_key(&self, i: u32, key: u32) -> std::ops::Range<usize> {
+        if let Some(&[start, end]) = self.table.get(i as usize * self.of_key.len() + key as usize) {
+            return start as usize..end as usize;
+        }
         let base = self.starts[i];
         let runs = &self.runs[range(&self.run_starts, i)];
         match runs.binary_search_by_key(&key, |run| run.key) {

@@ -162,12 +162,13 @@ impl<const D: usize> Library<D> {
         let most = k2 as f32;
         let mut best = [None::<(u32, f32)>; 2];
         let near = self.places[class].near(p);
+        let like = self.differences.from(like);
         for &Placed { place, element } in near {
             let d2 = (place - p).norm2();
             if d2 > k2 {
                 continue;
             }
-            let cost = d2 as f32 + self.differences.of(like, element);
+            let cost = d2 as f32 + like.of(element);
             if cost >= most {
                 continue;
             }

@@ -31,7 +31,7 @@ const RIM: f64 = 0.3;
 const MEMBERS: usize = 80;
 
 /// Elements of one class that are tried at an anchor, at most; of more, an even selection.
-const ELEMENTS: usize = 192;
+const ELEMENTS: usize = 128;
 
 /// Nanoseconds to compare with an element of a short list.
 const COMPARISON: u64 = 1;

@@ -20,6 +20,12 @@ use arabesque_core::{Meter, Numbered, Result};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct MaybeNumber(u32);
 
+impl Default for MaybeNumber {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl MaybeNumber {
     const NONE: Self = Self(u32::MAX);
 
@@ -59,6 +65,8 @@ pub(crate) struct Assignment {
     bound: f32,
     /// Outlier cost of the open row.
     gate: f32,
+    /// Cost of its cheapest pair so far, if cheaper than that, and its slot.
+    least: (f32, MaybeNumber),
     /// Slot by which each row is paired.
     slot_of: Numbered<MaybeNumber>,
     /// Column of that slot.
@@ -162,12 +170,16 @@ impl Assignment {
     pub(crate) fn begin_row(&mut self, outlier: f32) {
         self.outlier.push(outlier);
         self.gate = outlier;
+        self.least = (outlier, MaybeNumber::NONE);
     }
 
     /// Offers a partner to the open row; each column at most once per row.
     #[inline]
     pub(crate) fn pair(&mut self, column: u32, cost: f32) {
         if cost < self.gate {
+            if cost < self.least.0 {
+                self.least = (cost, MaybeNumber(self.pairs.len() as u32));
+            }
             self.pairs.push((column, cost));
         }
     }
@@ -175,13 +187,7 @@ impl Assignment {
     /// Closes the open row. Returns a lower bound of what [`Assignment::settle`] will return, from the rows entered so
     /// far.
     pub(crate) fn end_row(&mut self) -> f32 {
-        let start = self.starts.last().map_or(0, |&s| s as usize);
-        let (mut best, mut slot) = (self.gate, MaybeNumber::NONE);
-        for (k, &(_, cost)) in (start..).zip(self.pairs.iter().skip(start)) {
-            if cost < best {
-                (best, slot) = (cost, MaybeNumber(k as u32));
-            }
-        }
+        let (best, slot) = self.least;
         self.bound += best;
         self.cheapest.push(slot);
         self.starts.push(self.pairs.len() as u32);
@@ -224,7 +230,8 @@ impl Assignment {
         self.reset();
         let mut total = 0.0;
         while let Some((row, slot)) = self.nearest_open_pair() {
-            meter.spend(STEP * self.outlier.len() as u64)?;
+            // Rows whose cheapest column is gone look through theirs again.
+            meter.spend(STEP * (self.outlier.len() + self.pairs.len() / 4) as u64)?;
             self.take(row, slot);
             total += self.pairs[slot].1;
         }

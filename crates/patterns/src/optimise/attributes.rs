@@ -1,6 +1,6 @@
 //! Attribute assignment: which exemplar element is drawn, by selection and never by blending [Ma 2011 eq. 5].
 
-use arabesque_core::{Meter, Numbered, Result};
+use arabesque_core::{Meter, Result};
 
 use rayon::prelude::*;
 
@@ -20,11 +20,12 @@ const PRICE: (u64, u64) = (6, 3);
 pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> Result<usize> {
     let budget = state.budget.stage("choosing elements");
     let votes = votes(state, &mut budget.meter())?;
-    let better = |(i, votes): (usize, &Vec<u32>)| {
-        let source = better_source(state, i, votes, &mut budget.meter())?;
-        Ok(source.map(|source| (i as u32, source)))
+    let better = |i: u32| {
+        let source = better_source(state, i, votes.of(i), &mut budget.meter())?;
+        Ok(source.map(|source| (i, source)))
     };
-    let changes: Vec<Option<(u32, u32)>> = votes.par_iter().enumerate().map(better).collect::<Result<_>>()?;
+    let items = state.items().numbers().into_par_iter();
+    let changes: Vec<Option<(u32, u32)>> = items.map(better).collect::<Result<_>>()?;
     budget.spend(0)?;
     let changes: Vec<_> = changes.into_iter().flatten().collect();
     changes.iter().for_each(|&(i, source)| state.set_source(i, source));
@@ -34,11 +35,11 @@ pub(crate) fn assign<const D: usize>(state: &mut State<'_, D>) -> Result<usize> 
 /// The source that suits the votes for item `i` clearly better than its present one.
 fn better_source<const D: usize>(
     state: &State<'_, D>,
-    i: usize,
+    i: u32,
     votes: &[u32],
     meter: &mut Meter<'_>,
 ) -> Result<Option<u32>> {
-    let (live, library) = (&state.items()[i], state.library);
+    let (live, library) = (state.item(i), state.library);
     if !live.alive || live.item.frozen.is_some() {
         return Ok(None);
     }
@@ -63,15 +64,39 @@ fn better_source<const D: usize>(
 }
 
 /// For every item, the exemplar elements that its samples were matched with.
-fn votes<const D: usize>(state: &State<'_, D>, meter: &mut Meter<'_>) -> Result<Numbered<Vec<u32>>> {
-    let mut votes = Numbered::filled(Vec::new(), state.items().len());
-    for &s in state.living() {
-        let Some(matched) = &state.sample(s).matched else { continue };
-        meter.spend(PRICE.1 * (1 + matched.pairs.len() as u64))?;
-        votes[state.sample(s).item].push(state.level.element[matched.input]);
-        for &(o, i) in &matched.pairs {
-            votes[state.sample(o).item].push(state.level.element[i]);
-        }
+struct ElementVotes {
+    /// Those of item `i`: `elements[starts[i]..starts[i + 1]]`.
+    starts: Vec<u32>,
+    elements: Vec<u32>,
+}
+
+impl ElementVotes {
+    fn of(&self, i: u32) -> &[u32] {
+        &self.elements[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
     }
-    Ok(votes)
+}
+
+fn votes<const D: usize>(state: &State<'_, D>, meter: &mut Meter<'_>) -> Result<ElementVotes> {
+    let matched = || state.living().iter().filter_map(|&s| Some((s, state.sample(s).matched.as_ref()?)));
+    let mut starts = vec![0_u32; state.items().len() + 1];
+    for (s, m) in matched() {
+        meter.spend(PRICE.1 * (1 + m.pairs.len() as u64))?;
+        starts[state.sample(s).item as usize + 1] += 1;
+        m.pairs.iter().for_each(|&(o, _)| starts[state.sample(o).item as usize + 1] += 1);
+    }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut next = starts.clone();
+    let mut elements = vec![0; starts.last().map_or(0, |&n| n as usize)];
+    let mut vote = |s: u32, i: u32| {
+        let slot = &mut next[state.sample(s).item as usize];
+        elements[*slot as usize] = state.level.element[i];
+        *slot += 1;
+    };
+    for (s, m) in matched() {
+        vote(s, m.input);
+        m.pairs.iter().for_each(|&(o, i)| vote(o, i));
+    }
+    Ok(ElementVotes { starts, elements })
 }

@@ -10,6 +10,7 @@ use arabesque_core::{Meter, Numbered, Result, Vector};
 
 use crate::{
     exemplar::{
+        differences::Differing,
         graph::net::Star,
         level::{Level, Near},
         library::Library,
@@ -40,17 +41,15 @@ pub(crate) struct Row<const D: usize> {
     /// Whether it may not be an outlier: samples of frozen elements. Those of frozen strokes lie where the pen put
     /// them, and their neighbours along the stroke serve as well.
     pub(crate) frozen: bool,
-    /// Its edges, in exemplar directions and units.
-    pub(crate) star: Star<D>,
 }
 
 /// The neighbourhood of one output sample.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings<const D: usize> {
+    /// The centre.
+    pub(crate) sample: u32,
     /// Exemplar element that is drawn at the centre now.
     pub(crate) source: u32,
-    /// Edges of the centre.
-    pub(crate) star: Star<D>,
     /// The neighbours.
     pub(crate) rows: Vec<Row<D>>,
 }
@@ -77,15 +76,27 @@ pub(crate) struct Prices {
 pub(crate) struct Matcher<'a, const D: usize> {
     level: &'a Level<D>,
     library: &'a Library<D>,
+    /// Edges of the samples that neighbourhoods consist of, in exemplar directions and units; of those of elements none are asked for.
+    stars: &'a Numbered<Star<D>>,
     matching: Matching,
     prices: Prices,
     assignment: Assignment,
     used: Numbered<bool>,
+    /// The partners that were kept, by row.
+    kept: Vec<Option<u32>>,
 }
 
 impl<'a, const D: usize> Matcher<'a, D> {
-    pub(crate) fn new(level: &'a Level<D>, library: &'a Library<D>, matching: Matching, prices: Prices) -> Self {
-        Self { level, library, matching, prices, assignment: Assignment::default(), used: Numbered::new() }
+    /// `stars`: the edges of the samples whose neighbourhoods are compared, by the numbers that their rows have.
+    pub(crate) fn new(
+        level: &'a Level<D>,
+        library: &'a Library<D>,
+        stars: &'a Numbered<Star<D>>,
+        matching: Matching,
+        prices: Prices,
+    ) -> Self {
+        let (assignment, used, kept) = Default::default();
+        Self { level, library, stars, matching, prices, assignment, used, kept }
     }
 
     /// Cost of laying the neighbourhood of exemplar sample `i` under `around`, or infinity once it is sure to exceed
@@ -98,7 +109,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
         wanted: &dyn Fn(Vector<D>) -> bool,
         meter: &mut Meter<'_>,
     ) -> Result<f32> {
-        let centre = difference(self.level, self.library, (around.source, &around.star), i);
+        let centre = Difference::new(self, around.source, around.sample).of(self.level, i);
         let pairs = match self.matching {
             Matching::Robust => self.robust(around, i, limit - centre, meter)?,
             Matching::Hard => self.hard(around, i, limit - centre, meter)?,
@@ -112,25 +123,26 @@ impl<'a, const D: usize> Matcher<'a, D> {
     }
 
     fn robust(&mut self, around: &Surroundings<D>, i: u32, limit: f32, meter: &mut Meter<'_>) -> Result<f32> {
-        let (level, library) = (self.level, self.library);
+        let level = self.level;
         let near = level.neighbours(i);
         let origin = level.position[i];
         self.assignment.begin(near.len());
         for row in &around.rows {
             let outlier2 = level.outlier2[row.key];
             // Nobody knows what lies beyond the frame of the exemplar: half the price.
-            let seen = library.view.contains(origin + row.offset);
+            let seen = self.library.view.contains(origin + row.offset);
             let alone = if seen { outlier2 } else { 0.5 * outlier2 };
             self.assignment.begin_row(if row.frozen { 4.0 * row.weight * alone } else { row.weight * alone });
             let offset = row.offset.0.map(|v| v as f32);
             // A frozen element may find its partner anywhere.
             let most = if row.frozen { f32::INFINITY } else { outlier2 };
+            let difference = Difference::new(self, row.source, row.sample);
             let assignment = &mut self.assignment;
             let looked = level.near_offset(i, row.key, offset, most, |column, d2| {
-                let d2 = d2 + difference(level, library, (row.source, &row.star), near[column].sample);
+                let d2 = d2 + difference.of(level, near[column].sample);
                 assignment.pair(column as u32, row.weight * d2);
             });
-            meter.spend(PRICE.0 + PRICE.1 * looked as u64)?;
+            meter.spend(PRICE.0 + PRICE.1 * difference.price() * looked as u64)?;
             if self.assignment.end_row() > limit {
                 return Ok(f32::INFINITY);
             }
@@ -150,11 +162,12 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let offset = row.offset.0.map(|v| v as f32);
             self.assignment.begin_row(f32::INFINITY);
             let columns = level.neighbours_of_key(i, row.key);
-            meter.spend(PRICE.0 + PRICE.1 * columns.len() as u64)?;
+            let difference = Difference::new(self, row.source, row.sample);
+            meter.spend(PRICE.0 + PRICE.1 * difference.price() * columns.len() as u64)?;
             for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                let d2 = d2 + difference(level, self.library, (row.source, &row.star), other.sample);
+                let d2 = d2 + difference.of(level, other.sample);
                 self.assignment.pair(column as u32, d2);
                 least = least.min(d2);
             }
@@ -200,37 +213,62 @@ impl<'a, const D: usize> Matcher<'a, D> {
         }
     }
 
-    /// Partners under exemplar sample `i`.
-    pub(crate) fn correspondence(
-        &mut self,
-        around: &Surroundings<D>,
-        i: u32,
-        wanted: &dyn Fn(Vector<D>) -> bool,
-        meter: &mut Meter<'_>,
-    ) -> Result<Correspondence> {
-        match self.matching {
-            Matching::Robust => self.robust(around, i, f32::INFINITY, meter)?,
-            Matching::Hard => self.hard(around, i, f32::INFINITY, meter)?,
-        };
+    /// Keeps the partners that [`Matcher::cost`] has just found, until it keeps others.
+    pub(crate) fn keep(&mut self) {
+        self.kept.clear();
+        self.kept.extend(self.assignment.column_of());
+    }
+
+    /// The partners that were kept, which are those under exemplar sample `i`.
+    pub(crate) fn correspondence(&mut self, i: u32, wanted: &dyn Fn(Vector<D>) -> bool) -> Correspondence {
         let near = self.level.neighbours(i);
-        let columns = (0..).zip(self.assignment.column_of());
-        let pairs = columns.filter_map(|(row, column)| Some((row, near[column? as usize].sample))).collect();
-        self.mark_used(near.len());
+        let columns = (0..).zip(&self.kept);
+        let pairs = columns.filter_map(|(row, column)| Some((row, near[(*column)? as usize].sample))).collect();
+        self.used.refill(false, near.len());
+        for &column in self.kept.iter().flatten() {
+            self.used[column] = true;
+        }
         let absent = near.iter().zip(&self.used).filter(|(other, used)| other.weight > 0.0 && !**used);
         let missing = absent
             .filter(|(other, _)| wanted(Vector(other.offset.map(f64::from))))
             .map(|(other, _)| other.sample)
             .collect();
-        Ok(Correspondence { pairs, missing })
+        Correspondence { pairs, missing }
     }
 }
 
-/// Difference in everything but place: the edges of a curve sample [Tu 2020 eq. 5], the outline and colour of an element.
-#[inline]
-fn difference<const D: usize>(level: &Level<D>, library: &Library<D>, (source, star): (u32, &Star<D>), i: u32) -> f32 {
-    let element = level.element[i];
-    if element >= level.base {
-        return star.distance2(&level.stars[i], level.single2);
+/// One sample, ready to be compared with those of the exemplar in everything but place: the edges of a curve sample
+/// [Tu 2020 eq. 5], the outline and colour of an element.
+#[derive(Clone, Copy)]
+enum Difference<'a, const D: usize> {
+    Edges(&'a Star<D>, f32),
+    Attributes(Differing<'a>),
+}
+
+impl<'a, const D: usize> Difference<'a, D> {
+    #[inline]
+    fn new(matcher: &Matcher<'a, D>, source: u32, sample: u32) -> Self {
+        let level = matcher.level;
+        if source >= level.base {
+            return Self::Edges(&matcher.stars[sample], level.single2);
+        }
+        Self::Attributes(matcher.library.differences.from(source))
     }
-    library.differences.of(source, element)
+
+    /// Work to compare it with another one, relative to the work for a line that goes on.
+    fn price(&self) -> u64 {
+        match self {
+            Self::Edges(star, _) => star.price(),
+            Self::Attributes(_) => 1,
+        }
+    }
+
+    /// Difference from sample `i` of the exemplar, one of the same key.
+    #[inline]
+    fn of(&self, level: &Level<D>, i: u32) -> f32 {
+        match self {
+            Self::Edges(star, single2) => star.distance2(&level.stars[i], *single2),
+            Self::Attributes(differing) => differing.of(level.element[i]),
+        }
+    }
 }

@@ -5,11 +5,12 @@
 //! random ones around it (PatchMatch [Tu 2020 §4.3.3], all samples in step rather than in scanline order, so that the
 //! result does not depend on the number of threads). Samples around which nothing changed keep their match.
 
-use arabesque_core::{Budget, Result, Stream, Vector};
+use arabesque_core::{Budget, Numbered, Result, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
     exemplar::{
+        graph::net::Star,
         level::{Level, fall_off},
         library::Library,
     },
@@ -54,6 +55,7 @@ pub(crate) struct SearchParams {
 pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchParams) -> Result<usize> {
     let budget = state.budget.stage("searching");
     state.hold_neighbourhoods()?;
+    let stars = stars(state);
     let mut searched = 0;
     for round in 0..params.rounds as u64 {
         let params = SearchParams { step: params.step + (round << 40), ..*params };
@@ -61,8 +63,11 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
             .living()
             .par_iter()
             .map_init(
-                || Matcher::new(state.level, state.library, params.matching, params.prices),
-                |matcher, &s| search_one(state, s, &params, matcher, &budget),
+                || {
+                    let matcher = Matcher::new(state.level, state.library, &stars, params.matching, params.prices);
+                    (matcher, Bench::default())
+                },
+                |(matcher, bench), &s| search_one(state, s, &params, (matcher, bench), &budget),
             )
             .collect::<Result<_>>()?;
         budget.spend(0)?;
@@ -76,6 +81,22 @@ pub(crate) fn search<const D: usize>(state: &mut State<'_, D>, params: &SearchPa
     Ok(searched)
 }
 
+/// The edges of each living sample; none at all where there are no curves.
+fn stars<const D: usize>(state: &State<'_, D>) -> Numbered<Star<D>> {
+    if state.level.net.is_none() {
+        return Numbered::new();
+    }
+    let star = |s: u32| if state.is_alive(s) { state.star(s) } else { Star::EMPTY };
+    (0..state.samples().len() as u32).into_par_iter().map(star).collect::<Vec<_>>().into()
+}
+
+/// What a search works with, kept from one to the next.
+#[derive(Default)]
+struct Bench<const D: usize> {
+    around: Surroundings<D>,
+    candidates: Vec<u32>,
+}
+
 /// The exemplar samples with the neighbourhoods most similar to that of `i`, best first [Ma 2011 §4.2].
 ///
 /// Keys with very many samples are compared with an even selection of them: the sets need good members, not the best.
@@ -87,10 +108,10 @@ fn most_similar<const D: usize>(
     i: u32,
     budget: &Budget,
 ) -> Result<Vec<u32>> {
-    const MAX_COMPARED: usize = 256;
+    const MAX_COMPARED: usize = 128;
     // Of more than that many, the fewer the more there are: what all of them cost stays in proportion to their number.
     const LEAST_COMPARED: usize = 64;
-    let mut matcher = Matcher::new(level, library, matching, Prices { missing: 0.0, outside: 0.0 });
+    let mut matcher = Matcher::new(level, library, &level.stars, matching, Prices { missing: 0.0, outside: 0.0 });
     let others = &level.of_key[level.key[i]];
     let around = exemplar_surroundings(level, i);
     let mut best: Vec<(f32, u32)> = Vec::with_capacity(number + 1);
@@ -130,7 +151,8 @@ pub(crate) fn dissimilarity<const D: usize>(
         .par_iter()
         .map(|&i| {
             let mut meter = budget.meter();
-            let mut matcher = Matcher::new(level, library, matching, Prices { missing: 1.0, outside: 0.0 });
+            let mut matcher =
+                Matcher::new(level, library, &level.stars, matching, Prices { missing: 1.0, outside: 0.0 });
             let around = exemplar_surroundings(level, i);
             let scale: f32 = around.rows.iter().map(|r| r.weight * level.outlier2[r.key]).sum();
             let others = &level.of_key[level.key[i]];
@@ -158,22 +180,22 @@ fn exemplar_surroundings<const D: usize>(level: &Level<D>, i: u32) -> Surroundin
             offset: Vector(n.offset.map(f64::from)),
             weight: n.weight,
             frozen: false,
-            star: level.stars[n.sample],
         })
         .collect();
     rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
-    Surroundings { source: level.element[i], star: level.stars[i], rows }
+    Surroundings { sample: i, source: level.element[i], rows }
 }
 
 fn search_one<const D: usize>(
     state: &State<'_, D>,
     s: u32,
     params: &SearchParams,
-    matcher: &mut Matcher<'_, D>,
+    (matcher, bench): (&mut Matcher<'_, D>, &mut Bench<D>),
     budget: &Budget,
 ) -> Result<Option<Match>> {
     let mut meter = budget.meter();
-    let (around, dirty, looked) = surroundings(state, s);
+    let Bench { around, candidates } = bench;
+    let (dirty, looked) = surround(state, s, around);
     meter.spend(PRICE.1 * looked + PRICE.0 * around.rows.len() as u64)?;
     let old = state.sample(s).matched.as_ref();
     if !dirty && old.is_some_and(|m| m.members.len() == around.rows.len()) {
@@ -186,23 +208,24 @@ fn search_one<const D: usize>(
     let wanted = |offset: Vector<D>| deep || state.extent.may_hold(position + frame.to_output(offset));
     let scale: f32 = around.rows.iter().map(|r| r.weight * state.level.outlier2[r.key]).sum();
     let mut best = (f32::INFINITY, u32::MAX);
-    let mut candidates = likely(state, s, &around, params);
+    likely(state, s, around, params, candidates);
     meter.spend(PRICE.1 * (around.rows.len() * around.rows.len()) as u64)?;
     let seeds = candidates.len();
     let mut next = 0;
     while next < candidates.len() && best.0 > COPY * scale {
         let i = candidates[next];
-        let cost = matcher.cost(&around, i, best.0, &wanted, &mut meter)?;
+        let cost = matcher.cost(around, i, best.0, &wanted, &mut meter)?;
         if cost < best.0 || (cost == best.0 && i < best.1) {
             best = (cost, i);
+            matcher.keep();
         }
         next += 1;
         if next == seeds && best.0 > COPY * scale && is_curious(s, old, params) {
-            add_unlikely(&mut candidates, state, s, params, budget)?;
+            add_unlikely(candidates, state, s, params, budget)?;
         }
     }
     let input = best.1;
-    let found = matcher.correspondence(&around, input, &wanted, &mut meter)?;
+    let found = matcher.correspondence(input, &wanted);
     let own = state.level.outlier2[state.sample(s).key];
     Ok(Some(Match {
         input,
@@ -215,13 +238,14 @@ fn search_one<const D: usize>(
     }))
 }
 
-/// The neighbourhood of sample `s`, whether anything in it changed, and how many samples were looked at.
-fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D>, bool, u64) {
+/// Makes `around` the neighbourhood of sample `s`. Returns whether anything in it changed, and how many samples were looked at.
+fn surround<const D: usize>(state: &State<'_, D>, s: u32, around: &mut Surroundings<D>) -> (bool, u64) {
     let sample = state.sample(s);
     let frame = state.request.fields.frame(sample.position);
     let radius = state.level.radius;
     let mut dirty = sample.dirty;
-    let mut rows = Vec::with_capacity(sample.matched.as_ref().map_or(24, |m| m.members.len() + 4));
+    let rows = &mut around.rows;
+    rows.clear();
     let looked = state.within(sample.position, radius * frame.spacing_scale, |other, offset| {
         if other == s {
             return;
@@ -237,32 +261,37 @@ fn surroundings<const D: usize>(state: &State<'_, D>, s: u32) -> (Surroundings<D
             offset,
             weight: fall_off(offset, radius) as f32,
             frozen: item.frozen.is_some() && item.source < state.level.base,
-            star: state.star(other),
         });
     });
     // Nearest first: the bound of the matcher then grows fastest.
-    rows.sort_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
-    let source = state.item(sample.item).item.source;
-    (Surroundings { source, star: state.star(s), rows }, dirty, looked)
+    rows.sort_unstable_by(|a, b| b.weight.total_cmp(&a.weight).then(a.sample.cmp(&b.sample)));
+    (around.sample, around.source) = (s, state.item(sample.item).item.source);
+    (dirty, looked)
 }
 
-/// Exemplar samples to try first for sample `s`, the likeliest first.
-fn likely<const D: usize>(state: &State<'_, D>, s: u32, around: &Surroundings<D>, params: &SearchParams) -> Vec<u32> {
+/// Makes `list` the exemplar samples to try first for sample `s`, the likeliest first.
+fn likely<const D: usize>(
+    state: &State<'_, D>,
+    s: u32,
+    around: &Surroundings<D>,
+    params: &SearchParams,
+    list: &mut Vec<u32>,
+) {
     let sample = state.sample(s);
     let all = &state.level.of_key[sample.key];
+    list.clear();
     if is_exhaustive(all, params) {
-        return all.clone();
+        list.extend_from_slice(all);
+        return;
     }
-    let mut list = Vec::with_capacity(64);
     if let Some(m) = &sample.matched {
-        push(&mut list, m.input);
+        push(list, m.input);
     }
-    push(&mut list, state.level.first[around.source] + sample.part);
+    push(list, state.level.first[around.source] + sample.part);
     // PatchMatch asks the eight nearest neighbours [Tu 2020 §4.3.3], k-coherence all of them.
     let asked = if params.search == Search::PatchMatch { 8 } else { around.rows.len() };
     let from_neighbours = around.rows.iter().take(asked).filter_map(|row| implied(state, row.sample, s));
-    from_neighbours.for_each(|i| push(&mut list, i));
-    list
+    from_neighbours.for_each(|i| push(list, i));
 }
 
 /// Exemplar samples to try when none of the likely ones in `list` is a copy: what is similar to these, and random ones.

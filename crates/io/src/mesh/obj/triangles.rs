@@ -210,6 +210,7 @@ impl<'a> Reader<'a> {
         warnings.extend(cut.warnings);
         if cut.triangles.is_empty() && !self.points.is_empty() {
             geometry.points = selected(geometry.points, &self.points);
+            geometry.zero_normals = geometry.points.zero_normals();
         }
         let parts = if cut.parts.len() > 1 { cut.parts } else { Vec::new() };
         Ok(Geometry { triangles: cut.triangles, parts, warnings, ..geometry })
@@ -285,6 +286,13 @@ mod tests {
     }
 
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\n";
+
+    #[test]
+    fn normals_without_a_length_are_those_of_the_points_that_are_named() {
+        let of =
+            |numbers: &str| read(&format!("v 0 0 0\nvn 0 0 0\nv 1 2 3\nvn 1 0 0\np {numbers}\n")).unwrap().zero_normals;
+        assert_eq!([of("1 1"), of("2"), of("1 2")], [2, 0, 1]);
+    }
 
     #[test]
     fn corners_of_every_form_are_understood() {

@@ -32,6 +32,8 @@ fn push_own(out: &mut String, node: &Node, definitions: &mut Definitions<'_, '_>
     let mut style = String::new();
     for (name, value) in node.own.iter() {
         match name {
+            // What is no opacity would be read by whatever comes later as something else.
+            "opacity" if !is_share(value) => {}
             "opacity" | "vector-effect" => push_attribute(out, name, value),
             "clip-path" | "mask" | "filter" => {
                 if let Some(value) = definitions.effect(name, value, node.viewport) {
@@ -50,6 +52,12 @@ fn push_own(out: &mut String, node: &Node, definitions: &mut Definitions<'_, '_>
     if !style.is_empty() {
         push_attribute(out, "style", style.trim_end_matches(';'));
     }
+}
+
+/// Whether an opacity is a number or a percentage.
+fn is_share(text: &str) -> bool {
+    let text = text.trim();
+    text.strip_suffix('%').unwrap_or(text).trim_end().parse::<f64>().is_ok_and(f64::is_finite)
 }
 
 /// Appends the inherited properties that are not initial.

@@ -75,12 +75,35 @@ pub(crate) fn collect<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Res
     let found: Vec<Vec<Vote>> =
         opinions.par_iter().map(|o| joined_pairs(state, net, o, &budget)).collect::<Result<_>>()?;
     budget.spend(0)?;
-    let mut joined = found.concat();
-    budget.spend(PRICE.1 * joined.len() as u64)?;
-    joined.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.line.cmp(&b.1.line)).then(a.1.from.total_cmp(&b.1.from)));
+    let joined = sorted(&found, state.samples().len(), &budget)?;
     let mut candidates: Vec<Candidate> = joined.chunk_by(|a, b| a.0 == b.0).map(candidate).collect();
     weigh(state, &opinions, &mut candidates, &budget)?;
     Ok(Votes { candidates, degree: degrees(state, net, &opinions) })
+}
+
+/// All votes by their ends and then by their pieces, those alike in the order in which they came: first put with those of the same
+/// first end, which are few.
+fn sorted(found: &[Vec<Vote>], samples: usize, budget: &Budget) -> Result<Vec<Vote>> {
+    let mut starts = vec![0_u32; samples + 1];
+    found.iter().flatten().for_each(|vote| starts[vote.0.0 as usize + 1] += 1);
+    for s in 1..starts.len() {
+        starts[s] += starts[s - 1];
+    }
+    let count = starts[samples] as usize;
+    budget.spend(PRICE.1 * count as u64)?;
+    let Some(any) = found.iter().flatten().next() else { return Ok(Vec::new()) };
+    let mut votes = vec![*any; count];
+    let mut next = starts.clone();
+    for vote in found.iter().flatten() {
+        let slot = &mut next[vote.0.0 as usize];
+        votes[*slot as usize] = *vote;
+        *slot += 1;
+    }
+    for of_end in starts.windows(2) {
+        let votes = &mut votes[of_end[0] as usize..of_end[1] as usize];
+        votes.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.line.cmp(&b.1.line)).then(a.1.from.total_cmp(&b.1.from)));
+    }
+    Ok(votes)
 }
 
 fn candidate(votes: &[Vote]) -> Candidate {
@@ -126,10 +149,13 @@ fn weigh<const D: usize>(
     budget: &Budget,
 ) -> Result<()> {
     let mut meter = budget.meter();
-    let mut of_sample: Numbered<Vec<u32>> = Numbered::filled(Vec::new(), state.samples().len());
-    for (c, candidate) in candidates.iter().enumerate() {
-        of_sample[candidate.ends.0].push(c as u32);
+    // Candidates are sorted by their first end: where those of each sample begin.
+    let mut starts = vec![0_u32; state.samples().len() + 1];
+    candidates.iter().for_each(|candidate| starts[candidate.ends.0 as usize + 1] += 1);
+    for s in 1..starts.len() {
+        starts[s] += starts[s - 1];
     }
+    let of_sample = |s: u32| starts[s as usize]..starts[s as usize + 1];
     let second_end = |c: u32| candidates[c as usize].ends.1;
     let mut all = Numbered::filled(0.0, candidates.len());
     // The last neighbourhood that holds each sample.
@@ -137,8 +163,8 @@ fn weigh<const D: usize>(
     for (n, opinion) in opinions.iter().enumerate() {
         opinion.pairs.iter().for_each(|(o, _)| stamp[*o] = Some(n));
         for (o, _) in &opinion.pairs {
-            meter.spend(PRICE.0 * (4 + of_sample[*o].len()) as u64)?;
-            for &c in &of_sample[*o] {
+            meter.spend(PRICE.0 * (4 + of_sample(*o).len()) as u64)?;
+            for c in of_sample(*o) {
                 if stamp[second_end(c)] == Some(n) {
                     all[c] += opinion.weight;
                 }

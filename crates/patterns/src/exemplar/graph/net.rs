@@ -73,6 +73,15 @@ impl<const D: usize> Star<D> {
         usize::from(self.len)
     }
 
+    /// Work to compare it with another one, relative to the work for a line that goes on.
+    pub(crate) fn price(&self) -> u64 {
+        match self.len() as u64 {
+            0..=2 => 1,
+            3 => 4,
+            arms => 2 * arms * arms,
+        }
+    }
+
     /// Difference of two edge sets: matched edges by the vectors to their other ends, the others at `single2` each;
     /// nothing where the first has no edges yet [Tu 2020 eq. 5].
     pub(crate) fn distance2(&self, other: &Self, single2: f32) -> f32 {

@@ -23,14 +23,14 @@ const BENT: f64 = 0.06;
 const ROUNDS: usize = 4;
 
 /// Takes out what lies too deep in others, and what does not suit the border: things at the places of a lattice would lose their order if
-/// they were moved apart.
+/// they were moved apart. Where things lie on one another by rows, as shingles do (`laps`), overlaps are left.
 ///
 /// # Errors
 /// As [`mend`].
 pub(crate) fn take_out<const D: usize>(
     placements: &mut Vec<Placement<D>>,
-    exemplar: &Exemplar<D>,
-    library: &Library<D>,
+    laps: bool,
+    (exemplar, library): (&Exemplar<D>, &Library<D>),
     extent: &Extent<'_, D>,
 ) -> Result<()> {
     if exemplar.solids.is_empty() {
@@ -40,7 +40,7 @@ pub(crate) fn take_out<const D: usize>(
     let allowed = Allowed::measure(exemplar, library, &budget)?;
     let mut things = Things::new(placements, exemplar, library, extent, &allowed);
     let any = Numbered::filled(f64::INFINITY, library.classes());
-    let thinned = things.thin(&any, (SLACK, BENT), &budget);
+    let thinned = things.thin(&any, (SLACK, if laps { f64::INFINITY } else { BENT }), &budget);
     *placements = things.into_placements();
     placements.retain(|p| p.frozen.is_some() || extent.keeps_rule(p));
     thinned

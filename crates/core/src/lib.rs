@@ -39,7 +39,7 @@ pub use exemplar::{
     Area, Build, Class, Contents, Curve, Element, Exemplar, PointLattice, Role, Soft, Solid, View, point_lattice,
 };
 pub use field::{Fields, FlowStroke, Frame, Grid, OrientationField, Rotations, ScalarField};
-pub use geometry::{MeshPart, PointSet, TriangleMesh};
+pub use geometry::{MeshPart, PointSet, Ruling, TriangleMesh, corners, ruling};
 pub use image::Image;
 pub use index::{Buckets, GridIndex, Lattice, Number, Numbered};
 pub use numerics::{

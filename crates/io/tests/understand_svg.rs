@@ -92,6 +92,43 @@ fn strokes_and_the_fills_that_they_touch_are_one_element() {
     assert_eq!((counts(&d), because(&d, Reason::Touching)), ((4, 0), 4));
 }
 
+/// Traces on squared paper with a pad at each end; `step` from line to line.
+fn traces(shapes: &[&[(i32, i32)]], step: f64) -> String {
+    let at = |n: i32| step * f64::from(n) + 3.0;
+    let trace = |shape: &&[(i32, i32)]| {
+        let points: String = shape.iter().map(|&(x, y)| format!("{},{} ", at(x), at(y))).collect();
+        let pad = |&(x, y): &(i32, i32)| format!("<circle cx='{}' cy='{}' r='1.5' fill='#fff'/>", at(x), at(y));
+        let pads: String = shape.first().into_iter().chain(shape.last()).map(pad).collect();
+        format!("<polyline points='{points}'/>{pads}")
+    };
+    stroked(&shapes.iter().map(trace).collect::<String>())
+}
+
+#[test]
+fn traces_of_many_shapes_on_squared_paper_are_one_net_and_their_pads_are_elements() {
+    let shapes: [&[(i32, i32)]; 8] = [
+        &[(0, 0), (3, 0), (5, 2)],
+        &[(1, 2), (1, 5)],
+        &[(3, 3), (6, 3), (6, 6)],
+        &[(8, 0), (8, 4), (10, 6)],
+        &[(0, 7), (4, 7)],
+        &[(2, 9), (5, 9), (7, 11)],
+        &[(9, 8), (11, 8), (11, 11)],
+        &[(0, 11), (3, 11)],
+    ];
+    let d = read(&traces(&shapes, 8.0));
+    assert_eq!((counts(&d), because(&d, Reason::Ruled)), ((16, 8), 8));
+    // The same ones at any distance keep to no paper.
+    let loose: String = shapes.iter().zip(0..).map(|(shape, k)| traces(&[shape], 5.0 + 0.37 * f64::from(k))).collect();
+    assert_eq!(because(&read(&loose), Reason::Ruled), 0);
+    // A thing that comes again is a thing.
+    let again: Vec<[(i32, i32); 3]> = (0..9)
+        .map(|k| [(4 * (k % 3), 4 * (k / 3)), (4 * (k % 3) + 2, 4 * (k / 3)), (4 * (k % 3) + 2, 4 * (k / 3) + 1)])
+        .collect();
+    let again: Vec<&[(i32, i32)]> = again.iter().map(|shape| shape.as_slice()).collect();
+    assert_eq!(because(&read(&traces(&again, 8.0)), Reason::Ruled), 0);
+}
+
 #[test]
 fn cells_with_narrow_gaps_are_a_net_and_cells_apart_are_not() {
     let cells = |side: f64| -> String {

@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Domain, Drawn, Exemplar, Placement, Region, Request, Result, Snapshot, Vector, Watch};
+use arabesque_core::{Domain, Drawn, Exemplar, Outcome, Placement, Region, Request, Result, Snapshot, Vector, Watch};
 
-use crate::regular::{Filled, Regular};
+use crate::{
+    orderly::Orderly,
+    regular::{Filled, Regular},
+};
 
 mod sealed {
     pub trait Sealed {}
@@ -50,6 +53,19 @@ pub trait Dimension<const D: usize>: sealed::Sealed {
         watch: &mut dyn Watch<Snapshot<D>>,
     ) -> Result<Option<Filled<D>>>;
 
+    /// Fills a domain of the plane from an exemplar that keeps to lines of its own; `None` in space, and where the request asks for
+    /// what that cannot do.
+    ///
+    /// # Errors
+    /// As for filling it.
+    #[doc(hidden)]
+    fn fill_orderly(
+        orderly: &Orderly,
+        exemplar: &Exemplar<D>,
+        request: &Request<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<Option<Outcome<D>>>;
+
     /// A region of the plane, as one of this dimension.
     fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<D>>>;
 }
@@ -87,6 +103,15 @@ impl Dimension<2> for Vector<2> {
         regular.fill(exemplar, request, watch).map(Some)
     }
 
+    fn fill_orderly(
+        orderly: &Orderly,
+        exemplar: &Exemplar<2>,
+        request: &Request<2>,
+        watch: &mut dyn Watch<Snapshot<2>>,
+    ) -> Result<Option<Outcome<2>>> {
+        orderly.fill(exemplar, request, watch)
+    }
+
     fn from_plane(region: Arc<dyn Region<2>>) -> Option<Arc<dyn Region<2>>> {
         Some(region)
     }
@@ -122,6 +147,15 @@ impl Dimension<3> for Vector<3> {
         _: &Request<3>,
         _: &mut dyn Watch<Snapshot<3>>,
     ) -> Result<Option<Filled<3>>> {
+        Ok(None)
+    }
+
+    fn fill_orderly(
+        _: &Orderly,
+        _: &Exemplar<3>,
+        _: &Request<3>,
+        _: &mut dyn Watch<Snapshot<3>>,
+    ) -> Result<Option<Outcome<3>>> {
         Ok(None)
     }
 

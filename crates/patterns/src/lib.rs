@@ -19,7 +19,9 @@
 //! | place | `finish` | [Ma 2011 §3.1], [Schaefer 2006] |
 //! | find places like one of a result, for edits that spread | [`alike`] | [Ma 2011 §6.3] |
 //!
-//! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly. Elements that bend are
+//! An exemplar that repeats needs none of this: `repeat` finds its lattice, and `regular` continues it exactly. One that does not
+//! repeat and still keeps to lines of its own, such as a maze, is continued along them by `orderly`; a layer that
+//! repeats over one that does not is taken by itself (`apart`). Elements that bend are
 //! laid out and moved by `soft`, sample by sample.
 //!
 //! Everything knows only what stands above it in this list: `exemplar` (worked out once), `output` (what is made, in
@@ -45,6 +47,7 @@
 //! Not handled: interleaved physics; anything outside two and three dimensions.
 
 pub mod alike;
+mod apart;
 mod border;
 mod curves;
 mod dimension;
@@ -57,6 +60,7 @@ mod irregular;
 mod layout;
 mod obstacles;
 mod optimise;
+mod orderly;
 mod output;
 mod params;
 mod prepared;
@@ -71,6 +75,8 @@ mod streams;
 
 pub use dimension::Dimension;
 pub use finish::clearance::overlap_ratio;
+#[doc(hidden)]
+pub use orderly::Orderly;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Repeats, Search, Switch};
 #[doc(hidden)]
 pub use prepared::Compiled;

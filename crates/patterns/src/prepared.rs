@@ -1,21 +1,27 @@
 //! An exemplar, prepared for any number of runs.
 
-use std::sync::{Arc, OnceLock};
+use std::{
+    ops::ControlFlow,
+    sync::{Arc, OnceLock},
+};
 
 use arabesque_core::{
-    Border, Budget, Error, Exemplar, Outcome, Placement, Request, Result, Role, Snapshot, StopReason, Vector, Warning,
-    Watch, rounded,
+    Border, Budget, Drawn, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Role, Snapshot,
+    StopReason, Vector, Warning, Watch, rounded,
 };
 
 use crate::{
+    apart,
     dimension::Dimension,
     ending,
     exemplar::checks,
     finish::{
         clearance::{self, ExemplarClearance},
+        loose::LooseEnds,
         order::{self, ExemplarOrder},
     },
     irregular::Irregular,
+    orderly::{Orderly, straight::Straight},
     params::{Params, Repeats},
     regular::{Filled, Regular},
     repeat::Repeat,
@@ -35,10 +41,68 @@ pub struct Prepared<const D: usize> {
     pub(crate) params: Params,
     /// Its repeat, where it has one that is to be used.
     regular: Option<Arc<Regular>>,
+    /// The lines that it keeps to, where it has no repeat.
+    orderly: Option<Arc<Orderly>>,
+    /// The directions of its lines, where they are all straight.
+    straight: Option<Arc<Straight>>,
+    /// The loose ends of its lines, where it has lines.
+    loose: Option<LooseEnds>,
+    /// A part that repeats and the rest, which does not, where they say nothing of one another.
+    layers: Option<Arc<Layers<D>>>,
     /// Its elements as samples that move by themselves, where some bend.
     soft: Option<Arc<Softness<D>>>,
     /// What the engine needs; where there is a repeat, worked out when a request first needs it.
     irregular: OnceLock<Irregular<D>>,
+}
+
+/// A part of an exemplar, ready for any number of runs.
+#[derive(Clone, Debug)]
+struct Layer<const D: usize> {
+    prepared: Prepared<D>,
+    /// For each element and each curve its number in the whole exemplar.
+    elements: Vec<usize>,
+    curves: Vec<usize>,
+}
+
+/// Two parts of an exemplar that say nothing of one another.
+#[derive(Clone, Debug)]
+struct Layers<const D: usize> {
+    regular: Layer<D>,
+    rest: Layer<D>,
+    /// Whether the rest keeps clear of what repeats.
+    is_clear: bool,
+}
+
+impl<const D: usize> Layer<D> {
+    /// What a run made of it, in terms of the whole exemplar.
+    fn whole(&self, mut snapshot: Snapshot<D>) -> Snapshot<D> {
+        snapshot.placements.iter_mut().for_each(|p| p.source = self.elements[p.source]);
+        snapshot.curves.iter_mut().for_each(|c| c.source = self.curves[c.source]);
+        snapshot
+    }
+}
+
+/// Shows what is made of a part with what was made before.
+struct Showing<'a, const D: usize> {
+    watch: &'a mut dyn Watch<Snapshot<D>>,
+    layer: &'a Layer<D>,
+    before: &'a Snapshot<D>,
+}
+
+impl<const D: usize> Watch<Snapshot<D>> for Showing<'_, D> {
+    fn foreseen(&mut self, forecast: &Forecast) {
+        self.watch.foreseen(forecast);
+    }
+
+    fn step(&mut self, progress: &Progress, preview: &dyn Fn() -> Snapshot<D>) -> ControlFlow<()> {
+        let (layer, before) = (self.layer, self.before);
+        self.watch.step(progress, &|| {
+            let mut shown = layer.whole(preview());
+            shown.placements.extend_from_slice(&before.placements);
+            shown.curves.extend_from_slice(&before.curves);
+            shown
+        })
+    }
 }
 
 /// How an exemplar is continued by its repeat; `None` where it is treated as irregular. The same as what
@@ -168,10 +232,16 @@ where
                 advice,
             ));
         }
+        let soft = Softness::new(exemplar, params, budget)?.map(Arc::new);
+        let orderly = match Vector::<D>::plane_exemplar(exemplar) {
+            Some(plane) if params.repeat != Repeats::Off && regular.is_none() => {
+                Orderly::new(plane, budget)?.map(Arc::new)
+            }
+            _ => None,
+        };
         if regular.is_none() {
             no_areas(exemplar, "that do not repeat")?;
         }
-        let soft = Softness::new(exemplar, params, budget)?.map(Arc::new);
         let clearance = clearance::measure(exemplar, budget)?.map(Arc::new);
         let order = clearance.as_ref().map_or(Ok(None), |known| ExemplarOrder::new(known, budget))?.map(Arc::new);
         // Of elements alike, those at one place of the cell may lie on others, and those at another place below them.
@@ -183,20 +253,136 @@ where
             Some(staged) => ExemplarOrder::new(staged, budget)?.map(Arc::new),
             None => order,
         };
-        let prepared = Self {
+        let mut prepared = Self {
             exemplar: Arc::clone(exemplar),
             clearance,
             staged,
             order,
             params: params.clone(),
             regular,
+            orderly,
+            straight: None,
+            loose: None,
+            layers: None,
             soft,
             irregular: OnceLock::new(),
         };
-        if prepared.regular.is_none() && prepared.soft.is_none() {
-            prepared.irregular(budget)?;
-        }
+        prepared.disordered(budget)?;
         Ok(prepared)
+    }
+
+    /// Works out what is needed where neither a repeat nor lines of its own explain the exemplar.
+    fn disordered(&mut self, budget: &Budget) -> Result<()> {
+        if self.regular.is_some() || self.orderly.is_some() || self.soft.is_some() {
+            return Ok(());
+        }
+        let exemplar = Arc::clone(&self.exemplar);
+        if let Some(plane) = Vector::<D>::plane_exemplar(&exemplar).filter(|_| self.params.repeat != Repeats::Off) {
+            self.straight = Straight::of(plane).map(Arc::new);
+            self.loose = LooseEnds::of(plane, budget)?;
+            if let Some(found) = apart::regular_layer(plane, budget)? {
+                self.layers = self.layers_of(&found, budget)?.map(Arc::new);
+            }
+        }
+        if self.layers.is_none() {
+            self.irregular(budget)?;
+        }
+        Ok(())
+    }
+
+    /// The layers of which one repeats; `None` where the rest by itself shows too little.
+    fn layers_of(&self, found: &apart::Layer, budget: &Budget) -> Result<Option<Layers<D>>> {
+        let not = |kept: &[bool]| kept.iter().map(|kept| !kept).collect::<Vec<bool>>();
+        let numbers = |kept: &[bool]| (0..kept.len()).filter(|&k| kept[k]).collect::<Vec<usize>>();
+        let layer = |elements: &[bool], curves: &[bool], known: Option<Arc<Regular>>| -> Result<Layer<D>> {
+            let params = if known.is_some() {
+                self.params.clone()
+            } else {
+                Params { repeat: Repeats::Off, ..self.params.clone() }
+            };
+            let part = Arc::new(apart::part(&self.exemplar, elements, curves));
+            let prepared = Self::analysed(&part, &params, known, budget)?;
+            Ok(Layer { prepared, elements: numbers(elements), curves: numbers(curves) })
+        };
+        let regular = layer(&found.elements, &found.curves, Some(Arc::clone(&found.regular)))?;
+        let rest = match layer(&not(&found.elements), &not(&found.curves), None) {
+            Ok(rest) => rest,
+            Err(Error::Input { .. } | Error::Parameter { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        Ok(Some(Layers { regular, rest, is_clear: found.is_clear }))
+    }
+
+    /// Fills a domain layer by layer; `None` where something stays that belongs to one of them, or to both.
+    fn layered(
+        &self,
+        layers: &Layers<D>,
+        request: &Request<D>,
+        watch: &mut dyn Watch<Snapshot<D>>,
+    ) -> Result<Option<Outcome<D>>> {
+        let stays = !request.frozen.is_empty() || !request.frozen_curves.is_empty();
+        if stays || request.known.is_some() || request.between.is_some() {
+            return Ok(None);
+        }
+        let nothing = Snapshot::default();
+        let mut first = Showing { watch, layer: &layers.regular, before: &nothing };
+        let mut outcome = layers.regular.prepared.laid_out(request, &mut first)?;
+        let made = layers.regular.whole(Snapshot {
+            placements: std::mem::take(&mut outcome.placements),
+            curves: std::mem::take(&mut outcome.curves),
+            ..Snapshot::default()
+        });
+        let mut around = request.clone();
+        if layers.is_clear {
+            let outline = |p: &Placement<D>| self.exemplar.elements[p.source].outline.transformed(&p.transform);
+            around.obstacles.extend(made.placements.iter().map(outline));
+        }
+        if outcome.stopped != StopReason::Finished {
+            (outcome.placements, outcome.curves) = (made.placements, made.curves);
+            return Ok(Some(outcome));
+        }
+        let mut second = Showing { watch, layer: &layers.rest, before: &made };
+        match layers.rest.prepared.laid_out(&around, &mut second) {
+            Ok(rest) => {
+                let all = layers.rest.whole(Snapshot {
+                    placements: rest.placements,
+                    curves: rest.curves,
+                    ..Snapshot::default()
+                });
+                (outcome.placements, outcome.curves) = (all.placements, all.curves);
+                outcome.warnings.extend(rest.warnings);
+                (outcome.energy, outcome.stopped) = (rest.energy, rest.stopped);
+            }
+            Err(Error::NoResult { .. }) => {}
+            Err(error) => outcome.stopped = ending::reason(Some(error), &mut outcome.warnings)?,
+        }
+        outcome.placements.extend(made.placements);
+        outcome.curves.extend(made.curves);
+        Ok(Some(outcome))
+    }
+
+    /// Makes straight again what the engine has bent of straight lines, and joins ends that it has left loose.
+    fn tidy(&self, outcome: &mut Outcome<D>, request: &Request<D>) -> Result<()> {
+        let planes = (Vector::<D>::plane_exemplar(&self.exemplar), Vector::<D>::plane_request(request));
+        let (Some(exemplar), Some(request)) = planes else { return Ok(()) };
+        if outcome.stopped != StopReason::Finished {
+            return Ok(());
+        }
+        let better = |curves: Vec<Drawn<2>>| {
+            let curves = match &self.loose {
+                Some(loose) => loose.mended(curves, exemplar, request)?,
+                None => curves,
+            };
+            match &self.straight {
+                Some(straight) => straight.straightened(curves, request),
+                None => Ok(curves),
+            }
+        };
+        match Vector::<D>::map_plane_strokes(outcome.curves.clone(), better) {
+            Ok(curves) => outcome.curves = curves,
+            Err(error) => outcome.stopped = ending::reason(Some(error), &mut outcome.warnings)?,
+        }
+        Ok(())
     }
 
     /// What the engine works with.
@@ -337,8 +523,19 @@ where
                 });
             }
         }
+        if let Some(orderly) = &self.orderly
+            && let Some(outcome) = Vector::<D>::fill_orderly(orderly, &self.exemplar, request, watch)?
+        {
+            return Ok(outcome);
+        }
+        if let Some(layers) = &self.layers
+            && let Some(outcome) = self.layered(layers, request, watch)?
+        {
+            return Ok(outcome);
+        }
         self.refuse_bent_areas(request, told.first())?;
         let mut outcome = self.irregular(&request.budget)?.filled(request, watch)?;
+        self.tidy(&mut outcome, request)?;
         outcome.warnings.splice(0..0, told);
         Ok(outcome)
     }

@@ -67,6 +67,8 @@ pub enum Reason {
     Crowded,
     /// A stroke painted like a net that the frame has cut off, or that runs along it.
     Beside,
+    /// A stroke on squared paper, unlike those around it.
+    Ruled,
     /// A stroke where all strokes are asked for as curves.
     Asked,
     /// The outline of lines of one width.
@@ -103,6 +105,7 @@ impl Reason {
             Self::Fill | Self::Piece | Self::Group | Self::MarkedElement | Self::Stroke | Self::Touching => "elements",
             Self::Together | Self::Recurring | Self::Dot | Self::Large => "elements",
             Self::MarkedCurve | Self::Through | Self::Vast | Self::Crowded | Self::Beside | Self::Asked => "curves",
+            Self::Ruled => "curves",
             Self::Traced | Self::Band | Self::HandBand | Self::BandOutline => "curves",
             Self::Area => "areas",
             Self::Background => "background",
@@ -128,6 +131,7 @@ impl Reason {
             Self::Vast => "strokes of a net longer than half of the frame",
             Self::Crowded => "strokes along one another, with no clear space between, through the frame",
             Self::Beside => "strokes painted like a net, cut off it by the frame or close along it",
+            Self::Ruled => "straight strokes on squared paper, of many shapes",
             Self::Asked => "strokes, as --method curves asks",
             Self::Traced => "outlines of lines of one width",
             Self::Band => "filled bands of one width through the frame",

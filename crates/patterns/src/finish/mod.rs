@@ -2,6 +2,7 @@
 //! painting.
 
 pub(crate) mod clearance;
+pub(crate) mod loose;
 pub(crate) mod order;
 pub(crate) mod placements;
 pub(crate) mod solids;

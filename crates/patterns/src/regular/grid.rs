@@ -57,7 +57,7 @@ pub(crate) enum Unfit {
 }
 
 /// The one frame of fields that are the same everywhere: rotation, scale of elements, scale of distances.
-fn constant(fields: &Fields<2>) -> Option<(Matrix<2>, f64, f64)> {
+pub(crate) fn constant(fields: &Fields<2>) -> Option<(Matrix<2>, f64, f64)> {
     let turn = match &fields.orientation {
         None => Matrix::identity(),
         Some(OrientationField::Constant(turn)) => *turn,

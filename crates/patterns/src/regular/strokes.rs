@@ -166,7 +166,7 @@ fn join(path: &mut Path<2>, before: usize, after: usize) {
 }
 
 /// Cutting strokes at the border and at what is in the way.
-struct BorderCut<'a> {
+pub(crate) struct BorderCut<'a> {
     domain: &'a Domain<2>,
     border: Border,
     obstacles: Option<&'a Shape>,
@@ -179,7 +179,8 @@ struct BorderCut<'a> {
 }
 
 impl<'a> BorderCut<'a> {
-    fn new(ground: &Ground<'a>, kept: Option<&'a Kept>) -> Self {
+    /// For a domain and its surroundings.
+    pub(crate) fn new(ground: &Ground<'a>, kept: Option<&'a Kept>) -> Self {
         let Ground { grid, request, obstacles } = *ground;
         let slack = request.known.map(|known| 1e-9 * known.size().norm());
         let unit = grid.lattice.shorter();
@@ -187,7 +188,10 @@ impl<'a> BorderCut<'a> {
     }
 
     /// Adds what is left of a line of this style and width.
-    fn cut(
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn cut(
         &self,
         line: Drawn<2>,
         (style, width): (usize, f64),

@@ -12,5 +12,6 @@ pub(crate) mod join;
 pub(crate) mod outlined_lines;
 pub(crate) mod parts;
 pub(crate) mod pieces;
+pub(crate) mod ruled;
 pub(crate) mod select;
 pub(crate) mod surroundings;

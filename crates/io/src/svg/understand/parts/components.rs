@@ -26,6 +26,7 @@ use crate::svg::{
             crowds::crowds,
             groups::{is_small_fill, together},
         },
+        ruled::on_paper,
     },
 };
 
@@ -80,7 +81,29 @@ pub(crate) fn sort_strokes(mut items: Vec<Item>, painter: &Painter<'_, '_>, fram
             }
         }
     }
+    rule(&mut items, &mut pieces, &frame);
     put_together(items, &pieces, painter, frame)
+}
+
+/// Makes lines on squared paper parts of one net; what else lies there, such as pads, is a thing by itself.
+fn rule(items: &mut [Item], pieces: &mut Vec<Component>, frame: &Bounds<2>) {
+    let is_line = {
+        let members: Vec<&[usize]> = pieces.iter().map(|piece| piece.members.as_slice()).collect();
+        on_paper(items, &members, frame)
+    };
+    if !is_line.contains(&true) {
+        return;
+    }
+    for piece in pieces.iter() {
+        for &i in &piece.members {
+            if !is_line[i] {
+                (items[i].kind, items[i].reason) = (Kind::Element, Reason::Stroke);
+            } else if items[i].kind == Kind::Element {
+                (items[i].kind, items[i].reason) = (Kind::Curve, Reason::Ruled);
+            }
+        }
+    }
+    pieces.clear();
 }
 
 /// What becomes of a connected piece.

@@ -1,0 +1,182 @@
+//! Layers that say nothing of one another: a lattice of stars over speckles.
+//!
+//! A repeat is looked for in all that is drawn; what lies strewn over or under things that repeat would hide theirs. So where the
+//! whole has none, parts of it are looked at: its strokes, and classes of elements.
+
+use std::sync::Arc;
+
+use arabesque_core::{Budget, Exemplar, Result, Role};
+
+use crate::{
+    regular::Regular,
+    repeat::{Explains, Extent},
+};
+
+/// Elements that repeat, at least, and strokes.
+const LEAST: (usize, usize) = (9, 4);
+/// Share of what a repeat takes to others of its kind, at least.
+const SHARE: f64 = 0.9;
+/// Classes that are looked at, and those that are left out one after the other.
+const CLASSES: usize = 12;
+const WITHOUT: usize = 4;
+/// Elements of the rest that may lie on what repeats where both keep clear of one another, as a share.
+const MEET: f64 = 0.03;
+/// How much of an element lies on another that is on it.
+const ON: f64 = 0.02;
+/// Work for each pair of boxes.
+const PAIR: u64 = 2;
+
+/// A part of an exemplar that repeats by itself.
+pub(crate) struct Layer {
+    /// Whether each element, and each curve, is in it.
+    pub(crate) elements: Vec<bool>,
+    pub(crate) curves: Vec<bool>,
+    pub(crate) regular: Arc<Regular>,
+    /// Whether the rest keeps clear of it.
+    pub(crate) is_clear: bool,
+}
+
+/// A part of an exemplar.
+pub(crate) fn part<const D: usize>(exemplar: &Exemplar<D>, elements: &[bool], curves: &[bool]) -> Exemplar<D> {
+    let mut part = exemplar.clone();
+    let (mut e, mut c) = (elements.iter(), curves.iter());
+    part.elements.retain(|_| e.next().copied().unwrap_or(false));
+    part.curves.retain(|_| c.next().copied().unwrap_or(false));
+    part
+}
+
+/// The part of an exemplar that repeats where all of it does not; `None` where none does.
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn regular_layer(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Layer>> {
+    if !exemplar.areas.is_empty() || exemplar.hole.is_some() || exemplar.period.is_some() {
+        return Ok(None);
+    }
+    let classes = classes(exemplar);
+    let of = |wanted: &[usize]| exemplar.elements.iter().map(|e| wanted.contains(&e.class)).collect::<Vec<bool>>();
+    let (no_curves, all_curves) = (vec![false; exemplar.curves.len()], vec![true; exemplar.curves.len()]);
+    let no_elements = vec![false; exemplar.elements.len()];
+    let mut tried: Vec<(Vec<bool>, Vec<bool>)> = Vec::new();
+    if exemplar.curves.len() >= LEAST.1 && !exemplar.elements.is_empty() {
+        tried.push((no_elements, all_curves.clone()));
+        tried.push((vec![true; exemplar.elements.len()], no_curves.clone()));
+    }
+    let mut repeating = Vec::new();
+    if classes.len() > 1 {
+        for &(class, _) in classes.iter().filter(|(_, count)| *count >= LEAST.0).take(CLASSES) {
+            if found(exemplar, &of(&[class]), &no_curves, budget)?.is_some() {
+                repeating.push(class);
+            }
+        }
+        for count in (1..=repeating.len()).rev() {
+            tried.push((of(&repeating[..count]), no_curves.clone()));
+        }
+        for &(left, _) in classes.iter().take(WITHOUT) {
+            let others: Vec<usize> = classes.iter().map(|c| c.0).filter(|class| *class != left).collect();
+            tried.push((of(&others), all_curves.clone()));
+        }
+    }
+    for (elements, curves) in tried {
+        let is_all = elements.iter().chain(&curves).all(|kept| *kept);
+        let Some(regular) = (if is_all { None } else { found(exemplar, &elements, &curves, budget)? }) else {
+            continue;
+        };
+        let is_clear = is_clear(exemplar, &elements, budget)?;
+        return Ok(Some(Layer { elements, curves, regular, is_clear }));
+    }
+    Ok(None)
+}
+
+/// Classes with the number of whole elements in each, those with most first.
+fn classes(exemplar: &Exemplar<2>) -> Vec<(usize, usize)> {
+    let mut counts = vec![0; exemplar.classes.len()];
+    exemplar.elements.iter().filter(|e| e.role == Role::Source).for_each(|e| counts[e.class] += 1);
+    let mut classes: Vec<(usize, usize)> = counts.into_iter().enumerate().filter(|(_, count)| *count > 0).collect();
+    classes.sort_by_key(|(class, count)| (std::cmp::Reverse(*count), *class));
+    classes
+}
+
+/// How a part repeats, where it does so in two directions and all over.
+fn found(exemplar: &Exemplar<2>, elements: &[bool], curves: &[bool], budget: &Budget) -> Result<Option<Arc<Regular>>> {
+    let part = part(exemplar, elements, curves);
+    let whole = part.elements.iter().filter(|e| e.role == Role::Source).count();
+    if whole < LEAST.0 && part.curves.len() < LEAST.1 {
+        return Ok(None);
+    }
+    let regular = Regular::new(&part, budget)?;
+    let repeats = |regular: &Regular| {
+        let repeat = &regular.repeat;
+        repeat.extent == Extent::Plane && repeat.explains == Explains::Everything && repeat.share >= SHARE
+    };
+    Ok(regular.filter(repeats).map(Arc::new))
+}
+
+/// Whether elements of one part lie on none of the other.
+fn is_clear(exemplar: &Exemplar<2>, in_layer: &[bool], budget: &Budget) -> Result<bool> {
+    let boxes: Vec<_> = exemplar.elements.iter().map(|e| e.outline.bounds()).collect();
+    let (layer, rest): (Vec<usize>, Vec<usize>) = (0..boxes.len()).partition(|&e| in_layer[e]);
+    budget.spend(PAIR * (layer.len() * rest.len()) as u64)?;
+    let mut met = 0;
+    for &r in &rest {
+        let outline = &exemplar.elements[r].outline;
+        for &l in layer.iter().filter(|&&l| boxes[l].intersects(&boxes[r])) {
+            let common = outline.try_intersection(&exemplar.elements[l].outline, budget)?.area();
+            if common > ON * outline.area() {
+                met += 1;
+                break;
+            }
+        }
+    }
+    Ok(met as f64 <= MEET * rest.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use arabesque_core::{Bounds, Class, Element, Outline, Similarity, Stage, Stream, Vector};
+
+    use super::*;
+
+    fn square(at: Vector<2>, half: f64, class: usize) -> Element<2> {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let ring = corners.iter().map(|&(x, y)| at + Vector::xy(x, y) * half).collect();
+        let (outline, pose) = (Outline { rings: vec![ring] }, Similarity::shift(at));
+        let (colour, lean, role) = ([0.0; 3], [Vector::ZERO; 3], Role::Source);
+        Element { class, centre: at, pose, outline, colour, lean, role }
+    }
+
+    /// Squares on a lattice, or strewn, among small ones that are strewn and keep clear of them.
+    fn drawing(on_lattice: bool) -> Exemplar<2> {
+        let mut stream = Stream::new(4, Stage::TEST, 0);
+        let mut free = |least: f64| Vector::xy(stream.range(least, 200.0 - least), stream.range(least, 200.0 - least));
+        let node = |k: i32| Vector::xy(20.0 + 40.0 * f64::from(k % 5), 20.0 + 40.0 * f64::from(k / 5));
+        let mut elements: Vec<_> =
+            (0..25).map(|k| square(if on_lattice { node(k) } else { free(8.0) }, 6.0, 0)).collect();
+        while elements.len() < 120 {
+            let p = free(3.0);
+            if elements.iter().all(|e| (e.centre - p).norm() > if e.class == 0 { 12.0 } else { 5.0 }) {
+                elements.push(square(p, 1.0, 1));
+            }
+        }
+        let classes = ["large", "small"].map(|name| Class { name: name.into() }).to_vec();
+        Exemplar::new("t", elements, classes, Bounds::new(Vector::ZERO, Vector::xy(200.0, 200.0))).unwrap()
+    }
+
+    #[test]
+    fn a_lattice_among_things_that_are_strewn_is_a_layer_of_its_own() {
+        let exemplar = drawing(true);
+        assert!(Regular::new(&exemplar, &Budget::default()).unwrap().is_none(), "all of it does not repeat");
+        let layer = regular_layer(&exemplar, &Budget::default()).unwrap().unwrap();
+        assert!(layer.is_clear);
+        assert!(exemplar.elements.iter().zip(&layer.elements).all(|(e, is_in)| (e.class == 0) == *is_in));
+        let sides = layer.regular.repeat.lattice.vectors.map(Vector::norm);
+        assert!(sides.iter().all(|side| (side - 40.0).abs() < 0.1), "{sides:?}");
+    }
+
+    #[test]
+    fn things_that_are_all_strewn_have_no_layer_that_repeats() {
+        assert!(regular_layer(&drawing(false), &Budget::default()).unwrap().is_none());
+    }
+}

@@ -6,6 +6,7 @@ use arabesque::{
     Border, Constraint, Deform, Direction, Error, ExemplarTile, FieldSource, Fill as FillJob, Input, Job, Method,
     Parameters, Physics, Recipe, Redo, Region, Resources, Space, Structures, Unit, Up,
     core::options::{Choice, help_list, preset_list},
+    io::file,
     is_scene_of_meshes,
     patterns::Params,
     structures::StructureParams,
@@ -19,6 +20,7 @@ use crate::{
     failure::Failure,
     pair::pair,
     produce::{RunOptions, produce},
+    summary,
 };
 
 /// Fill a page, a shape, a seamless tile or a box in space with the pattern of an exemplar
@@ -247,8 +249,18 @@ impl Engine {
 
 impl Fill {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        let (tells_json, path) = (self.run.talk.json, self.output.clone());
+        let (recipe, run) = self.recipe().inspect_err(|failure| {
+            if tells_json && path != file::STANDARD {
+                summary::print_failure(failure);
+            }
+        })?;
+        produce(recipe, None, &path, &run)
+    }
+
+    /// What the command line asks for.
+    fn recipe(self) -> Result<(Recipe, RunOptions), Failure> {
         let exemplar = Input::file(&self.exemplar);
-        let (seed, run, path) = (self.seed, self.run, self.output);
         let writing = self.writing;
         let is_structure = match self.engine.method {
             Method::Structures => true,
@@ -278,14 +290,14 @@ impl Fill {
             job(self.place, self.fields, self.engine)?
         };
         let mut recipe = Recipe::new(exemplar, job);
-        recipe.seed = seed;
+        recipe.seed = self.seed;
         recipe.output.expand = writing.expand;
         recipe.output.dpi = writing.dpi;
         recipe.output.pixels_per_unit = writing.pixels_per_unit;
         recipe.output.view = writing.view;
         recipe.output.instancing = writing.instancing;
         recipe.output.centres = writing.centres;
-        produce(recipe, None, &path, &run)
+        Ok((recipe, self.run))
     }
 }
 

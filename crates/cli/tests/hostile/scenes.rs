@@ -80,7 +80,7 @@ pub(crate) fn cases() -> Vec<Case> {
         ("--box 6x4x6 --floor --physics", EITHER),
         ("--box 6x4x6 --physics=9999999", TOLD),
         ("--box 6x4x6 --physics --gravity nan,0,0", TOLD),
-        ("--box 6x4x6 --physics --friction 1e9", EITHER),
+        ("--box 6x4x6 --physics --friction 1e9", TOLD),
         ("--box 6x4x6 --scale 1e9", TOLD),
         ("--box 6x4x6 --density 1e-9", TOLD),
         ("--box 6x4x6 --set samples=64", EITHER),

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Exemplar, Result, Role};
+use arabesque_core::{Budget, Exemplar, Result, Role, Vector};
 
 use crate::{
     regular::Regular,
@@ -23,6 +23,8 @@ const WITHOUT: usize = 4;
 const MEET: f64 = 0.03;
 /// How much of an element lies on another that is on it.
 const ON: f64 = 0.02;
+/// Mean of the phases in a lattice from which on things keep to it; of few things, this over the root of their number.
+const KEEPS: (f64, f64) = (0.25, 2.5);
 /// Work for each pair of boxes.
 const PAIR: u64 = 2;
 
@@ -60,11 +62,12 @@ pub(crate) fn regular_layer(exemplar: &Exemplar<2>, budget: &Budget) -> Result<O
     let mut tried: Vec<(Vec<bool>, Vec<bool>)> = Vec::new();
     if exemplar.curves.len() >= LEAST.1 && !exemplar.elements.is_empty() {
         tried.push((no_elements, all_curves.clone()));
-        tried.push((vec![true; exemplar.elements.len()], no_curves.clone()));
     }
     let mut repeating = Vec::new();
     if classes.len() > 1 {
-        for &(class, _) in classes.iter().filter(|(_, count)| *count >= LEAST.0).take(CLASSES) {
+        // Strokes that do not repeat run around the elements that do: they say a lot of one another.
+        let alone = if exemplar.curves.is_empty() { CLASSES } else { 0 };
+        for &(class, _) in classes.iter().filter(|(_, count)| *count >= LEAST.0).take(alone) {
             if found(exemplar, &of(&[class]), &no_curves, budget)?.is_some() {
                 repeating.push(class);
             }
@@ -82,10 +85,27 @@ pub(crate) fn regular_layer(exemplar: &Exemplar<2>, budget: &Budget) -> Result<O
         let Some(regular) = (if is_all { None } else { found(exemplar, &elements, &curves, budget)? }) else {
             continue;
         };
+        if !is_strewn(exemplar, &elements, regular.repeat.lattice.vectors) {
+            continue;
+        }
         let is_clear = is_clear(exemplar, &elements, budget)?;
         return Ok(Some(Layer { elements, curves, regular, is_clear }));
     }
     Ok(None)
+}
+
+/// Whether elements outside of a layer lie anywhere in the cells of its lattice: what keeps to places there belongs to it, however much it
+/// was jittered.
+fn is_strewn(exemplar: &Exemplar<2>, in_layer: &[bool], [a, b]: [Vector<2>; 2]) -> bool {
+    let rest = exemplar.elements.iter().zip(in_layer).filter(|(_, kept)| !**kept);
+    let places: Vec<Vector<2>> = rest.map(|(element, _)| element.centre).collect();
+    let (count, cell) = (places.len().max(1) as f64, a.cross(b));
+    let most = KEEPS.0.max(KEEPS.1 / count.sqrt());
+    [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]].into_iter().all(|[i, j]| {
+        let turns = places.iter().map(|p| (i * p.cross(b) + j * a.cross(*p)) / cell * std::f64::consts::TAU);
+        let sum = turns.fold(Vector::<2>::ZERO, |sum, turn| sum + Vector::xy(turn.cos(), turn.sin()));
+        sum.norm() < most * count
+    })
 }
 
 /// Classes with the number of whole elements in each, those with most first.
@@ -173,6 +193,18 @@ mod tests {
         assert!(exemplar.elements.iter().zip(&layer.elements).all(|(e, is_in)| (e.class == 0) == *is_in));
         let sides = layer.regular.repeat.lattice.vectors.map(Vector::norm);
         assert!(sides.iter().all(|side| (side - 40.0).abs() < 0.1), "{sides:?}");
+    }
+
+    #[test]
+    fn things_that_keep_to_places_of_the_cells_belong_to_the_lattice() {
+        let mut exemplar = drawing(true);
+        exemplar.elements.truncate(25);
+        let mut stream = Stream::new(5, Stage::TEST, 0);
+        for k in 0..25 {
+            let off = Vector::xy(stream.range(12.0, 28.0), stream.range(12.0, 28.0));
+            exemplar.elements.push(square(exemplar.elements[k].centre + off, 1.0, 1));
+        }
+        assert!(regular_layer(&exemplar, &Budget::default()).unwrap().is_none());
     }
 
     #[test]

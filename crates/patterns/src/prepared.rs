@@ -278,14 +278,18 @@ where
         }
         let exemplar = Arc::clone(&self.exemplar);
         if let Some(plane) = Vector::<D>::plane_exemplar(&exemplar).filter(|_| self.params.repeat != Repeats::Off) {
-            self.straight = Straight::of(plane).map(Arc::new);
-            self.loose = LooseEnds::of(plane, budget)?;
             if let Some(found) = apart::regular_layer(plane, budget)? {
                 self.layers = self.layers_of(&found, budget)?.map(Arc::new);
             }
         }
-        if self.layers.is_none() {
-            self.irregular(budget)?;
+        if self.layers.is_some() {
+            return Ok(());
+        }
+        // That refuses lines on top of one another, in which loose ends would be looked for at great length.
+        self.irregular(budget)?;
+        if let Some(plane) = Vector::<D>::plane_exemplar(&exemplar).filter(|_| self.params.repeat != Repeats::Off) {
+            self.straight = Straight::of(plane).map(Arc::new);
+            self.loose = LooseEnds::of(plane, budget)?;
         }
         Ok(())
     }

@@ -94,7 +94,7 @@ pub fn is_result(bytes: &[u8]) -> bool {
         [b'<', ..] => begins("xmlns:arabesque=\"urn:arabesque:1\"") || has("<arabesque:recipe"),
         [b'{', ..] => {
             let is_scene = gltf::is_gltf(bytes) && has("\"generator\":\"arabesque ");
-            is_scene || begins("\"generator\": \"arabesque\"")
+            is_scene || begins("\"generator\": \"arabesque\"") || begins("{\"generator\":\"arabesque\"")
         }
         start @ [b'#', ..] => is_of_curves(start),
         [b'x', b',', ..] => has("\n# arabesque recipe:\n"),

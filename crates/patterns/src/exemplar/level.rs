@@ -28,8 +28,8 @@ const SINGLE: f64 = 0.5;
 /// Bytes of a sample besides its neighbours.
 const SAMPLE: usize = 256;
 
-/// Neighbours whose memory is held together.
-const BLOCK: usize = 1 << 18;
+/// Neighbours for which there is room at least when a list grows.
+const BLOCK: usize = 1 << 14;
 
 /// Neighbours that are compared in one step.
 const LANES: usize = 8;
@@ -188,13 +188,13 @@ impl<const D: usize> Level<D> {
                 }
             });
             meter.spend(3 * looked + 40 * found.len() as u64)?;
-            if self.near.len() + found.len() > held.len() * BLOCK {
-                // A list that grows takes up to twice what is in it.
-                let block = budget.hold(
-                    "neighbourhoods of the exemplar",
-                    2 * BLOCK * (size_of::<Near<D>>() + D * size_of::<f32>()),
-                )?;
-                held.push(block);
+            if self.near.len() + found.len() > self.near.capacity() {
+                // Grown by an eighth, not to twice as much: of large exemplars these lists are most of the memory.
+                let more = found.len() + self.near.len() / 8 + BLOCK;
+                let size = size_of::<Near<D>>() + D * size_of::<f32>();
+                held.push(budget.hold("neighbourhoods of the exemplar", more * size)?);
+                self.near.reserve_exact(more);
+                self.across.iter_mut().for_each(|across| across.reserve_exact(more + LANES));
             }
             // From left to right: then most of a run is left out by its first coordinate.
             found.sort_by(|(key, a), (other, b)| {

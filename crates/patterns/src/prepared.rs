@@ -277,10 +277,10 @@ where
             return Ok(());
         }
         let exemplar = Arc::clone(&self.exemplar);
-        if let Some(plane) = Vector::<D>::plane_exemplar(&exemplar).filter(|_| self.params.repeat != Repeats::Off) {
-            if let Some(found) = apart::regular_layer(plane, budget)? {
-                self.layers = self.layers_of(&found, budget)?.map(Arc::new);
-            }
+        if let Some(plane) = Vector::<D>::plane_exemplar(&exemplar).filter(|_| self.params.repeat != Repeats::Off)
+            && let Some(found) = apart::regular_layer(plane, budget)?
+        {
+            self.layers = self.layers_of(&found, budget)?.map(Arc::new);
         }
         if self.layers.is_some() {
             return Ok(());

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Budget, Exemplar, Result, Role, Vector};
+use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Result, Role, Vector};
 
 use crate::{
     regular::Regular,
@@ -16,6 +16,9 @@ use crate::{
 const LEAST: (usize, usize) = (9, 4);
 /// Share of what a repeat takes to others of its kind, at least.
 const SHARE: f64 = 0.9;
+/// Things on a lattice are evenly apart: this share of them is as far from the nearest one as the median, up to that share of it. Looking for a
+/// repeat costs a hundred times as much.
+const EVEN: (f64, f64) = (0.75, 0.12);
 /// Classes that are looked at, and those that are left out one after the other.
 const CLASSES: usize = 12;
 const WITHOUT: usize = 4;
@@ -25,6 +28,8 @@ const MEET: f64 = 0.03;
 const ON: f64 = 0.02;
 /// Mean of the phases in a lattice from which on things keep to it; of few things, this over the root of their number.
 const KEEPS: (f64, f64) = (0.25, 2.5);
+/// Work for a centre that is looked at.
+const LOOK: u64 = 8;
 /// Work for each pair of boxes.
 const PAIR: u64 = 2;
 
@@ -94,6 +99,28 @@ pub(crate) fn regular_layer(exemplar: &Exemplar<2>, budget: &Budget) -> Result<O
     Ok(None)
 }
 
+/// Whether elements may lie on a lattice, by the distances to their nearest; those of an exemplar of few may.
+fn is_even(exemplar: &Exemplar<2>, elements: &[bool], budget: &Budget) -> Result<bool> {
+    let part = exemplar.elements.iter().zip(elements).filter(|(_, kept)| **kept);
+    let centres: Vec<Vector<2>> = part.map(|(element, _)| element.centre).collect();
+    if centres.len() < LEAST.0 {
+        return Ok(true);
+    }
+    let reach = 3.0 * (exemplar.window.measure() / centres.len() as f64).sqrt();
+    let index = GridIndex::new(&centres, reach, &Domain::Box(exemplar.window));
+    let mut distances = Vec::with_capacity(centres.len());
+    let mut meter = budget.meter();
+    for (k, &centre) in centres.iter().enumerate() {
+        let (nearest, looked) = index.nearest_counted(centre, reach, Some(k));
+        meter.spend(LOOK * (1 + looked))?;
+        distances.extend(nearest.map(|(_, distance)| distance));
+    }
+    distances.sort_by(f64::total_cmp);
+    let Some(&median) = distances.get(distances.len() / 2) else { return Ok(false) };
+    let alike = distances.iter().filter(|d| (*d - median).abs() <= EVEN.1 * median).count();
+    Ok(alike as f64 >= EVEN.0 * centres.len() as f64)
+}
+
 /// Whether elements outside of a layer lie anywhere in the cells of its lattice: what keeps to places there belongs to it, however much it
 /// was jittered.
 fn is_strewn(exemplar: &Exemplar<2>, in_layer: &[bool], [a, b]: [Vector<2>; 2]) -> bool {
@@ -119,6 +146,9 @@ fn classes(exemplar: &Exemplar<2>) -> Vec<(usize, usize)> {
 
 /// How a part repeats, where it does so in two directions and all over.
 fn found(exemplar: &Exemplar<2>, elements: &[bool], curves: &[bool], budget: &Budget) -> Result<Option<Arc<Regular>>> {
+    if !is_even(exemplar, elements, budget)? {
+        return Ok(None);
+    }
     let part = part(exemplar, elements, curves);
     let whole = part.elements.iter().filter(|e| e.role == Role::Source).count();
     if whole < LEAST.0 && part.curves.len() < LEAST.1 {

@@ -288,7 +288,7 @@ where
         // That refuses lines on top of one another, in which loose ends would be looked for at great length.
         self.irregular(budget)?;
         if let Some(plane) = Vector::<D>::plane_exemplar(&exemplar).filter(|_| self.params.repeat != Repeats::Off) {
-            self.straight = Straight::of(plane).map(Arc::new);
+            self.straight = Straight::of(plane, budget)?.map(Arc::new);
             self.loose = LooseEnds::of(plane, budget)?;
         }
         Ok(())

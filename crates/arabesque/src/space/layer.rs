@@ -26,8 +26,8 @@ const LAP: f64 = 0.1;
 
 /// Things that lie on one another are doubled when they are nearer than this share of the least distance of the exemplar.
 const DOUBLED: f64 = 0.6;
-/// Work to look for what is near a thing.
-const NEAR: u64 = 2000;
+/// Work for a thing that is looked at beside another one.
+const NEAR: u64 = 100;
 
 /// A layer as a drawing.
 #[derive(Clone, Debug)]
@@ -87,7 +87,10 @@ impl Layer {
         let centres: Vec<Vector<3>> = exemplar.elements.iter().map(|e| e.centre).collect();
         let stands = exemplar.heights.iter().zip(&centres).filter(|_| across == exemplar.up);
         let floor = stands.filter_map(|(height, centre)| Some(centre[across] - (*height)?)).next().unwrap_or(0.0);
-        let rows = engine.repeating().and_then(|regular| rows(&drawing, regular.repeat().lattice.vectors));
+        let rows = match engine.repeating() {
+            Some(regular) => rows(&drawing, regular.repeat().lattice.vectors, budget)?,
+            None => None,
+        };
         let laps = rows.is_some_and(|(_, laps)| laps);
         let rows = rows.map(|(way, _)| way);
         let up = exemplar.up;
@@ -204,31 +207,10 @@ impl Layer {
         let mut placements: Vec<_> =
             sites.iter().map(|site| self.on_mesh(shell, &site.at, shown[site.item], scale)).collect();
         if self.laps {
-            budget.spend(NEAR * placements.len() as u64)?;
-            self.take_out_doubled(&mut placements, wider);
+            let [a, b] = regular.repeat().lattice.vectors.map(Vector::norm);
+            take_out_doubled(&mut placements, &self.centres, (a.max(b), wider), &budget)?;
         }
         solids.without_overlaps(placements, self.laps, request).map(Some)
-    }
-
-    /// Takes out what is far nearer to another one than any two elements of the exemplar are: things that lie on one another anyhow are not
-    /// told by their overlaps.
-    fn take_out_doubled(&self, placements: &mut Vec<Placement<3>>, wider: f64) {
-        let nearest = |p: Vector<3>| {
-            let ways = self.centres.iter().map(|&c| (c - p).norm()).filter(|way| *way > 0.0);
-            ways.fold(f64::INFINITY, f64::min)
-        };
-        let least = DOUBLED * wider * self.centres.iter().map(|&c| nearest(c)).fold(f64::INFINITY, f64::min);
-        if !least.is_finite() {
-            return;
-        }
-        let places: Vec<_> = placements.iter().map(|p| p.transform.apply(self.centres[p.source])).collect();
-        let index = GridIndex::new(&places, least, &Domain::Box(Bounds::around(places.iter().copied()).grown(least)));
-        let mut gone = vec![false; places.len()];
-        for (i, &place) in places.iter().enumerate() {
-            index.within(place, least, |j, _| gone[i] |= j < i && !gone[j]);
-        }
-        let mut gone = gone.into_iter();
-        placements.retain(|_| gone.next() != Some(true));
     }
 
     /// An element of the exemplar over a point of a mesh, off by what it is off in the exemplar.
@@ -283,37 +265,49 @@ fn is_single(exemplar: &Exemplar<3>, axis: usize) -> bool {
 
 /// The direction of rows of a lattice that could slip along one another: a short vector of it, x rather than y. Rows that lie beside one
 /// another can, and so can those that lie on one another anyhow, as shingles do: which of the two it is comes second.
-fn rows(drawing: &Exemplar<2>, [a, b]: [Vector<2>; 2]) -> Option<(Vector<2>, bool)> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+fn rows(drawing: &Exemplar<2>, [a, b]: [Vector<2>; 2], budget: &Budget) -> Result<Option<(Vector<2>, bool)>> {
     let cell = a.cross(b).abs();
     let combinations = (-2_i8..=2).flat_map(|i| (-2_i8..=2).map(move |j| (f64::from(i), f64::from(j))));
     let mut ways: Vec<Vector<2>> = combinations.map(|(i, j)| a * i + b * j).filter(|v| v.norm() > 0.0).collect();
     ways.sort_by(|v, w| v[1].abs().total_cmp(&w[1].abs()).then(v.norm().total_cmp(&w.norm())));
-    let fit = |(way, apart): &(Vector<2>, f64)| {
+    for way in ways {
+        let (along, apart) = (way.unit_or_zero(), cell / way.norm());
+        budget.spend(NEAR * drawing.elements.len() as u64)?;
         let widths = drawing.elements.iter().map(|e| {
-            let (low, high) = range(&e.outline, left(*way));
+            let (low, high) = range(&e.outline, left(along));
             high - low
         });
         let beside = widths.filter(|width| *width <= apart * ROOM).count() as f64;
-        if beside >= MOST * drawing.elements.len() as f64 {
-            return Some(false);
+        let is_beside = beside >= MOST * drawing.elements.len() as f64;
+        if is_beside || lap(drawing, along, apart, budget)? {
+            return Ok(Some((along, !is_beside)));
         }
-        lap(drawing, *way, *apart).then_some(true)
-    };
-    let mut rows = ways.into_iter().map(|way| (way.unit_or_zero(), cell / way.norm()));
-    rows.find_map(|row| fit(&row).map(|laps| (row.0, laps)))
+    }
+    Ok(None)
 }
 
 /// Whether rows along `way`, so far apart, lie on one another: most elements on two or more of the rows beside theirs, as tiles in bond do.
-fn lap(drawing: &Exemplar<2>, way: Vector<2>, apart: f64) -> bool {
+fn lap(drawing: &Exemplar<2>, way: Vector<2>, apart: f64, budget: &Budget) -> Result<bool> {
     let across = left(way);
-    let on_others = |e: &Element<2>| {
-        let others = drawing.elements.iter().filter(|o| {
-            let off = across.dot(o.centre - e.centre).abs();
-            off > 0.5 * apart && off < 1.5 * apart && laps(&e.outline, &o.outline)
+    let centres: Vec<_> = drawing.elements.iter().map(|e| e.centre).collect();
+    let sizes = drawing.elements.iter().map(|e| e.outline.bounds().size().norm());
+    let reach = sizes.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let index = GridIndex::new(&centres, reach, &Domain::Box(drawing.window));
+    let mut lying = 0;
+    for e in &drawing.elements {
+        let mut on = 0;
+        let looked = index.within(e.centre, reach, |k, offset| {
+            let off = across.dot(offset).abs();
+            let is_next = off > 0.5 * apart && off < 1.5 * apart;
+            on += usize::from(is_next && laps(&e.outline, &drawing.elements[k].outline));
         });
-        others.take(2).count() == 2
-    };
-    drawing.elements.iter().filter(|e| on_others(e)).count() * 2 > drawing.elements.len()
+        budget.spend(NEAR * (1 + looked))?;
+        lying += usize::from(on >= 2);
+    }
+    Ok(lying * 2 > drawing.elements.len())
 }
 
 /// Whether two convex outlines lie on one another by more than [`LAP`] of what either measures in any direction.
@@ -325,6 +319,36 @@ fn laps(a: &Outline<2>, b: &Outline<2>) -> bool {
         let ([a0, a1], [b0, b1]) = (<[f64; 2]>::from(range(a, normal)), <[f64; 2]>::from(range(b, normal)));
         a1.min(b1) - a0.max(b0) > LAP * (a1 - a0).min(b1 - b0)
     })
+}
+
+/// Takes out what is far nearer to another one than any two elements of the exemplar are: things that lie on one another anyhow are not
+/// told by their overlaps. `within` is no less than the distance of those, and `wider` by how much the output is larger.
+fn take_out_doubled(
+    placements: &mut Vec<Placement<3>>,
+    centres: &[Vector<3>],
+    (within, wider): (f64, f64),
+    budget: &Budget,
+) -> Result<()> {
+    let index = GridIndex::new(centres, within, &Domain::Box(Bounds::around(centres.iter().copied()).grown(within)));
+    let mut nearest = within;
+    for (k, &centre) in centres.iter().enumerate() {
+        let (found, looked) = index.nearest_counted(centre, within, Some(k));
+        budget.spend(NEAR * (1 + looked))?;
+        nearest = found.map_or(nearest, |(_, distance)| nearest.min(distance));
+    }
+    let least = DOUBLED * wider * nearest;
+    let places: Vec<_> = placements.iter().map(|p| p.transform.apply(centres[p.source])).collect();
+    let index = GridIndex::new(&places, least, &Domain::Box(Bounds::around(places.iter().copied()).grown(least)));
+    let mut gone = vec![false; places.len()];
+    for (i, &place) in places.iter().enumerate() {
+        let mut is_doubled = false;
+        let looked = index.within(place, least, |j, _| is_doubled |= j < i && !gone[j]);
+        budget.spend(NEAR * (1 + looked))?;
+        gone[i] = is_doubled;
+    }
+    let mut gone = gone.into_iter();
+    placements.retain(|_| gone.next() != Some(true));
+    Ok(())
 }
 
 /// A vector turned by a quarter.

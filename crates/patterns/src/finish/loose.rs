@@ -184,13 +184,14 @@ impl Page<'_> {
         let mut is_free = vec![true; ends.len()];
         let mut taken: Vec<Joint> = Vec::new();
         for joint in joints {
+            budget.spend(1 + taken.len() as u64)?;
             let crosses = |other: &Joint| self.is_near(&joint.cubic, &other.cubic);
             if taken.len() < most && joint.ends.iter().all(|&e| is_free[e]) && !taken.iter().any(crosses) {
                 joint.ends.iter().for_each(|&e| is_free[e] = false);
                 taken.push(joint);
             }
         }
-        Ok(chained(lines, ends, &taken))
+        chained(lines, ends, &taken, budget)
     }
 
     /// What would join two ends, where they face one another and nothing lies between.
@@ -239,13 +240,15 @@ impl Page<'_> {
 }
 
 /// The lines with these joints between them.
-fn chained(lines: Vec<Drawn<2>>, ends: &[End], joints: &[Joint]) -> Vec<Drawn<2>> {
+fn chained(lines: Vec<Drawn<2>>, ends: &[End], joints: &[Joint], budget: &Budget) -> Result<Vec<Drawn<2>>> {
     let mut lines: Vec<Option<Drawn<2>>> = lines.into_iter().map(Some).collect();
-    // Where the start and the end of each line have come to lie.
+    // Where the start and the end of each line have come to lie, and whose they are.
     let mut home: Vec<[(usize, usize); 2]> = (0..lines.len()).map(|n| [(n, 0), (n, 1)]).collect();
+    let mut owner = home.clone();
     for joint in joints {
         let [(i, side), (j, other)] = joint.ends.map(|e| home[ends[e].line][ends[e].side]);
         let Some(mut first) = lines[i].take() else { continue };
+        budget.spend(WORK * (1 + first.path.cubics.len()) as u64)?;
         if side == 0 {
             first.path = first.path.reversed();
         }
@@ -262,17 +265,13 @@ fn chained(lines: Vec<Drawn<2>>, ends: &[End], joints: &[Joint]) -> Vec<Drawn<2>
         let rest = if other == 0 { second.path } else { second.path.reversed() };
         first.path.cubics.push(joint.cubic);
         first.path.cubics.extend(rest.cubics);
-        let moved = [(i, 1 - side), (j, 1 - other)];
-        for place in home.iter_mut().flatten() {
-            if *place == moved[0] {
-                *place = (i, 0);
-            } else if *place == moved[1] {
-                *place = (i, 1);
-            }
+        owner[i] = [owner[i][1 - side], owner[j][1 - other]];
+        for (side, (line, end)) in owner[i].into_iter().enumerate() {
+            home[line][end] = (i, side);
         }
         lines[i] = Some(first);
     }
-    lines.into_iter().flatten().collect()
+    Ok(lines.into_iter().flatten().collect())
 }
 
 /// Places along a path in steps no longer than this.

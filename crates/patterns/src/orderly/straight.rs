@@ -14,6 +14,8 @@ use crate::regular::grid::constant;
 const PARALLEL: f64 = 0.02;
 /// Directions at most, and the share of all lines that they have to hold.
 const FEW: (usize, f64) = (6, 0.97);
+/// Directions that are told apart, the first ones met: lines in more of them run in too many anyhow.
+const KNOWN: usize = 64;
 /// Lines to judge by, at least.
 const LINES: usize = 6;
 
@@ -29,8 +31,9 @@ const JOINT: f64 = 0.2;
 /// How far a corner may be moved.
 const MOVE: f64 = 0.8;
 
-/// Work for each point and each pair of runs that are compared.
+/// Work for each point and each pair of runs that are compared, and for a point or run that is only looked at.
 const WORK: u64 = 60;
+const EACH: u64 = 10;
 
 /// The directions of an exemplar of straight lines.
 #[derive(Clone, Debug)]
@@ -56,14 +59,19 @@ struct Run {
 
 impl Straight {
     /// Finds the directions; `None` where lines bend or run in too many.
-    pub(crate) fn of(exemplar: &Exemplar<2>) -> Option<Self> {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn of(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
         if exemplar.curves.len() < LINES {
-            return None;
+            return Ok(None);
         }
         let mut found: Vec<(Vector<2>, f64)> = Vec::new();
         let (mut total, mut lengths) = (0.0, Vec::new());
         for curve in &exemplar.curves {
-            for pair in corners(&curve.path)?.windows(2) {
+            budget.spend(WORK * curve.path.cubics.len() as u64)?;
+            let Some(corners) = corners(&curve.path) else { return Ok(None) };
+            for pair in corners.windows(2) {
                 let step = pair[1] - pair[0];
                 let unit = step.unit_or_zero();
                 total += step.norm();
@@ -74,7 +82,8 @@ impl Straight {
                         let step = if found[k].0.dot(step) < 0.0 { -step } else { step };
                         found[k] = (found[k].0 + step, found[k].1 + step.norm());
                     }
-                    None => found.push((step, step.norm())),
+                    None if found.len() < KNOWN => found.push((step, step.norm())),
+                    None => {}
                 }
             }
         }
@@ -86,7 +95,8 @@ impl Straight {
         let short = lengths.get(lengths.len() / SHORT.0).map_or(0.0, |length| SHORT.1 * length);
         let directions: Vec<_> = found.iter().map(|(sum, _)| sum.unit_or_zero()).collect();
         let jog = short.min(JOG * apart);
-        (total > 0.0 && directions.len() > 1 && held >= FEW.1 * total).then_some(Self { directions, apart, jog })
+        let is_straight = total > 0.0 && directions.len() > 1 && held >= FEW.1 * total;
+        Ok(is_straight.then_some(Self { directions, apart, jog }))
     }
 
     /// The strokes of a result made straight; where they go around a tile, are bent by fields or join what stays, as they are.
@@ -120,7 +130,7 @@ impl Straightening<'_> {
         for drawn in &curves {
             let points = drawn.path.flatten(0.02 * self.apart);
             budget.spend(WORK * points.len() as u64 * (1 + self.directions.len() as u64))?;
-            all.push(self.runs(&points));
+            all.push(self.runs(&points, budget)?);
         }
         let offsets = self.lined_up(&all, budget)?;
         let index = Index::new(&all, JOINT.max(1e-9) * self.apart, self.domain);
@@ -144,9 +154,9 @@ impl Straightening<'_> {
     }
 
     /// The runs of a line.
-    fn runs(&self, points: &[Vector<2>]) -> Vec<Run> {
+    fn runs(&self, points: &[Vector<2>], budget: &Budget) -> Result<Vec<Run>> {
         let mut runs: Vec<Run> = Vec::new();
-        for pair in simplified(points, WOBBLE * self.apart).windows(2) {
+        for pair in simplified(points, WOBBLE * self.apart, budget)?.windows(2) {
             let run = self.run(pair[0], pair[1]);
             match runs.last_mut() {
                 Some(last) if last.direction == run.direction => *last = joined(last, &run),
@@ -155,6 +165,7 @@ impl Straightening<'_> {
         }
         // Jogs first that are shortest.
         while runs.len() > 1 {
+            budget.spend(EACH * runs.len() as u64)?;
             let extent = |run: &Run| (run.ends[1] - run.ends[0]).norm();
             let is_jog = |k: &usize| {
                 let inner = *k > 0 && *k + 1 < runs.len();
@@ -178,7 +189,7 @@ impl Straightening<'_> {
                 }
             }
         }
-        runs
+        Ok(runs)
     }
 
     fn run(&self, a: Vector<2>, b: Vector<2>) -> Run {
@@ -338,13 +349,14 @@ fn joined(a: &Run, b: &Run) -> Run {
 }
 
 /// The points without which a line would lie farther than `tolerance` from where it was.
-fn simplified(points: &[Vector<2>], tolerance: f64) -> Vec<Vector<2>> {
-    let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else { return points.to_vec() };
+fn simplified(points: &[Vector<2>], tolerance: f64, budget: &Budget) -> Result<Vec<Vector<2>>> {
+    let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else { return Ok(points.to_vec()) };
     let mut is_kept = vec![false; points.len()];
     (is_kept[0], is_kept[last]) = (true, true);
     // A ring has no chord: its farthest point is kept as well.
     let mut open = vec![(0, last)];
     while let Some((a, b)) = open.pop() {
+        budget.spend(EACH * (b - a) as u64)?;
         let off = |k: &usize| segment::distance((points[a], points[b]), points[*k]);
         let farthest = (a + 1..b).max_by(|x, y| off(x).total_cmp(&off(y)));
         if let Some(k) = farthest.filter(|k| off(k) > tolerance) {
@@ -352,7 +364,7 @@ fn simplified(points: &[Vector<2>], tolerance: f64) -> Vec<Vector<2>> {
             open.extend([(a, k), (k, b)]);
         }
     }
-    points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(p, _)| *p).collect()
+    Ok(points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(p, _)| *p).collect())
 }
 
 #[cfg(test)]
@@ -387,7 +399,7 @@ mod tests {
             scale: 1.0,
             frozen: None,
         };
-        let straight = Straight::of(&streets()).unwrap();
+        let straight = Straight::of(&streets(), &Budget::default()).unwrap().unwrap();
         let made =
             straight.straightened(lines.iter().map(drawn).collect(), &Request::new(Domain::Box(page()))).unwrap();
         made.iter().map(|drawn| corners(&drawn.path).unwrap()).collect()
@@ -424,7 +436,7 @@ mod tests {
     fn lines_that_bend_or_run_anywhere_have_no_directions() {
         let mut bent = streets();
         bent.curves[0].path.cubics[0][1] += Vector::xy(3.0, 0.0);
-        assert!(Straight::of(&bent).is_none());
+        assert!(Straight::of(&bent, &Budget::default()).unwrap().is_none());
         let mut strewn = streets();
         for (k, curve) in (0..).map(f64::from).zip(&mut strewn.curves) {
             curve.path = Path::polyline(&[
@@ -432,6 +444,6 @@ mod tests {
                 Vector::xy(50.0 + (0.31 * k).cos() * 40.0, 50.0 + (0.31 * k).sin() * 40.0),
             ]);
         }
-        assert!(Straight::of(&strewn).is_none());
+        assert!(Straight::of(&strewn, &Budget::default()).unwrap().is_none());
     }
 }

@@ -146,7 +146,11 @@ fn rows(blocks: &[Block], exemplar: &Exemplar<2>) -> Option<Vec<Course>> {
     let mut rows: Vec<Course> = rows.into_iter().map(|row| row.0).collect();
     for block in blocks {
         let middle = 0.5 * (block.low[1] + block.high[1]);
-        let Some(row) = rows.iter_mut().find(|row| row.low < middle && middle < row.high) else {
+        // Rows are in order: the one whose middle is nearest.
+        let above = rows.partition_point(|row| row.low + row.high < 2.0 * middle);
+        let off = |&k: &usize| (rows[k].low + rows[k].high - 2.0 * middle).abs();
+        let near = (above.saturating_sub(1)..rows.len().min(above + 1)).min_by(|a, b| off(a).total_cmp(&off(b)));
+        let Some(row) = near.map(|k| &mut rows[k]).filter(|row| row.low < middle && middle < row.high) else {
             // Rows that the frame has cut tell nothing of their height.
             if is_whole(block) {
                 return None;

@@ -17,6 +17,8 @@ const TOUCH: f64 = 0.05;
 const NEAR: f64 = 0.25;
 /// What is merely alike has no more parts of one kind.
 const REPEATED: usize = 6;
+/// Parts that one thing may have.
+const PARTS: usize = 512;
 /// So many alike are known as things by being smaller than this share of what they cover together.
 const SEVERAL: usize = 4;
 const SMALL: f64 = 0.34;
@@ -66,6 +68,7 @@ impl Look<'_> {
     fn copies(&self) -> Result<Vec<bool>> {
         let mut found = vec![false; self.candidates.len()];
         let by_meshes = self.sorted_by(|c| c.meshes.clone());
+        let siblings = self.siblings(&by_meshes);
         for members in by_meshes.values().filter(|members| members.len() > 1) {
             let area = self.area(members);
             let (mut variants, is_mixed) = (Vec::<Vec<usize>>::new(), self.is_mixed(members[0]));
@@ -81,7 +84,7 @@ impl Look<'_> {
             for variant in variants {
                 let count = variant.len();
                 for k in variant {
-                    let siblings = self.siblings(k, &by_meshes);
+                    let siblings = siblings[k];
                     found[k] = if count > 1 {
                         let touches = self.hangs_together(k, TOUCH);
                         // A row of many alike is no element, however often it comes.
@@ -100,12 +103,13 @@ impl Look<'_> {
     fn alike(&self) -> Result<Vec<bool>> {
         let mut found = vec![false; self.candidates.len()];
         let by_names = self.sorted_by(|c| c.names.clone());
+        let siblings = self.siblings(&by_names);
         self.budget.spend(PER_NODE * self.candidates.len() as u64)?;
         for members in by_names.values().filter(|members| members.len() > 1) {
             let kinds: BTreeSet<&String> = self.candidates[members[0]].names.1.iter().collect();
             let area = self.area(members);
             for &k in members.iter().filter(|_| kinds.len() > 1) {
-                found[k] = self.siblings(k, &by_names) < 2 && (self.is_one_thing(k) || self.is_small(k, area));
+                found[k] = siblings[k] < 2 && (self.is_one_thing(k) || self.is_small(k, area));
             }
         }
         Ok(found)
@@ -133,11 +137,16 @@ impl Look<'_> {
         sorted
     }
 
-    /// How many candidates of one kind hang directly below a candidate, at most.
-    fn siblings<K>(&self, k: usize, kinds: &BTreeMap<K, Vec<usize>>) -> usize {
-        let below = |members: &Vec<usize>| members.iter().filter(|m| self.candidates[**m].above == Some(k)).count();
+    /// How many candidates of one kind hang directly below each candidate, at most.
+    fn siblings<K>(&self, kinds: &BTreeMap<K, Vec<usize>>) -> Vec<usize> {
+        let mut most = vec![0; self.candidates.len()];
+        for members in kinds.values() {
+            let mut below: BTreeMap<usize, usize> = BTreeMap::new();
+            members.iter().filter_map(|&m| self.candidates[m].above).for_each(|k| *below.entry(k).or_default() += 1);
+            below.into_iter().for_each(|(k, count)| most[k] = most[k].max(count));
+        }
         // A candidate with few parts has no many of them.
-        if self.candidates[k].nodes.len() < 4 { 0 } else { kinds.values().map(below).max().unwrap_or(0) }
+        (0..most.len()).map(|k| if self.candidates[k].nodes.len() < 4 { 0 } else { most[k] }).collect()
     }
 
     /// Whether two candidates of the same meshes have them in the same places, seen from the first.
@@ -184,6 +193,9 @@ impl Look<'_> {
 
     /// Whether the parts of a candidate are one group of boxes no farther apart than a share of their usual size.
     fn hangs_together(&self, k: usize, share: f64) -> bool {
+        if self.candidates[k].units.len() > PARTS {
+            return false;
+        }
         let units: Vec<Bounds<3>> = self.candidates[k].units.iter().map(|unit| self.around(unit)).collect();
         let mut sizes: Vec<f64> = units.iter().map(|unit| unit.size().0.into_iter().fold(0.0, f64::max)).collect();
         sizes.sort_by(f64::total_cmp);

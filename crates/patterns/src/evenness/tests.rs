@@ -335,7 +335,8 @@ fn pairs() -> Arc<Exemplar<2>> {
         let (x, y) = (2.0 * x + random.range(-3.0, 3.0), 2.0 * y + random.range(-3.0, 3.0));
         let angle = random.range(0.0, std::f64::consts::TAU);
         elements.push(square(0, (x, y), 4.0));
-        elements.push(square(1, (x + 4.5 * angle.cos(), y + 4.5 * angle.sin()), 1.0));
+        let far = random.range(4.2, 4.8);
+        elements.push(square(1, (x + far * angle.cos(), y + far * angle.sin()), 1.0));
     }
     drawing(elements, 160.0)
 }

@@ -208,7 +208,9 @@ impl Prepared {
         let texture = &*self.texture;
         let before = samples.clone();
         let scale = (texture.spacing * canvas.scale(), texture.radius * canvas.scale());
-        let merged = match relax(&mut samples, scale, self.params.relax, canvas.period(), &budget) {
+        // Who asks to stop does not want to wait for points to be evened out.
+        let rounds = if stopped == StopReason::Stopped { 0 } else { self.params.relax };
+        let merged = match relax(&mut samples, scale, rounds, canvas.period(), &budget) {
             Ok(merged) => merged,
             Err(Error::Limit { .. } | Error::Stopped { .. }) => {
                 samples = before;

@@ -256,6 +256,8 @@ impl<'a, const D: usize> Work<'a, D> {
 
     /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
     pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        // Gaps are measured from the rim of one: of the same one, whoever asks.
+        let (a, b) = if a.centre.0 > b.centre.0 { (b, a) } else { (a, b) };
         let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
         let scale = self.page.spacing_scale(a.centre);
         let offset = self.page.domain().offset(a.centre, b.centre);

@@ -1,6 +1,6 @@
 //! The command line as a whole.
 
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -62,9 +62,24 @@ impl App {
     }
 }
 
+/// Whether a summary for machines is wanted on standard output, where no result goes.
+pub(crate) fn asks_for_json(arguments: impl IntoIterator<Item = OsString>) -> bool {
+    let arguments: Vec<OsString> = arguments.into_iter().take_while(|a| a != "--").collect();
+    let is_piped = arguments.windows(2).any(|pair| (pair[0] == "-o" || pair[0] == "--output") && pair[1] == "-");
+    arguments.iter().any(|a| a == "--json") && !is_piped && !arguments.iter().any(|a| a == "-o-" || a == "--output=-")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_summary_is_wanted_where_standard_output_is_free() {
+        let asks = |text: &str| asks_for_json(text.split(' ').map(OsString::from));
+        assert!(asks("arabesque fill a.svg --json -o b.svg"));
+        assert!(!asks("arabesque fill a.svg --json -o -") && !asks("arabesque fill a.svg --json --output=-"));
+        assert!(!asks("arabesque fill a.svg -o b.svg") && !asks("arabesque fill -- --json"));
+    }
 
     #[test]
     fn the_command_line_is_consistent() {

@@ -15,16 +15,38 @@ mod summary;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{Parser, error::ErrorKind};
+
+use failure::{Failure, USAGE};
 
 #[global_allocator]
 static ALLOCATOR: process::memory::Counting = process::memory::Counting;
 
 fn main() -> ExitCode {
     process::sentinel::began();
-    let app = app::App::parse();
+    let wanted = app::asks_for_json(std::env::args_os());
+    let app = app::App::try_parse().unwrap_or_else(|error| refuse(&error, wanted));
     match app.execute() {
         Ok(code) => code,
-        Err(failure) => failure.report(),
+        Err(failure) => {
+            if wanted && !summary::is_told() {
+                summary::print_failure(&failure);
+            }
+            failure.report()
+        }
     }
+}
+
+/// Ends the program with help, or with what is wrong in the options: for a machine too, where it asked for that.
+fn refuse(error: &clap::Error, wanted: bool) -> ! {
+    let is_help = matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    );
+    if wanted && !is_help {
+        let text = error.to_string();
+        let message = text.lines().take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+        summary::print_failure(&Failure::with(USAGE, message.trim_start_matches("error: ")));
+    }
+    error.exit()
 }

@@ -7,7 +7,7 @@ use std::{
 };
 
 use arabesque::{
-    Artwork, Companion, Encoded, EnergyPoint, Error, Format, Job, OutputOptions, Prepared, Recipe, Resources,
+    Artwork, Companion, Encoded, EnergyPoint, Error, Format, Input, Job, OutputOptions, Prepared, Recipe, Resources,
     StopReason, Stopper, Summary, Warning, in_pool, io::file,
 };
 use clap::Args;
@@ -143,6 +143,9 @@ fn check(
     options: &RunOptions,
 ) -> Result<Vec<Plan>, Failure> {
     let piped = path == file::STANDARD;
+    if recipe.inputs().iter().filter(|(_, input)| is_read_from_standard(input)).count() > 1 {
+        return Err(Failure::usage("standard input can be read once; give files for the others"));
+    }
     if piped && options.talk.json {
         return Err(Failure::usage("--json and -o - both write to standard output; give a file for one of them"));
     }
@@ -173,6 +176,10 @@ fn check(
     let targets = guard.targets(&paths)?;
     let plans = paths.into_iter().zip(seeds).zip(targets);
     Ok(plans.map(|((path, seed), target)| Plan { path, seed, target, beside: beside.next() }).collect())
+}
+
+fn is_read_from_standard(input: &Input) -> bool {
+    input.content.is_none() && file::is_standard_input(&input.path)
 }
 
 /// What must not be written over.

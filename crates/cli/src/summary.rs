@@ -1,6 +1,9 @@
 //! The machine-readable summary of `--json`.
 
-use std::io::Write;
+use std::{
+    io::Write,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use arabesque::{Summary, Warning};
 use serde::Serialize;
@@ -35,8 +38,17 @@ pub(crate) struct Output {
     pub(crate) warnings: Vec<Warning>,
 }
 
+/// Whether something was written for machines.
+static TOLD: AtomicBool = AtomicBool::new(false);
+
+/// Whether [`print`] was called.
+pub(crate) fn is_told() -> bool {
+    TOLD.load(Ordering::SeqCst)
+}
+
 /// Writes `value` to standard output as JSON.
 pub(crate) fn print(value: &impl Serialize) -> Result<(), Failure> {
+    TOLD.store(true, Ordering::SeqCst);
     let text = serde_json::to_string_pretty(value).map_err(|e| Failure::summary(e.into()))?;
     let written = standard::output().and_then(|mut out| writeln!(out, "{text}").and_then(|()| out.flush()));
     written.map_err(Failure::summary)

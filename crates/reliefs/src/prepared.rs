@@ -203,6 +203,7 @@ impl Prepared {
     ) -> Result<ReliefOutcome> {
         let mut samples = canvas.samples();
         let mut warnings = self.texture.warnings.clone();
+        let (message, advice) = budget.spent();
         // What is still to be done with the best so far has an account of its own.
         let budget = if stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
         let texture = &*self.texture;
@@ -227,7 +228,7 @@ impl Prepared {
             return Err(Error::no_result("no point lies within the extent", "make it larger"));
         }
         if stopped == StopReason::Limit {
-            warnings.push(Warning::new("the limit of work was reached", "raise it with --limit work=N"));
+            warnings.push(Warning::new(message, advice));
         }
         let torn = notes.cracks + notes.unmatched;
         if torn as f64 > TOLD * notes.overlapped as f64 {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Vector, Warning, Watch};
+use arabesque_core::{Budget, EnergyPoint, Error, Forecast, PointSet, Progress, Result, StopReason, Vector, Warning, Watch};
 
 use crate::{
     energy::{
@@ -25,6 +25,8 @@ use crate::{
     start::{gaps::fill, grow::grow, noise::noise, patches::patches, shake::shake},
 };
 
+/// Work that a point of the result takes, about.
+const EACH: f64 = 6e5;
 /// The smallest window, in units of the first one.
 const SMALLEST: f64 = 0.5;
 /// How far points are shaken, in units of how much their distances vary.
@@ -80,6 +82,8 @@ impl<const D: usize> Prepared<D> {
         watch: &mut dyn Watch<PointSet<D>>,
     ) -> Result<StructureOutcome<D>> {
         let stage = Stage::new(self, request)?;
+        let count = stage.layouts[0].expected(self);
+        watch.foreseen(&Forecast { count, work: count * EACH, allowed: stage.budget.allowed() as f64 });
         let start = kept(&self.pattern, &request.kept)?;
         let mut state = State::of(start, Vec::new());
         stage.levels(&mut state, watch)?;
@@ -413,7 +417,8 @@ impl<'a, const D: usize> Stage<'a, D> {
             ));
         }
         if state.stopped == StopReason::Limit {
-            warnings.push(Warning::new("the limit of work was reached", "raise it with --limit work=N"));
+            let (message, advice) = self.budget.spent();
+            warnings.push(Warning::new(message, advice));
         }
         Ok(StructureOutcome {
             points: finished.points,

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use arabesque_core::{Budget, Error, Matrix, Result, Similarity, Vector, suggest::did_you_mean};
+use arabesque_core::{Budget, Error, Matrix, Result, Similarity, Vector, rounded, suggest::did_you_mean};
 use arabesque_io::placed::{Changes, Item, Layout, Paint, Replaced};
 use arabesque_patterns::alike::{Places, Spot, Turned};
 
@@ -58,12 +58,30 @@ pub(super) fn resolve<const D: usize>(edit: &Edit, layout: &Layout<D>, budget: &
     let matches = matches(edit, layout, &named, &budget)?;
     let mut resolving = Resolving { edit, layout, nearest: Nearest::new(layout), budget: &budget };
     if edit.delete {
-        Ok(resolving.deleted(&matches))
-    } else if edit.insert.is_empty() {
-        resolving.changed(&matches)
-    } else {
-        resolving.inserted(&matches)
+        if matches.len() == layout.items.len() {
+            return Err(Error::no_result("nothing would be left", "leave some elements, or delete the file"));
+        }
+        return Ok(resolving.deleted(&matches));
     }
+    let resolved = if edit.insert.is_empty() { resolving.changed(&matches) } else { resolving.inserted(&matches) }?;
+    within_reach(edit, &resolved, &budget)?;
+    Ok(resolved)
+}
+
+/// Refuses what no reader would take: elements beyond the largest coordinate.
+fn within_reach<const D: usize>(edit: &Edit, resolved: &Resolved<D>, budget: &Budget) -> Result<()> {
+    let most = budget.limits().coordinate;
+    let is_beyond = |touched: &&Touched<D>| {
+        touched.to.is_some_and(|to| to.0.iter().any(|c| !(c.abs() + touched.reach <= most)))
+    };
+    let Some(far) = resolved.touched.iter().find(is_beyond) else { return Ok(()) };
+    let option = match (&edit.scale, edit.insert.is_empty()) {
+        (_, false) => "insert",
+        (Some(_), true) => "scale",
+        (None, true) => "move",
+    };
+    let expected = format!("an edit after which element {} lies between -{} and {}", far.id, rounded(most), rounded(most));
+    Err(Error::parameter(option, "too far", expected))
 }
 
 /// Refuses what the file cannot say.

@@ -14,6 +14,9 @@ use crate::{
     resources::Resources,
 };
 
+/// What is being done where nothing says more.
+const READING: &str = "reading and preparing";
+
 /// The files of one prepared recipe. They are read for each request, so that a change is seen; standard input, which can be read once
 /// only, is kept.
 #[derive(Clone, Debug)]
@@ -28,12 +31,12 @@ pub(crate) struct Files {
 impl Files {
     pub(crate) fn new(resources: Resources, recipe: &Recipe) -> Self {
         let roles = recipe.inputs().into_iter().rev().map(|(role, input)| (input.path.clone(), role)).collect();
-        Self { budget: resources.budget(), resources, read: Arc::default(), roles: Arc::new(roles) }
+        Self { budget: resources.budget().stage(READING), resources, read: Arc::default(), roles: Arc::new(roles) }
     }
 
     /// The same files, with a fresh account for another run.
     pub(crate) fn again(&self) -> Self {
-        Self { budget: self.resources.budget(), ..self.clone() }
+        Self { budget: self.resources.budget().stage(READING), ..self.clone() }
     }
 
     /// What reading, analysing and running may use up.

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use arabesque::{
-    Direction, Input, Recipe, Relief as ReliefJob,
+    Direction, Format, Input, Recipe, Relief as ReliefJob,
     core::options::help_list,
     reliefs::{Plane, ReliefParams},
 };
@@ -113,6 +113,10 @@ fn parameters() -> String {
 
 impl Relief {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
+        let format = self.run.format.or(Format::of_path(&self.output).ok().flatten());
+        if self.writing.height_field && format.is_some_and(|format| format != Format::Png) {
+            return Err(Failure::usage("--height-field is a picture; give -o OUT.png"));
+        }
         let mut job = ReliefJob {
             extent: self.place.extent.map(|text| text.parse()).transpose()?,
             tile: self.place.tile,

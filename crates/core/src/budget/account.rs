@@ -247,6 +247,14 @@ impl Budget {
         }
     }
 
+    /// What to tell of a result that is the best so far because the work was used up, and what to do about it.
+    pub fn spent(&self) -> (String, String) {
+        let work = self.account.limits.work;
+        let allowed = self.allowed() / MILLION;
+        let message = format!("{}: {allowed} million units of work were used up: this is the best so far", self.stage_name());
+        (message, format!("give it less to do, or raise the limit with --limit work={}", work.saturating_mul(2)))
+    }
+
     fn stage_name(&self) -> &'static str {
         if self.stage.is_empty() { "the work" } else { self.stage }
     }

@@ -67,6 +67,9 @@ struct Nature {
 pub(crate) struct Shapes {
     known: Vec<Known>,
     natures: Vec<Nature>,
+    /// The known ones by size and number, from small to large, and from large to small.
+    rising: Vec<usize>,
+    falling: Vec<usize>,
 }
 
 fn mirror(outline: &Outline<2>) -> Outline<2> {
@@ -94,6 +97,37 @@ fn symmetry(signature: &Signature) -> f64 {
     (2..=ORDERS).rev().find(holds).map_or(full, |n| full / n as f64)
 }
 
+/// How far each of some values is from the nearest other one, in any order; nothing for a value alone.
+fn gaps(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let nearest = |k: usize| {
+        let before = k.checked_sub(1).map(|k| steps[k]);
+        [before, steps.get(k).copied()].into_iter().flatten().reduce(f64::min)
+    };
+    (0..values.len()).filter_map(nearest).collect()
+}
+
+/// The same of turns, which come round at `full`.
+fn gaps_around(turns: &[f64], full: f64) -> Vec<f64> {
+    let mut sorted: Vec<f64> = turns.iter().map(|turn| turn.rem_euclid(full)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let count = sorted.len();
+    let step = |k: usize| (sorted[(k + 1) % count] - sorted[k]).rem_euclid(full);
+    let nearest = |k: usize| {
+        let off = step(k).min(step((k + count - 1) % count));
+        off.min(full - off)
+    };
+    if count < 2 { Vec::new() } else { (0..count).map(nearest).collect() }
+}
+
+/// How far a value is from the nearest of some, which are sorted.
+fn nearest_of(sorted: &[f64], value: f64) -> f64 {
+    let at = sorted.partition_point(|v| *v < value);
+    let around = [at.checked_sub(1).and_then(|k| sorted.get(k)), sorted.get(at)];
+    around.into_iter().flatten().map(|v| (v - value).abs()).fold(f64::INFINITY, f64::min)
+}
+
 /// The value that nearly all are below.
 fn most(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -112,7 +146,12 @@ impl Shapes {
             let turn = angle(&element.pose.rotation);
             known.push(Known { index, class: element.class, colour: element.colour, signature, mirrored, turn });
         }
-        let mut shapes = Self { known, natures: Vec::new() };
+        let size = |k: usize| known[k].signature.size;
+        let mut rising: Vec<usize> = (0..known.len()).collect();
+        let mut falling = rising.clone();
+        rising.sort_by(|&a, &b| size(a).total_cmp(&size(b)).then(a.cmp(&b)));
+        falling.sort_by(|&a, &b| size(b).total_cmp(&size(a)).then(a.cmp(&b)));
+        let mut shapes = Self { known, natures: Vec::new(), rising, falling };
         let natures = (0..exemplar.classes.len()).into_par_iter().map(|class| shapes.nature(class, budget));
         shapes.natures = natures.collect::<Result<_>>()?;
         Ok(shapes)
@@ -132,36 +171,60 @@ impl Shapes {
                 self.nearest(&own.signature, &own.colour, |j| j != k && self.known[j].class == class, budget)?;
             distances.extend(nearest.map(|(_, distance)| distance));
         }
-        let others = |k: usize| (0..members.len()).filter(move |j| *j != k);
-        let gap = |value: &dyn Fn(usize, usize) -> f64| {
-            let gaps = (0..members.len()).filter_map(|k| others(k).map(|j| value(k, j)).reduce(f64::min));
-            most(gaps.collect())
+        let turn = if symmetry > 0.0 { most(gaps_around(&turns, symmetry)) } else { 0.0 };
+        let size = most(gaps(sizes.clone()));
+        let ordered = |mut values: Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values
         };
-        let turn = if symmetry > 0.0 { gap(&|k, j| turn_between(turns[k], turns[j], symmetry)) } else { 0.0 };
-        let size = gap(&|k, j| (sizes[k] - sizes[j]).abs());
+        let turns =
+            turns.into_iter().map(|turn| if symmetry > 0.0 { turn.rem_euclid(symmetry) } else { turn }).collect();
         // Of one or two, how they differ is not known.
         let few = if members.len() < 4 { 1.6 } else { 1.0 };
         Ok(Nature {
             distance: (1.3 * most(distances)).max(WOBBLE * few),
             turn: (1.3 * turn).max(TURN * few),
             size: (1.3 * size).max(SIZE * few),
-            turns,
-            sizes,
+            turns: ordered(turns),
+            sizes: ordered(sizes),
             symmetry,
         })
     }
 
     /// The known shapes that may be the same as one, those of nearly its size first.
-    fn candidates(&self, signature: &Signature, colour: &[f64; 3], may: impl Fn(usize) -> bool) -> Vec<usize> {
-        let mut near: Vec<(f64, usize)> = (0..self.known.len())
-            .filter(|&k| may(k) && apart(&self.known[k].colour, colour) <= COLOUR)
-            .map(|k| {
-                ((self.known[k].signature.size / signature.size).ln().abs() + apart(&self.known[k].colour, colour), k)
-            })
-            .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        near.truncate(CANDIDATES);
-        near.into_iter().map(|(_, k)| k).collect()
+    ///
+    /// Looked for from its size upwards and downwards, until no other one can be nearer in size and colour than the last that counts.
+    fn candidates(
+        &self,
+        signature: &Signature,
+        colour: &[f64; 3],
+        may: impl Fn(usize) -> bool,
+        budget: &Budget,
+    ) -> Result<Vec<usize>> {
+        let size = |k: usize| self.known[k].signature.size;
+        let from = [
+            &self.rising[self.rising.partition_point(|&k| size(k) < signature.size)..],
+            &self.falling[self.falling.partition_point(|&k| size(k) >= signature.size)..],
+        ];
+        let mut best: Vec<(f64, usize)> = Vec::with_capacity(CANDIDATES + 1);
+        let mut meter = budget.meter();
+        for way in from {
+            for &k in way {
+                meter.spend(LOOK)?;
+                let off = (size(k) / signature.size).ln().abs();
+                if best.len() == CANDIDATES && best.last().is_some_and(|last| (off, k) > *last) {
+                    break;
+                }
+                let differs = apart(&self.known[k].colour, colour);
+                if differs > COLOUR || !may(k) {
+                    continue;
+                }
+                let place = best.partition_point(|other| *other < (off + differs, k));
+                best.insert(place, (off + differs, k));
+                best.truncate(CANDIDATES);
+            }
+        }
+        Ok(best.into_iter().map(|(_, k)| k).collect())
     }
 
     /// The known shape that is most alike, and how far off it is.
@@ -172,9 +235,8 @@ impl Shapes {
         may: impl Fn(usize) -> bool,
         budget: &Budget,
     ) -> Result<Option<(usize, f64)>> {
-        budget.spend(LOOK * self.known.len() as u64)?;
         let mut best: Option<(usize, f64)> = None;
-        for k in self.candidates(signature, colour, may) {
+        for k in self.candidates(signature, colour, may, budget)? {
             budget.spend(FIT)?;
             let distance = self.known[k].signature.fit(signature).distance;
             if best.is_none_or(|(_, least)| distance < least) {
@@ -195,7 +257,7 @@ impl Shapes {
         let unlike = Match { broken: 4.0, ..Match::default() };
         budget.spend(FIT)?;
         let Some(signature) = Signature::new(outline) else { return Ok(unlike) };
-        let named = stated.and_then(|index| self.known.iter().position(|known| known.index == index));
+        let named = stated.and_then(|index| self.known.binary_search_by_key(&index, |known| known.index).ok());
         let named = named.map(|k| (k, self.known[k].signature.fit(&signature).distance));
         let best = match named.filter(|(k, distance)| *distance <= self.natures[self.known[*k].class].distance) {
             Some(named) => Some(named),
@@ -207,7 +269,7 @@ impl Shapes {
         let mut found = Match { class: Some(known.class), source: Some(known.index), ..Match::default() };
         found.broken = distance / nature.distance;
         let size = signature.size.ln();
-        let off = nature.sizes.iter().map(|s| (s - size).abs()).fold(f64::INFINITY, f64::min);
+        let off = nearest_of(&nature.sizes, size);
         found.scaled = off / nature.size;
         if found.broken > 1.0 && self.is_mirrored(&signature, colour, budget)? {
             found.is_mirrored = true;
@@ -216,8 +278,11 @@ impl Shapes {
         }
         if nature.symmetry > 0.0 {
             let turn = known.turn + angle(&known.signature.fit(&signature).pose.rotation);
+            // Turns come round: the nearest may be the first or the last of them.
+            let turn = turn.rem_euclid(nature.symmetry);
+            let ends = [nature.turns.first(), nature.turns.last()].into_iter().flatten();
             let off =
-                nature.turns.iter().map(|t| turn_between(*t, turn, nature.symmetry)).fold(f64::INFINITY, f64::min);
+                ends.map(|t| turn_between(*t, turn, nature.symmetry)).fold(nearest_of(&nature.turns, turn), f64::min);
             found.turned = off / nature.turn;
         }
         Ok(found)
@@ -225,7 +290,7 @@ impl Shapes {
 
     /// Whether the mirror image of a known shape fits where the shapes themselves do not.
     fn is_mirrored(&self, signature: &Signature, colour: &[f64; 3], budget: &Budget) -> Result<bool> {
-        for k in self.candidates(signature, colour, |_| true) {
+        for k in self.candidates(signature, colour, |_| true, budget)? {
             budget.spend(FIT)?;
             let known = &self.known[k];
             let fit = known.mirrored.as_ref().map(|mirrored| mirrored.fit(signature).distance);

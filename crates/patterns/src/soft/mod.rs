@@ -87,6 +87,8 @@ impl<const D: usize> Softness<D> {
         let mut plan = Plan::new(exemplar, &self.forms, &self.natural, request);
         checks::expected(plan.expected(), &request.budget)?;
         request.budget.allow_elements(plan.expected());
+        let (count, allowed) = (plan.expected(), request.budget.allowed() as f64);
+        watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed });
         let mut laid = empty(&plan);
         self.keep(&mut laid, request);
         let mut cut_short = self.lay_out(&mut plan, &mut laid, watch).err();

@@ -17,6 +17,10 @@ use crate::{
     solve::matching::{anywhere, room},
 };
 
+/// Work for a point that is looked at, and for one that may be laid.
+const SEEN: u64 = 6;
+const LAY: u64 = 300;
+
 /// Random matches of each site.
 const TRIES: Stage = Stage::new(42);
 /// How many of them.
@@ -339,8 +343,7 @@ impl<const D: usize> Growth<'_, '_, D> {
         }
         self.matches[q] = best;
         self.done[q] = true;
-        self.lay(q, best);
-        Ok(())
+        self.lay(q, best, budget)
     }
 
     /// Looks around a match along each direction of the base, closer and closer.
@@ -371,13 +374,17 @@ impl<const D: usize> Growth<'_, '_, D> {
     }
 
     /// Adds what the match of site `q` has nearest to it and nothing is there for yet.
-    fn lay(&mut self, q: usize, m: Vector<D>) {
+    fn lay(&mut self, q: usize, m: Vector<D>, budget: &Budget) -> Result<()> {
         let (level, pattern) = (self.level, self.level.pattern);
         let site = &level.sites[q];
         let own = self.step;
         let radius = (own * own * pattern.repeats() as f64 + 1.1 * pattern.thickness * pattern.thickness).sqrt();
         let mut new: Vec<usize> = Vec::new();
-        pattern.index.within(m, radius, |j, _| new.push(j));
+        let looked = pattern.index.within(m, radius, |j, _| new.push(j));
+        budget.spend(looked * SEEN + new.len() as u64 * LAY)?;
+        // Of a domain that is thinner than a window, most of what is laid lies around it.
+        let most = budget.limits().output_elements;
+        budget.within("points in and around what is filled", self.output.places.len(), ("output-elements", most))?;
         for j in new {
             let body = pattern.body_of[j] as usize;
             let middle = pattern.bodies.get(body).map_or(pattern.points.positions[j], |b| b.centre);
@@ -400,6 +407,7 @@ impl<const D: usize> Growth<'_, '_, D> {
                 self.lay_body(body, Similarity::about(m, site.place, site.rotation, site.scale));
             }
         }
+        Ok(())
     }
 
     fn is_free(&self, place: Vector<D>, weights: &Weights, radius: f64) -> bool {

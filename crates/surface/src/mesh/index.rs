@@ -47,6 +47,7 @@ impl MeshIndex {
     /// [`Error::Input`] when it has no triangles, refers to vertices that are not there, or has coordinates that are no numbers;
     /// [`Error::Limit`] when it is over the limits of `nodes`, `coordinate` or `memory`.
     pub fn new(mesh: &TriangleMesh, name: &str, budget: &Budget) -> Result<Self> {
+        let budget = &budget.stage("preparing a mesh");
         check(mesh, name, budget)?;
         let held = budget.hold(name, mesh.triangles.len() * 260 + mesh.positions.len() * 80)?;
         let topology = Topology::new(mesh, budget)?;

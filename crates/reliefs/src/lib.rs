@@ -51,6 +51,7 @@
 //! Not handled: sharp edges stay as sharp as the points show them; rigid elements of a texture are not kept rigid; a patch is never turned
 //! or mirrored; what repeats in the texture does not have to repeat in a tile, whose size is the caller's.
 
+mod distance;
 mod ground;
 mod params;
 mod patch;

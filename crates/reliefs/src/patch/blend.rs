@@ -29,6 +29,7 @@ pub(crate) struct Site<'a> {
 /// What is there already, as a surface.
 pub(super) struct Around {
     pub(super) points: OrientedPoints,
+    pub(super) samples: Vec<Sample>,
     /// Targets of pairs.
     pub(super) targets: Vec<Sample>,
     pub(super) overlapped: Vec<u32>,
@@ -63,7 +64,7 @@ impl Site<'_> {
             let Some(foot) = hit.or_else(|| around.points.project(s.at, reach, Some(s.normal))) else {
                 return Ok(Some((sample, 3)));
             };
-            let other = &self.samples[foot.nearest];
+            let other = &around.samples[foot.nearest];
             sample.at = s.at + (foot.point - s.at) * share;
             let mixed = s.normal * (1.0 - share) + foot.normal * share;
             sample.normal = mixed.unit_if_longer(1e-9).unwrap_or(s.normal);
@@ -114,13 +115,14 @@ impl Site<'_> {
 
     /// Points of the result near what is kept that nothing in the patch goes on from.
     pub(super) fn cracks(&self, samples: &[Sample], around: &Around) -> Result<usize> {
-        let positions = samples.iter().map(|s| s.at).collect();
-        let normals = samples.iter().map(|s| s.normal).collect();
-        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         let reach = 2.2 * self.texture.spacing;
+        let near: Vec<&Sample> = samples.iter().filter(|s| self.mask.is_near_overlap(s.at, reach)).collect();
+        let positions = near.iter().map(|s| s.at).collect();
+        let normals = near.iter().map(|s| s.normal).collect();
+        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         self.budget.spend(around.overlapped.len() as u64 * 400)?;
         let is_lost = |i: &&u32| {
-            let sample = &self.samples[**i as usize];
+            let sample = &around.samples[**i as usize];
             sample.piece == 0
                 && self.mask.share(sample.at) > 0.6
                 && points.nearest(sample.at, reach, |j| points.normals()[j].dot(sample.normal) > 0.3).is_none()

@@ -31,8 +31,36 @@ const TORN: f64 = 0.01;
 const FLOOR: f64 = 2e-3;
 /// Share of a target's surface that bends at most, from which its cluster is split.
 const FLAT: f64 = 0.06;
+/// Columns of nodes that are compared at most.
+const ENOUGH: usize = 400;
 /// How far pairs listen to one another, as a share of the patch.
 const LISTENING: f64 = 0.15;
+
+/// Every second node along both axes, again and again, while there are more than enough.
+fn thinned(mut nodes: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
+    let mut step = 2;
+    while nodes.len() > ENOUGH {
+        nodes.retain(|[x, y]| x % step == 0 && y % step == 0);
+        step *= 2;
+    }
+    nodes
+}
+
+/// A map of which a share counts, with the columns of its Jacobian matrix: `x + share (W(x) - x)`.
+fn faded(
+    x: Vector<3>,
+    (image, columns): (Vector<3>, [Vector<3>; 3]),
+    share: f64,
+    slope: [f64; 2],
+) -> (Vector<3>, [Vector<3>; 3]) {
+    let shift = image - x;
+    let column = |k: usize| {
+        let mut axis = Vector::ZERO;
+        axis[k] = 1.0;
+        axis + (columns[k] - axis) * share + shift * slope.get(k).copied().unwrap_or(0.0)
+    };
+    (x + shift * share, std::array::from_fn(column))
+}
 
 /// A patch, ready to be pasted.
 #[derive(Debug)]
@@ -49,7 +77,7 @@ impl Site<'_> {
         if self.texture.places.is_empty() {
             return Ok(None);
         }
-        let nodes = self.mask.overlapped();
+        let nodes = thinned(self.mask.overlapped());
         if nodes.is_empty() || self.samples.is_empty() {
             let place = self.texture.places[random.below(self.texture.places.len())];
             let samples = self.source(place).into_iter().filter(|s| self.mask.replaces(s)).collect();
@@ -78,10 +106,14 @@ impl Site<'_> {
         Ok(best)
     }
 
-    /// What is there already, prepared.
+    /// What is there already, prepared: no more of it than projections and rays from the overlap may meet.
     fn around(&self) -> Result<Around> {
-        let positions: Vec<_> = self.samples.iter().map(|s| s.at).collect();
-        let normals = self.samples.iter().map(|s| s.normal).collect();
+        let texture = self.texture;
+        let far = texture.lattice.reach.max(self.reach()) + texture.radius;
+        let is_near = |s: &&Sample| self.mask.is_near_overlap(s.at, far);
+        let samples: Vec<Sample> = self.samples.iter().filter(is_near).copied().collect();
+        let positions: Vec<_> = samples.iter().map(|s| s.at).collect();
+        let normals = samples.iter().map(|s| s.normal).collect();
         let overlapped: Vec<u32> =
             (0..positions.len() as u32).filter(|&i| self.mask.is_overlap(positions[i as usize])).collect();
         let most = (overlapped.len() / self.params.pairs).max(3);
@@ -91,14 +123,11 @@ impl Site<'_> {
             let mean = sum * (1.0 / cluster.len() as f64);
             let far = |i: u32| (positions[i as usize] - mean).norm2();
             let nearest = cluster.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-            nearest.map(|i| self.samples[i as usize])
+            nearest.map(|i| samples[i as usize])
         };
         let targets = some.iter().filter_map(target).collect();
-        Ok(Around {
-            points: OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?,
-            targets,
-            overlapped,
-        })
+        let points = OrientedPoints::new(positions, normals, texture.radius, self.budget)?;
+        Ok(Around { points, samples, targets, overlapped })
     }
 
     /// Places to try, in the order in which they are tried: one of the best at random, then the others from the best on.
@@ -165,7 +194,9 @@ impl Site<'_> {
             let sample = texture.sample(i);
             Sample { at: sample.at - corner, ..sample }
         };
-        numbers.into_iter().map(moved).collect()
+        let reach = self.reach();
+        let may_be_pasted = |s: &Sample| s.piece > 0 || self.mask.may_be_pasted(s.at, reach);
+        numbers.into_iter().map(moved).filter(may_be_pasted).collect()
     }
 
     /// The patch of a place, bent and blended.
@@ -203,12 +234,16 @@ impl Site<'_> {
             };
             self.budget.spend(spline.work() * source.len() as u64)?;
             let bend = |s: &Sample| {
-                let (at, columns) = spline.apply(s.at);
+                let (share, slope) = self.mask.bend(s.at);
+                if share <= 0.0 && s.piece == 0 {
+                    return (*s, true);
+                }
+                let (at, columns) = faded(s.at, spline.apply(s.at), share, slope);
                 let volume = determinant(columns);
                 let is_sound = (FOLDED.0..FOLDED.1).contains(&volume) || !self.mask.is_pasted(at);
                 if s.piece > 0 {
                     // A loose piece is moved, not bent.
-                    let shift = spline.apply(s.middle()).0 - s.middle();
+                    let shift = (spline.apply(s.middle()).0 - s.middle()) * self.mask.bend(s.middle()).0;
                     return (Sample { at: s.at + Vector([shift[0], shift[1], 0.0]), ..*s }, is_sound);
                 }
                 (Sample { at, normal: carried(s.normal, columns), ..*s }, is_sound)

@@ -25,7 +25,7 @@ const CELL: f64 = 1.3;
 /// Cells along the longer side of the field at most, where nobody says.
 const CELLS: f64 = 400.0;
 /// Rows of nodes above one another at most.
-const ROWS: f64 = 16.0;
+const ROWS: f64 = 10.0;
 /// Cells of a field at most.
 const NODES: usize = 4_000_000;
 /// Places that are enough to choose from beside a gap.

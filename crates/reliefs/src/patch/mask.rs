@@ -90,7 +90,7 @@ impl Mask {
 
     /// The cell under a place; `None` beyond the border.
     fn under(&self, p: Vector<3>) -> Option<usize> {
-        let at = [0, 1].map(|k| (p[k] / self.cell).floor() + self.margin as f64);
+        let at = [0, 1].map(|k| p[k] / self.cell + self.margin as f64);
         let is_in = at.iter().all(|v| (0.0..self.side as f64).contains(v));
         is_in.then(|| at[1] as usize * self.side + at[0] as usize)
     }
@@ -152,7 +152,7 @@ impl Mask {
         let at = [0, 1].map(|k| p[k] / self.cell + self.margin as f64);
         let inside = at.map(|v| v.clamp(0.5, last));
         let k = inside[1] as usize * self.side + inside[0] as usize;
-        let beyond = (at[0] - inside[0]).hypot(at[1] - inside[1]) - 0.5;
+        let beyond = (at[0] - inside[0]).abs().max((at[1] - inside[1]).abs()) - 0.5;
         // Where nothing is bent nothing moves in.
         let reach = if self.bends[k] > 0.0 { reach / self.cell } else { 1.0 };
         beyond.max(self.from_pasted[k] - 1.0) <= reach
@@ -163,7 +163,7 @@ impl Mask {
         let at = [0, 1].map(|k| p[k] / self.cell + self.margin as f64);
         let inside = at.map(|v| v.clamp(0.5, self.side as f64 - 0.5));
         let k = inside[1] as usize * self.side + inside[0] as usize;
-        let beyond = (at[0] - inside[0]).hypot(at[1] - inside[1]);
+        let beyond = (at[0] - inside[0]).abs().max((at[1] - inside[1]).abs());
         (self.from_overlap[k] - 1.0).max(beyond) * self.cell <= reach
     }
 

@@ -3,6 +3,8 @@
 //! All is in the frame of the patch: its corner is the origin, its sides are x and y. Who lays patches brings what is there into this frame and
 //! takes the new points out of it.
 
+use std::collections::BTreeMap;
+
 use arabesque_core::{Bounds, Result, Stream, Vector};
 use arabesque_surface::{OrientedPoints, clusters};
 use rayon::prelude::*;
@@ -10,6 +12,7 @@ use rayon::prelude::*;
 use crate::{
     patch::pairing::{Pair, Pairing},
     patch::spline::{Spline, carried, determinant},
+    patch::warp::Warp,
     patch::{
         blend::{Around, Site},
         notes::Notes,
@@ -232,25 +235,8 @@ impl Site<'_> {
             let Some(spline) = Spline::new(&self.with_anchors(&pairs), stiffness, self.budget)? else {
                 return Ok(None);
             };
-            self.budget.spend(spline.work() * source.len() as u64)?;
-            let bend = |s: &Sample| {
-                let (share, slope) = self.mask.bend(s.at);
-                if share <= 0.0 && s.piece == 0 {
-                    return (*s, true);
-                }
-                let (at, columns) = faded(s.at, spline.apply(s.at), share, slope);
-                let volume = determinant(columns);
-                let is_sound = (FOLDED.0..FOLDED.1).contains(&volume) || !self.mask.is_pasted(at);
-                if s.piece > 0 {
-                    // A loose piece is moved, not bent.
-                    let shift = (spline.apply(s.middle()).0 - s.middle()) * self.mask.bend(s.middle()).0;
-                    return (Sample { at: s.at + Vector([shift[0], shift[1], 0.0]), ..*s }, is_sound);
-                }
-                (Sample { at, normal: carried(s.normal, columns), ..*s }, is_sound)
-            };
-            let bent: Vec<(Sample, bool)> = source.par_iter().with_min_len(256).map(bend).collect();
-            if bent.iter().all(|(_, is_sound)| *is_sound) {
-                return Ok(Some(bent.into_iter().map(|(s, _)| s).collect()));
+            if let Some(bent) = self.warped(source, &spline)? {
+                return Ok(Some(bent));
             }
             notes.folds += 1;
             let fewer = ((pairs.len() as f64 * (1.0 - WORST)) as usize).min(pairs.len() - 1);
@@ -260,6 +246,35 @@ impl Site<'_> {
             pairs.truncate(fewer);
         }
         Ok(None)
+    }
+
+    /// The points, bent by a spline; `None` where it folds.
+    fn warped(&self, source: &[Sample], spline: &Spline) -> Result<Option<Vec<Sample>>> {
+        let positions: Vec<_> = source.iter().map(|s| s.at).filter(|at| self.mask.bend(*at).0 > 0.0).collect();
+        let warp = Warp::new(spline, &positions, self.texture.patch_side(), self.budget)?;
+        // Loose pieces are moved, not bent.
+        let mut shifts: BTreeMap<u32, Vector<3>> = BTreeMap::new();
+        for s in source.iter().filter(|s| s.piece > 0) {
+            shifts.entry(s.piece).or_insert_with(|| {
+                let middle = s.middle();
+                let shift = (spline.apply(middle).0 - middle) * self.mask.bend(middle).0;
+                Vector([shift[0], shift[1], 0.0])
+            });
+        }
+        let bend = |s: &Sample| {
+            if s.piece > 0 {
+                let shift = shifts.get(&s.piece).copied().unwrap_or(Vector::ZERO);
+                return Some(Sample { at: s.at + shift, ..*s });
+            }
+            let (share, slope) = self.mask.bend(s.at);
+            if share <= 0.0 {
+                return Some(*s);
+            }
+            let (at, columns) = faded(s.at, warp.apply(s.at), share, slope);
+            let is_sound = (FOLDED.0..FOLDED.1).contains(&determinant(columns)) || !self.mask.is_pasted(at);
+            is_sound.then(|| Sample { at, normal: carried(s.normal, columns), ..*s })
+        };
+        Ok(source.par_iter().with_min_len(256).map(bend).collect())
     }
 
     /// The pairs, with points that stay where they are: in the free part of the patch, and above and below some of the pairs, since all pairs

@@ -7,6 +7,12 @@ use arabesque_core::{Bounds, Vector};
 /// Cells for each point at most; where points lie far apart the cells are larger.
 const CELLS: f64 = 4.0;
 
+/// The largest whole number that is not larger. A cast of what is too large gives the largest number.
+fn floored(v: f64) -> i64 {
+    let whole = v as i64;
+    if (whole as f64) > v { whole.saturating_sub(1) } else { whole }
+}
+
 /// A grid over points. The points of a cell are next to one another, in their order.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
@@ -86,7 +92,7 @@ impl Grid {
         reach: f64,
         mut distance2: impl FnMut(usize) -> Option<f64>,
     ) -> Option<(usize, f64)> {
-        let at: [i64; 3] = std::array::from_fn(|k| ((p[k] - self.origin[k]) / self.cell).floor() as i64);
+        let at: [i64; 3] = std::array::from_fn(|k| floored((p[k] - self.origin[k]) / self.cell));
         let last: [i64; 3] = self.counts.map(|n| n as i64 - 1);
         let aside = |k: usize| at[k].saturating_neg().max(at[k].saturating_sub(last[k])).max(0);
         let across = |k: usize| at[k].max(last[k].saturating_sub(at[k]));

@@ -116,4 +116,8 @@ impl Canvas for HoleCanvas<'_> {
     fn samples(&self) -> Vec<Sample> {
         self.store.all().copied().collect()
     }
+
+    fn into_samples(self: Box<Self>) -> Vec<Sample> {
+        self.store.into_all().collect()
+    }
 }

@@ -192,6 +192,10 @@ impl Canvas for MeshCanvas<'_> {
         self.store.all().copied().collect()
     }
 
+    fn into_samples(self: Box<Self>) -> Vec<Sample> {
+        self.store.into_all().collect()
+    }
+
     fn is_flat(&self) -> bool {
         false
     }

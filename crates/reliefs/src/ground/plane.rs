@@ -54,15 +54,16 @@ impl<'a> PlaneCanvas<'a> {
         budget: &Budget,
     ) -> Result<Self> {
         let cell = texture.lattice.cell;
-        let (patch, border) = (texture.patch_side(), texture.border as f64 * cell);
+        // At the rim of the first and last patches there is nothing to blend with: so much is cut off.
+        let (patch, rim) = (texture.patch_side(), (texture.overlap + 1) as f64 * cell);
         let step = (texture.patch - texture.overlap) as f64 * cell;
         let row = |length: f64| {
             if is_tile {
                 let count = (length / step).ceil().max(1.0);
                 Row { first: 0.0, step: length / count, count: count as usize }
             } else {
-                let count = ((length + 2.0 * border - patch) / step).ceil().max(0.0) + 1.0;
-                Row { first: -border, step, count: count as usize }
+                let count = ((length + 2.0 * rim - patch) / step).ceil().max(0.0) + 1.0;
+                Row { first: -rim, step, count: count as usize }
             }
         };
         if let Some(k) = (0..2).find(|&k| !(size[k].is_finite() && size[k] > 0.0)) {
@@ -267,12 +268,28 @@ impl Canvas for PlaneCanvas<'_> {
     }
 
     fn samples(&self) -> Vec<Sample> {
+        self.cut(self.store.all().copied())
+    }
+
+    fn into_samples(mut self: Box<Self>) -> Vec<Sample> {
+        let all = std::mem::replace(&mut self.store, Store::new(1.0)).into_all();
+        self.cut(all)
+    }
+
+    fn period(&self) -> Option<[f64; 2]> {
+        self.is_tile.then_some(self.size)
+    }
+}
+
+impl PlaneCanvas<'_> {
+    /// What lies within the extent.
+    fn cut(&self, all: impl Iterator<Item = Sample>) -> Vec<Sample> {
         // Loose pieces are not cut at the border.
-        let inside = |s: &&Sample| {
+        let inside = |s: &Sample| {
             let at = if self.is_tile { s.at } else { s.middle() };
             (0..2).all(|k| (0.0..=self.size[k]).contains(&at[k]))
         };
-        let mut samples: Vec<Sample> = self.store.all().filter(inside).copied().collect();
+        let mut samples: Vec<Sample> = all.filter(inside).collect();
         for s in &mut samples {
             // What lies at the far border of a tile lies at the near one.
             for k in 0..2 {
@@ -282,9 +299,5 @@ impl Canvas for PlaneCanvas<'_> {
             }
         }
         samples
-    }
-
-    fn period(&self) -> Option<[f64; 2]> {
-        self.is_tile.then_some(self.size)
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     ground::store::Store,
     params::ReliefParams,
     patch::mask::Mask,
-    patch::{blend::Site, notes::Notes, site::Laid},
+    patch::{blend::Site, notes::Notes, site::Laid, usage::Usage},
     sample::Sample,
     texture::understand::Texture,
 };
@@ -41,6 +41,7 @@ pub(crate) struct PlaneCanvas<'a> {
     /// The order in which patches are laid, and how many are.
     order: Vec<u32>,
     next: usize,
+    usage: Usage,
     seed: u64,
     budget: Budget,
 }
@@ -96,6 +97,7 @@ impl<'a> PlaneCanvas<'a> {
             laid: vec![None; count],
             order: along_diagonals(rows[0].count, count),
             next: 0,
+            usage: Usage::new((texture.field.width, texture.field.height), texture.patch),
             seed,
             budget: budget.clone(),
         })
@@ -216,7 +218,9 @@ impl PlaneCanvas<'_> {
             self.store.within(&shifted, |s| samples.push(Sample { at: s.at + shift - origin, ..*s }));
         }
         self.budget.spend(samples.len() as u64 * 40)?;
-        let site = Site { texture, params: self.params, mask, samples, shunned, budget: &self.budget };
+        let nearby = around.iter().map(|(_, place)| *place).collect();
+        let (usage, budget) = (&self.usage, &self.budget);
+        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
         let laid = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))?;
         Ok(laid.map(|laid| Made { k, bounds, mask: site.mask, laid }))
     }
@@ -244,6 +248,7 @@ impl PlaneCanvas<'_> {
             self.store.insert(Sample { at, ..s });
         }
         self.laid[k] = Some(laid.place);
+        self.usage.add(laid.place);
         laid.notes
     }
 }

@@ -140,12 +140,15 @@ fn step(sample: &Sample, now: &OrientedPoints, surface: &OrientedPoints, spacing
         return (sample.at, sample.normal);
     }
     let to = sample.at + along.unit_or_zero() * length;
-    match surface.project(to, spacing, Some(sample.normal)) {
-        // Near an edge the surface is not where the points say.
-        Some(foot) if (foot.point - to).norm() < OFF * spacing && foot.normal.dot(sample.normal) > ALIKE => {
-            (foot.point, foot.normal)
-        }
-        _ => (sample.at, sample.normal),
+    let onto = |x: Vector<3>| surface.project(x, spacing, Some(sample.normal));
+    let (Some(from), Some(foot)) = (onto(sample.at), onto(to)) else { return (sample.at, sample.normal) };
+    // Near an edge the surface is smoother than the points: they keep off it as far as they were.
+    let step = foot.point - from.point;
+    if (sample.at + step - to).norm() < OFF * spacing && foot.normal.dot(from.normal) > ALIKE {
+        let normal = (sample.normal + foot.normal - from.normal).unit_if_longer(1e-9).unwrap_or(sample.normal);
+        (sample.at + step, normal)
+    } else {
+        (sample.at, sample.normal)
     }
 }
 

@@ -36,6 +36,12 @@ const FLOOR: f64 = 2e-3;
 const FLAT: f64 = 0.06;
 /// Columns of nodes that are compared at most.
 const ENOUGH: usize = 400;
+/// Places that are looked at for each that is tried: many of them lie side by side.
+const LEAST: usize = 16;
+/// Places, apart from one another, that are chosen from at most.
+const DISTINCT: usize = 32;
+/// What was not seen counts so much, so that chance has a say.
+const SEEN: f64 = 0.05;
 /// How far pairs listen to one another, as a share of the patch.
 const LISTENING: f64 = 0.15;
 
@@ -133,7 +139,7 @@ impl Site<'_> {
         Ok(Around { points, samples, targets, overlapped })
     }
 
-    /// Places to try, in the order in which they are tried: one of the best at random, then the others from the best on.
+    /// Places to try, in the order in which they are tried: of the best the one that was seen least, then the others from the best on.
     fn candidates(&self, overlap: &Overlap, random: &mut Stream) -> Result<Vec<Candidate>> {
         let texture = self.texture;
         let apart = self.params.apart * texture.patch as f64;
@@ -154,24 +160,34 @@ impl Site<'_> {
             texture.searcher.as_ref(),
             overlap,
             &places,
-            (tolerance, floor, 4 * self.params.tries),
+            (tolerance, floor, LEAST * self.params.tries),
             (self.params.search, self.budget),
         )?;
-        let most = (1.0 + tolerance) * found[0].difference.max(floor);
-        let within = found.partition_point(|c| c.difference <= most).max(1);
-        let mut order = vec![found[random.below(within)]];
         // Beside those that were tried others are hardly better.
         let near = (0.1 * texture.patch as f64).max(1.5);
-        for candidate in found {
+        let mut distinct: Vec<Candidate> = Vec::new();
+        for candidate in &found {
             let is_near = |c: &Candidate| {
                 let d = [0, 1].map(|k| f64::from(c.place[k]) - f64::from(candidate.place[k]));
                 d[0] * d[0] + d[1] * d[1] < near * near
             };
-            if order.len() < self.params.tries && !order.iter().any(is_near) {
-                order.push(candidate);
+            if distinct.len() < DISTINCT && !distinct.iter().any(is_near) {
+                distinct.push(*candidate);
             }
         }
-        Ok(order)
+        // Of those that are good enough the one of which least was seen so far.
+        let most = (1.0 + tolerance) * found[0].difference.max(floor);
+        let within = distinct.partition_point(|c| c.difference <= most).max(1);
+        let seen = |c: &Candidate| self.usage.of(c.place, &self.nearby) + SEEN;
+        let mut least = (f64::INFINITY, 0);
+        for (k, candidate) in distinct[..within].iter().enumerate() {
+            let rank = seen(candidate) * random.range(0.5, 1.5);
+            least = if rank < least.0 { (rank, k) } else { least };
+        }
+        let first = distinct.remove(least.1);
+        distinct.insert(0, first);
+        distinct.truncate(self.params.tries);
+        Ok(distinct)
     }
 
     /// The points of the texture for a patch, and as far around as they may move.

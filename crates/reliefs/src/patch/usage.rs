@@ -26,7 +26,7 @@ impl Usage {
 
     /// The parts that a patch covers.
     fn covered(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = usize> + '_ {
-        let [x, y] = [x, y].map(|v| v as usize / self.part);
+        let [x, y] = [x, y].map(|v| v as usize / self.part.max(1));
         (0..self.parts * self.parts).map(move |k| (y + k / self.parts) * self.width + x + k % self.parts)
     }
 
@@ -45,7 +45,7 @@ impl Usage {
     /// that lie `nearby`.
     pub(crate) fn of(&self, place: [u32; 2], nearby: &[[u32; 2]]) -> f64 {
         let own: f64 = self.covered(place).filter_map(|k| self.counts.get(k)).sum();
-        let own = own / (self.parts * self.parts * self.laid.max(1)) as f64;
+        let own = own / (self.parts * self.parts * self.laid).max(1) as f64;
         let side = (self.parts * self.part) as f64;
         let shared = |other: &[u32; 2]| {
             let along = |k: usize| (1.0 - f64::from(place[k].abs_diff(other[k])) / side).max(0.0);

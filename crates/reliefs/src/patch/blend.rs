@@ -93,8 +93,7 @@ impl Site<'_> {
         let hit = around.points.hit(at, normal, reach);
         let how = if hit.is_some() { 1 } else { 2 };
         let Some(foot) = hit.or_else(|| around.points.project(at, reach, Some(normal))) else { return (sample, 3) };
-        let smooth = if how == 1 { own.hit(at, normal, reach) } else { own.project(at, reach, Some(normal)) };
-        let (mut from, mut facing) = smooth.map_or((at, normal), |foot| (foot.point, foot.normal));
+        let (mut from, mut facing) = own.beside(at, normal).unwrap_or((at, normal));
         // Where the surfaces are far apart, they are not alike: the point goes all the way.
         let alike = (1.0 - (foot.point - from).norm() / (ALIKE * self.texture.spacing)).max(0.0);
         (from, facing) = (at + (from - at) * alike, normal + (facing - normal) * alike);

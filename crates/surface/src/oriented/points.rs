@@ -124,6 +124,14 @@ impl OrientedPoints {
         Some((a * (1.0 / sum), n.unit_if_longer(1e-9 * sum)?))
     }
 
+    /// Where the surface that faces as `way` does is met from a place beside it, along `way`, with its normal: one step of [`Self::hit`], for places
+    /// that lie on the surface but for what its smoothness leaves out.
+    pub fn beside(&self, x: Vector<3>, way: Vector<3>) -> Option<(Vector<3>, Vector<3>)> {
+        let (a, n) = self.mean(x, way)?;
+        let slope = n.dot(way);
+        (slope > 0.1).then(|| (x + way * (n.dot(a - x) / slope), n))
+    }
+
     /// Projects `x` onto the surface, if it is no farther than `reach`: along the mean normal, again and again until it stays. Only points that
     /// face as `side` does count, where that is given.
     pub fn project(&self, x: Vector<3>, reach: f64, side: Option<Vector<3>>) -> Option<Foot> {
@@ -243,6 +251,8 @@ mod tests {
             let foot = sphere.project(x, 1.0, None).unwrap();
             assert!((foot.point.norm() - 1.0).abs() < 0.01, "{foot:?}");
             assert!(foot.normal.dot(x.unit()) > 0.97, "{foot:?}");
+            let (beside, normal) = sphere.beside(x.unit() * 1.02, x.unit()).unwrap();
+            assert!((beside - x.unit()).norm() < 0.01 && normal.dot(x.unit()) > 0.99, "{beside:?}");
             let hit = sphere.hit(x, x.unit(), 0.5).unwrap();
             assert!((hit.point - x.unit()).norm() < 0.01, "{hit:?}");
         }

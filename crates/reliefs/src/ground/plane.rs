@@ -306,3 +306,24 @@ impl PlaneCanvas<'_> {
         samples
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_patch_comes_after_those_that_it_sees_in_rows() {
+        let (across, count) = (5, 35);
+        let order = along_diagonals(across, count);
+        let when: Vec<usize> = (0..count as u32).map(|k| order.iter().position(|&o| o == k).unwrap()).collect();
+        for k in 0..count {
+            let (i, j) = (k % across, k / across);
+            let before = [
+                (i > 0).then(|| k - 1),
+                (j > 0).then(|| k - across),
+                (j > 0 && i + 1 < across).then(|| k + 1 - across),
+            ];
+            assert!(before.into_iter().flatten().all(|other| when[other] < when[k]), "{k}");
+        }
+    }
+}

@@ -230,6 +230,29 @@ mod tests {
     }
 
     #[test]
+    fn a_patch_is_bent_beside_the_overlap_alone_and_nowhere_by_a_jump() {
+        let mask = Mask::new(1.0, (20, 3, 5), |x, _| x < 3.0);
+        let of = |x: f64| mask.bend(Vector([x, 10.0, 0.0]));
+        assert_eq!((of(-0.5).0, of(1.0).0, of(10.5).0), (1.0, 1.0, 0.0));
+        for k in 0..1000 {
+            let x = 0.01 * f64::from(k);
+            let drop = of(x).0 - of(x + 0.01).0;
+            assert!((-1e-12..0.004).contains(&drop), "{x}: {drop}");
+        }
+    }
+
+    #[test]
+    fn only_points_that_can_be_moved_in_may_be_pasted() {
+        let mask = Mask::new(1.0, (20, 3, 5), |x, _| x < 3.0);
+        let may = |x: f64| mask.may_be_pasted(Vector([x, 10.0, 0.0]), 2.0);
+        assert!(may(5.0) && may(0.5) && may(-1.0) && !may(-3.6), "the patch begins at 0");
+        assert!(may(24.5) && may(25.5) && !may(27.5), "nothing moves at the far border");
+        assert!(
+            mask.is_near_overlap(Vector([4.0, 10.0, 0.0]), 2.0) && !mask.is_near_overlap(Vector([8.0, 10.0, 0.0]), 2.0)
+        );
+    }
+
+    #[test]
     fn what_is_far_from_a_hole_is_kept() {
         let mask = Mask::new(1.0, (12, 2, 2), |x, y| !((5.0..7.0).contains(&x) && (5.0..7.0).contains(&y)));
         assert!(mask.is_pasted(Vector([6.0, 6.0, 0.0])) && mask.is_overlap(Vector([4.5, 6.0, 0.0])));

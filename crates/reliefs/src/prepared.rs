@@ -208,8 +208,9 @@ impl Prepared {
         let budget = if stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
         let texture = &*self.texture;
         let scale = (texture.spacing * scale, texture.radius * scale);
-        // Without the time for it the points stay where they are.
-        let merged = match relax(&mut samples, scale, self.params.relax, period, &budget) {
+        // Who asks to stop does not want to wait for points to be evened out; without the time for it they stay where they are.
+        let rounds = if stopped == StopReason::Stopped { 0 } else { self.params.relax };
+        let merged = match relax(&mut samples, scale, rounds, period, &budget) {
             Ok(merged) => merged,
             Err(Error::Limit { .. } | Error::Stopped { .. }) => 0,
             Err(error) => return Err(error),

@@ -57,6 +57,7 @@
 #![allow(clippy::needless_range_loop, reason = "coordinates are numbered alike in many arrays at once")]
 
 mod brush;
+mod each;
 mod energy;
 mod exemplar;
 mod layout;

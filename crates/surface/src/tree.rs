@@ -1,9 +1,11 @@
 //! A tree of boxes over items that have a box each.
 
-use arabesque_core::{Bounds, Vector};
+use arabesque_core::{Bounds, Budget, Meter, Result, Vector};
 
 /// Most items of a leaf.
 const LEAF: usize = 4;
+/// Work for each item of a node that is halved.
+const ITEM: u64 = 12;
 
 /// A balanced binary tree of axis-aligned boxes: the items are halved at the median of their centres along the longest side.
 #[derive(Clone, Debug)]
@@ -27,20 +29,29 @@ pub(crate) struct Node {
 
 impl Tree {
     /// A tree over the items with these boxes, at least one.
-    pub(crate) fn new(boxes: &[Bounds<3>]) -> Self {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(boxes: &[Bounds<3>], budget: &Budget) -> Result<Self> {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
-        Self::build(&mut nodes, boxes, &mut order, 0);
-        Self { nodes, order }
+        Self::build(&mut nodes, boxes, (&mut order, 0), &mut budget.meter())?;
+        Ok(Self { nodes, order })
     }
 
     /// Appends the subtree of the items in `order`, which starts at `start` of the whole order. Halving keeps the depth logarithmic.
-    fn build(nodes: &mut Vec<Node>, boxes: &[Bounds<3>], order: &mut [u32], start: usize) {
+    fn build(
+        nodes: &mut Vec<Node>,
+        boxes: &[Bounds<3>],
+        (order, start): (&mut [u32], usize),
+        meter: &mut Meter<'_>,
+    ) -> Result<()> {
+        meter.spend(order.len() as u64 * ITEM)?;
         let bounds = order.iter().fold(Bounds::EMPTY, |all, &i| all.union(&boxes[i as usize]));
         let at = nodes.len();
         nodes.push(Node { bounds, start: start as u32, count: order.len() as u32, second: 0 });
         if order.len() <= LEAF {
-            return;
+            return Ok(());
         }
         let centres = Bounds::around(order.iter().map(|&i| boxes[i as usize].centre()));
         let size = centres.size();
@@ -50,10 +61,10 @@ impl Tree {
         // Equal centres are told apart by number, so that the tree depends on the boxes alone.
         order.select_nth_unstable_by(half, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
         let (low, high) = order.split_at_mut(half);
-        Self::build(nodes, boxes, low, start);
+        Self::build(nodes, boxes, (low, start), meter)?;
         nodes[at].count = 0;
         nodes[at].second = nodes.len() as u32;
-        Self::build(nodes, boxes, high, start + half);
+        Self::build(nodes, boxes, (high, start + half), meter)
     }
 
     /// The items of a leaf.
@@ -168,7 +179,7 @@ mod tests {
         let mut point = || Vector(std::array::from_fn(|_| random.range(0.0, 1.0)));
         let points: Vec<_> = (0..300).map(|_| point()).collect();
         let boxes: Vec<_> = points.iter().map(|&p| Bounds::new(p, p)).collect();
-        let tree = Tree::new(&boxes);
+        let tree = Tree::new(&boxes, &Budget::default()).unwrap();
         for _ in 0..100 {
             let p = point();
             let d2 = |i: u32| (points[i as usize] - p).norm2();
@@ -192,7 +203,7 @@ mod tests {
 
     #[test]
     fn items_in_one_place_make_a_tree_of_small_depth() {
-        let tree = Tree::new(&vec![Bounds::new(Vector::ZERO, Vector::ZERO); 1000]);
+        let tree = Tree::new(&vec![Bounds::new(Vector::ZERO, Vector::ZERO); 1000], &Budget::default()).unwrap();
         assert!(tree.nodes.len() < 1000);
         assert_eq!(tree.nearest(Vector([1.0, 0.0, 0.0]), f64::INFINITY, |_| Some(1.0)).0, Some((0, 1.0)));
     }

@@ -17,6 +17,7 @@ use crate::{
     recipe::{Job, Relief, Size},
     solid::read::indexed_mesh,
     structure::directions,
+    surface::SURFACE,
 };
 use heights::Grid;
 use made::{ReliefMade, ReliefMesh};
@@ -122,7 +123,7 @@ impl Ready for Texture {
         // The surface of the best so far has an account of its own, as its file has.
         let budget = context.budget();
         let budget = if outcome.stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
-        let mut found = reconstruct(&outcome.points, &params, None, &budget, &mut Unobserved)?;
+        let mut found = reconstruct(&outcome.points, &params, None, &budget.stage(SURFACE), &mut Unobserved)?;
         let more = std::mem::take(&mut found.warnings);
         found.warnings = outcome.warnings.iter().cloned().chain(more).collect();
         if found.stopped == StopReason::Finished {

@@ -18,7 +18,7 @@ use crate::{
     method::{Preparation, Ready, RunContext, Show},
     plane::in_exemplar,
     recipe::{Job, Structures},
-    surface::SurfaceMade,
+    surface::{SURFACE, SurfaceMade},
 };
 use made::{PlanePoints, SpacePoints};
 pub(crate) use place::{directions, filled, lines, surface};
@@ -160,7 +160,7 @@ fn surfaced(
 ) -> Result<Reconstruction> {
     // The surface of the best so far has an account of its own, as its file has.
     let budget = if stopped == StopReason::Finished { context.budget().clone() } else { context.budget().fresh() };
-    let mut found = reconstruct(points, params, None, &budget, &mut Unobserved)?;
+    let mut found = reconstruct(points, params, None, &budget.stage(SURFACE), &mut Unobserved)?;
     let own: Vec<Warning> = std::mem::take(&mut found.warnings);
     found.warnings = warnings.into_iter().chain(own).collect();
     if found.stopped == StopReason::Finished {

@@ -16,6 +16,9 @@ use crate::{
 
 pub(crate) use made::SurfaceMade;
 
+/// What is being done where points become a surface.
+pub(crate) const SURFACE: &str = "making the surface";
+
 /// Points, read.
 #[derive(Debug)]
 pub(crate) struct Points {
@@ -63,8 +66,9 @@ impl Ready for Points {
         let origin = context.origin();
         let make = |mesh: TriangleMesh| SurfaceMade::unfinished(mesh);
         let mut show = Show { watch, origin: &origin, make };
-        let mut found = reconstruct(&self.points, &self.params, trim.as_ref(), context.budget(), &mut show)
-            .map_err(|error| crate::plane::in_exemplar(error, context.exemplar_name()))?;
+        let mut found =
+            reconstruct(&self.points, &self.params, trim.as_ref(), &context.budget().stage(SURFACE), &mut show)
+                .map_err(|error| crate::plane::in_exemplar(error, context.exemplar_name()))?;
         found.warnings.splice(0..0, context.warnings);
         Ok(Artwork::new(origin, SurfaceMade::new(found)))
     }

@@ -28,9 +28,6 @@ const SINGLE: f64 = 0.5;
 /// Bytes of a sample besides its neighbours.
 const SAMPLE: usize = 256;
 
-/// Neighbours for which there is room at least when a list grows.
-const BLOCK: usize = 1 << 14;
-
 /// Neighbours that are compared in one step.
 const LANES: usize = 8;
 
@@ -175,9 +172,17 @@ impl<const D: usize> Level<D> {
 
     fn flatten(&mut self, plane: &Domain<D>, slack: f64, budget: &Budget) -> Result<()> {
         let mut meter = budget.meter();
-        let mut held = Vec::new();
         let reach = self.radius + slack;
         let index = GridIndex::new(&self.position, reach, plane);
+        // Counted first, and then held exactly: of large exemplars these lists are most of the memory.
+        let mut count = 0_usize;
+        for &position in &self.position {
+            meter.spend(3 * index.within(position, reach, |_, _| count += 1))?;
+        }
+        let size = size_of::<Near<D>>() + D * size_of::<f32>();
+        let mut held = vec![budget.hold("neighbourhoods of the exemplar", count.saturating_mul(size))?];
+        self.near.reserve_exact(count);
+        self.across.iter_mut().for_each(|across| across.reserve_exact(count + LANES));
         for i in 0..self.position.len() {
             let mut found = Vec::new();
             let looked = index.within(self.position[i], reach, |j, offset| {
@@ -188,14 +193,6 @@ impl<const D: usize> Level<D> {
                 }
             });
             meter.spend(3 * looked + 40 * found.len() as u64)?;
-            if self.near.len() + found.len() > self.near.capacity() {
-                // Grown by an eighth, not to twice as much: of large exemplars these lists are most of the memory.
-                let more = found.len() + self.near.len() / 8 + BLOCK;
-                let size = size_of::<Near<D>>() + D * size_of::<f32>();
-                held.push(budget.hold("neighbourhoods of the exemplar", more * size)?);
-                self.near.reserve_exact(more);
-                self.across.iter_mut().for_each(|across| across.reserve_exact(more + LANES));
-            }
             // From left to right: then most of a run is left out by its first coordinate.
             found.sort_by(|(key, a), (other, b)| {
                 key.cmp(other).then(a.offset[0].total_cmp(&b.offset[0])).then(a.sample.cmp(&b.sample))

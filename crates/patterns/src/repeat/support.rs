@@ -23,7 +23,8 @@ const HOPELESS: usize = 8;
 /// Places along the lines of an exemplar that are compared.
 const PLACES: f64 = 3000.0;
 
-/// Work for each entry of an index that is looked at.
+/// Work for each mark, and for each entry of an index that is looked at.
+const MARK: u64 = 3;
 const LOOK: u64 = 8;
 
 /// Whether a translation takes nearly every mark to one of its kind, within `tolerance`. It tells nothing when fewer
@@ -46,6 +47,7 @@ pub(crate) fn is_supported(
     let stride = (1..).map(|k| (count * 21 / 34).max(1) + k).find(|s| coprime(*s, count)).unwrap_or(1);
     for k in 0..count {
         let mark = &marks.all[k * stride % count];
+        meter.spend(MARK)?;
         if mark.is_context {
             continue;
         }

@@ -179,10 +179,9 @@ impl Site<'_> {
         let most = (1.0 + tolerance) * found[0].difference.max(floor);
         let within = distinct.partition_point(|c| c.difference <= most).max(1);
         let seen = |c: &Candidate| self.usage.of(c.place, &self.nearby) + SEEN;
-        let worse = |c: &Candidate| (c.difference.max(floor) / found[0].difference.max(floor)).powi(3);
         let mut least = (f64::INFINITY, 0);
         for (k, candidate) in distinct[..within].iter().enumerate() {
-            let rank = seen(candidate) * worse(candidate) * random.range(0.5, 1.5);
+            let rank = seen(candidate) * random.range(0.5, 1.5);
             least = if rank < least.0 { (rank, k) } else { least };
         }
         let first = distinct.remove(least.1);

@@ -18,6 +18,7 @@ use super::{
     links::{Lists, Reach, SiteIndex, neighbours, windows},
 };
 use crate::{
+    each::each,
     exemplar::{
         channels::{LANES, Weights, inner},
         field::Field,
@@ -27,6 +28,9 @@ use crate::{
     output::state::Output,
     territory::site::Site,
 };
+
+/// Work for each pair of points of an energy.
+const PAIR: u64 = 15;
 
 /// The tables of one size of the window.
 #[derive(Debug)]
@@ -212,12 +216,10 @@ impl<const D: usize> Level<'_, D> {
         matches: &Matches<D>,
         budget: &Budget,
     ) -> Result<Vec<Pull<D>>> {
-        budget.spend(near.windows.total() as u64 * 60)?;
-        Ok((0..output.places.len())
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|i| self.pull(output.places[i], &output.weights[i], near.windows.of(i), matches))
-            .collect())
+        let cost = |i: usize| near.windows.of(i).len() as u64 * 60;
+        each(output.places.len(), budget, cost, |i| {
+            self.pull(output.places[i], &output.weights[i], near.windows.of(i), matches)
+        })
     }
 
     /// `sum_j a_i.a_j h(x_i - x_j) (P_i + P_j)` over all points `j` with higher numbers, and half of that for `i` itself.
@@ -243,13 +245,18 @@ impl<const D: usize> Level<'_, D> {
     }
 
     /// `T` from the pulls on all points.
-    pub(crate) fn energy(&self, output: &Output<D>, near: &Near, pulls: &[Pull<D>], matches: &Matches<D>) -> f64 {
-        let each: Vec<f64> = (0..output.places.len())
-            .into_par_iter()
-            .with_min_len(128)
-            .map(|i| self.crowd(output, near, pulls, i) - 2.0 * pulls[i].wanted)
-            .collect();
-        each.iter().sum::<f64>() + matches.back
+    pub(crate) fn energy(
+        &self,
+        output: &Output<D>,
+        near: &Near,
+        pulls: &[Pull<D>],
+        matches: &Matches<D>,
+        budget: &Budget,
+    ) -> Result<f64> {
+        let cost = |i: usize| near.pairs.of(i).len() as u64 * PAIR;
+        let of_points =
+            each(output.places.len(), budget, cost, |i| self.crowd(output, near, pulls, i) - 2.0 * pulls[i].wanted)?;
+        Ok(of_points.iter().sum::<f64>() + matches.back)
     }
 }
 

@@ -59,7 +59,7 @@ impl<const D: usize> Field<D> {
             strides[k] = strides[k - 1] * counts[k - 1];
         }
         let nodes: usize = counts.iter().product();
-        budget.spend((nodes * 20 + places.len() * 4_000) as u64)?;
+        budget.spend(nodes as u64 * 20)?;
         let origin = std::array::from_fn(|k| (bounds.min[k] - end[k]) as f32);
         let mut field = Self {
             origin,
@@ -70,12 +70,18 @@ impl<const D: usize> Field<D> {
             blocks,
             nodes: vec![0.0; nodes * (1 + D) * blocks * BLOCK],
         };
-        field.fill(places, weights, kernel, &end);
+        field.fill((places, weights), kernel, &end, budget)?;
         Ok(field)
     }
 
     /// Adds the Gaussians, slab by slab along the last coordinate, each slab by one thread.
-    fn fill(&mut self, places: &[Vector<D>], weights: &[Weights], kernel: &Kernel<D>, end: &[f64; D]) {
+    fn fill(
+        &mut self,
+        (places, weights): (&[Vector<D>], &[Weights]),
+        kernel: &Kernel<D>,
+        end: &[f64; D],
+        budget: &Budget,
+    ) -> Result<()> {
         let (last, sharp) = (D - 1, kernel.sharpness());
         let record = (1 + D) * self.blocks * BLOCK;
         let slab = self.strides[last] * record;
@@ -87,7 +93,9 @@ impl<const D: usize> Field<D> {
         };
         let mut order: Vec<usize> = (0..places.len()).collect();
         order.sort_by(|&a, &b| places[a][last].total_cmp(&places[b][last]).then(a.cmp(&b)));
-        self.nodes.par_chunks_mut(slab).enumerate().for_each(|(z, nodes)| {
+        let channels = (self.blocks * BLOCK) as u64;
+        self.nodes.par_chunks_mut(slab).enumerate().try_for_each(|(z, nodes)| {
+            let mut meter = budget.meter();
             let height = f64::from(origin[last]) + z as f64 * f64::from(step);
             let from = order.partition_point(|&i| places[i][last] < height - end[last]);
             for &i in order[from..].iter().take_while(|&&i| places[i][last] <= height + end[last]) {
@@ -96,6 +104,7 @@ impl<const D: usize> Field<D> {
                 let tall = (-high * high * sharp).exp();
                 let spans: [(usize, usize); D] = std::array::from_fn(|k| if k == last { (0, 0) } else { span(p, k) });
                 let rows = if D == 3 { spans[1].0..=spans[1].1 } else { 0..=0 };
+                meter.spend(((rows.clone().count() * (spans[0].1 + 1 - spans[0].0)) as u64) * (10 + 2 * channels))?;
                 for y in rows {
                     let wide = f64::from(origin[1]) + y as f64 * f64::from(step) - p[1];
                     let side = if D == 3 { (-wide * wide * sharp).exp() } else { 1.0 };
@@ -125,7 +134,8 @@ impl<const D: usize> Field<D> {
                     }
                 }
             }
-        });
+            Ok(())
+        })
     }
 
     /// Number of the lowest corner of the cell at `y`, and how far into the cell it is; `None` where the field is zero.

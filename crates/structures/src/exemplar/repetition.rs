@@ -1,9 +1,9 @@
 //! How far the exemplar is from where it looks like itself again.
 
 use arabesque_core::{Budget, Result, Vector};
-use rayon::prelude::*;
 
 use super::{field::Field, pattern::Pattern};
+use crate::each::each;
 
 /// Points that are looked at.
 const POINTS: usize = 500;
@@ -149,10 +149,9 @@ pub(crate) fn repetition<const D: usize>(
     let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
     let lags = Lags::new(pattern, step);
     let overlay = Overlay::new(pattern, field, (RIM * step).min(0.1 * shortest));
-    budget.spend((lags.count() * (pattern.points.len() / overlay.stride) * 40) as u64)?;
     let shift = |index: usize| Vector(lags.at(index).map(|n| n as f64 * step));
-    let alike: Vec<f64> =
-        (0..lags.count() / 2 + 1).into_par_iter().map(|index| overlay.likeness(shift(index))).collect();
+    let cost = (pattern.points.len() / overlay.stride * 80) as u64;
+    let alike = each(lags.count() / 2 + 1, budget, |_| cost, |index| overlay.likeness(shift(index)))?;
     let far = |index: &usize| shift(*index).norm() > 2.5 * pattern.spacing;
     let mut peaks: Vec<usize> =
         (0..lags.count() / 2).filter(far).filter(|&index| lags.is_peak(index, &alike)).collect();

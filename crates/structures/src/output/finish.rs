@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::state::Output;
 use crate::{
+    each::each,
     energy::{
         level::{Level, Matches, Near},
         links::neighbours,
@@ -12,6 +13,9 @@ use crate::{
     exemplar::{bodies::LOOSE, pattern::Pattern},
     request::PlacedElement,
 };
+
+/// Work for each site that a point is seen by.
+const SEEN: u64 = 60;
 
 /// Points of one part are no farther apart than this, in spacings.
 const PART: f64 = 2.2;
@@ -96,8 +100,8 @@ pub(crate) fn groups<const D: usize>(
     let Some(own) = &pattern.points.groups else { return Ok(None) };
     let parts = parts_of_exemplar(pattern, own);
     let n = output.places.len();
-    let seen: Vec<Vec<(u32, f64, usize)>> =
-        (0..n).into_par_iter().with_min_len(64).map(|i| seen(level, output, near, matches, i)).collect();
+    let cost = |i: usize| near.windows.of(i).len() as u64 * SEEN;
+    let seen = each(n, budget, cost, |i| seen(level, output, near, matches, i))?;
     let mut sets = DisjointSets::new(n);
     let scale = |i: usize| {
         let sites = near.windows.of(i);

@@ -4,9 +4,10 @@
 //! what the matches want less what the others give already, at length 1. Points follow one another, so that each sees what became of
 //! those before it (Gauss-Seidel).
 
-use arabesque_core::Vector;
+use arabesque_core::{Budget, Result, Vector};
 
 use crate::{
+    each::each,
     energy::level::{Level, Matches, Near, Pull},
     exemplar::{
         bodies::LOOSE,
@@ -18,30 +19,32 @@ use crate::{
 /// Share of the direction of before in the new one: keeps noise in the small differences of large sums down.
 const INERTIA: f32 = 0.5;
 
+/// Work for each site that wants something of a point, and for each point beside it.
+const WANTED: u64 = 60;
+const REST: u64 = 20;
+
 /// Sets the attributes of all points of no rigid element that do not stay as they are.
 pub(crate) fn attributes<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
     near: &Near,
     matches: &Matches<D>,
-    pulls: &mut [Pull<D>],
-) {
-    use rayon::prelude::*;
+    (pulls, budget): (&mut [Pull<D>], &Budget),
+) -> Result<()> {
     if level.pattern.channels.normal().is_none() && level.pattern.channels.scalars().next().is_none() {
-        return;
+        return Ok(());
     }
-    let wanted: Vec<Weights> = (0..output.places.len())
-        .into_par_iter()
-        .with_min_len(128)
-        .map(|i| {
-            let stays = output.is_kept(i) || output.body_of[i] != LOOSE;
-            if stays { [0.0; LANES] } else { level.wanted(output.places[i], near.windows.of(i), matches).0 }
-        })
-        .collect();
+    let stays = |i: usize| output.is_kept(i) || output.body_of[i] != LOOSE;
+    let cost = |i: usize| if stays(i) { 1 } else { near.windows.of(i).len() as u64 * WANTED };
+    let wanted: Vec<Weights> = each(output.places.len(), budget, cost, |i| {
+        if stays(i) { [0.0; LANES] } else { level.wanted(output.places[i], near.windows.of(i), matches).0 }
+    })?;
+    let mut meter = budget.meter();
     for i in output.kept..output.places.len() {
         if output.body_of[i] != LOOSE {
             continue;
         }
+        meter.spend(near.pairs.of(i).len() as u64 * REST)?;
         let rest = rest(level, output, near, pulls, i, &wanted[i]);
         let old = output.weights[i];
         let mut new = old;
@@ -67,6 +70,7 @@ pub(crate) fn attributes<const D: usize>(
             pulls[i].wanted = (0..LANES).map(|c| f64::from(new[c] * wanted[i][c])).sum();
         }
     }
+    Ok(())
 }
 
 /// What the matches want of point `i` beyond what all other points give.

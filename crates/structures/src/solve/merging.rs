@@ -33,8 +33,8 @@ pub(crate) fn merge<const D: usize>(
     (pulls, before): (&mut Vec<Pull<D>>, f64),
     budget: &Budget,
 ) -> Result<Moved> {
-    budget.spend(near.pairs.total() as u64 * 100)?;
-    let mut moves = direction(output, near, &System::new(level, output, near, pulls));
+    let system = System::new(level, output, near, pulls, budget)?;
+    let mut moves = direction(output, near, &system, budget)?;
     for (i, v) in moves.iter_mut().enumerate() {
         let most = FARTHEST * level.tables.kernel.sigma * pulls[i].scale;
         let length = v.norm();
@@ -46,7 +46,7 @@ pub(crate) fn merge<const D: usize>(
     for _ in 0..HALVINGS {
         let moved = moved(level.pattern, output, &moves, step);
         let next = level.pulls(&moved, near, matches, budget)?;
-        let energy = level.energy(&moved, near, &next, matches);
+        let energy = level.energy(&moved, near, &next, matches, budget)?;
         if energy < before {
             let distance = moves.iter().map(|v| v.norm()).sum::<f64>() * step / moves.len().max(1) as f64;
             *output = moved;

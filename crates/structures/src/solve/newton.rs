@@ -3,7 +3,7 @@
 //! `T` is a sum of squares of fields, so the product of their slopes stands in for its second derivatives (Gauss-Newton); points of
 //! one rigid element move as one. The equations are solved roughly, by conjugate gradients.
 
-use arabesque_core::{Matrix, Vector};
+use arabesque_core::{Budget, Matrix, Result, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -17,6 +17,9 @@ use crate::{
 
 /// Steps of conjugate gradients.
 const STEPS: usize = 8;
+/// Work for each pair of points: for its entry, and in each step.
+const PAIR: u64 = 60;
+const PRODUCT: u64 = 5;
 /// Rows that one task makes.
 const BLOCK: usize = 256;
 /// Share of its diagonal that is added to the matrix: the energy hardly tells how points lie along a line or a surface.
@@ -36,7 +39,16 @@ pub(crate) struct System<const D: usize> {
 
 impl<const D: usize> System<D> {
     /// For the points as they are.
-    pub(crate) fn new(level: &Level<'_, D>, output: &Output<D>, near: &Near, pulls: &[Pull<D>]) -> Self {
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(crate) fn new(
+        level: &Level<'_, D>,
+        output: &Output<D>,
+        near: &Near,
+        pulls: &[Pull<D>],
+        budget: &Budget,
+    ) -> Result<Self> {
         let sigma = level.tables.kernel.sigma;
         let row = |i: usize| {
             let (x, a, here) = (output.places[i], &output.weights[i], &pulls[i]);
@@ -56,21 +68,23 @@ impl<const D: usize> System<D> {
             let slope = slope + here.cover_slope * own - here.wanted_slope * 2.0;
             (if output.is_kept(i) { Vector::ZERO } else { slope }, entries)
         };
-        let blocks: Vec<(Vec<Vector<D>>, Vec<Entry<D>>)> = (0..output.places.len().div_ceil(BLOCK))
+        let blocks: Result<Vec<(Vec<Vector<D>>, Vec<Entry<D>>)>> = (0..output.places.len().div_ceil(BLOCK))
             .into_par_iter()
             .map(|block| {
                 let (mut slopes, mut entries) = (Vec::with_capacity(BLOCK), Vec::new());
-                for i in block * BLOCK..(block * BLOCK + BLOCK).min(output.places.len()) {
+                let range = block * BLOCK..(block * BLOCK + BLOCK).min(output.places.len());
+                budget.spend(range.clone().map(|i| near.pairs.span(i).len() as u64 * PAIR).sum())?;
+                for i in range {
                     let (slope, own) = row(i);
                     slopes.push(slope);
                     entries.extend(own);
                 }
-                (slopes, entries)
+                Ok((slopes, entries))
             })
             .collect();
         let (mut slopes, mut entries) =
             (Vec::with_capacity(output.places.len()), Vec::with_capacity(near.pairs.total()));
-        for (more, rows) in blocks {
+        for (more, rows) in blocks? {
             slopes.extend(more);
             entries.extend(rows);
         }
@@ -80,7 +94,7 @@ impl<const D: usize> System<D> {
                 2.0 * f64::from(inner(&output.weights[i], &output.weights[i])) * pulls[i].cover / (width * width)
             })
             .collect();
-        Self { slopes, diagonal, entries }
+        Ok(Self { slopes, diagonal, entries })
     }
 
     fn product(&self, near: &Near, x: &[Vector<D>]) -> Vec<Vector<D>> {
@@ -105,7 +119,15 @@ impl<const D: usize> System<D> {
 }
 
 /// The direction for the slopes of `system`: `T` falls along it at first.
-pub(crate) fn direction<const D: usize>(output: &Output<D>, near: &Near, system: &System<D>) -> Vec<Vector<D>> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn direction<const D: usize>(
+    output: &Output<D>,
+    near: &Near,
+    system: &System<D>,
+    budget: &Budget,
+) -> Result<Vec<Vector<D>>> {
     let slopes = &system.slopes;
     let precondition = |r: &[Vector<D>]| -> Vec<Vector<D>> {
         let mut z: Vec<_> = r.iter().zip(&system.diagonal).map(|(r, d)| *r * (1.0 / d.max(1e-30))).collect();
@@ -123,6 +145,7 @@ pub(crate) fn direction<const D: usize>(output: &Output<D>, near: &Near, system:
         if rz <= stop || rz <= 0.0 {
             break;
         }
+        budget.spend(near.pairs.total() as u64 * PRODUCT)?;
         let mut product = system.product(near, &p);
         admissible(output, &mut product);
         let curve = dot(&p, &product);
@@ -142,7 +165,7 @@ pub(crate) fn direction<const D: usize>(output: &Output<D>, near: &Near, system:
             p[i] = z[i] + p[i] * beta;
         }
     }
-    x
+    Ok(x)
 }
 
 fn dot<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {

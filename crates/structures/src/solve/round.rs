@@ -53,7 +53,7 @@ pub(crate) fn round<const D: usize>(
     let rematched = (0..level.open).filter(far).collect();
     *matches = matched.matches;
     let mut pulls = level.pulls(output, &near, matches, budget)?;
-    let before = level.energy(output, &near, &pulls, matches);
+    let before = level.energy(output, &near, &pulls, matches, budget)?;
     let start = output.places.clone();
     let mut energy = before;
     for _ in 0..steps {
@@ -63,7 +63,7 @@ pub(crate) fn round<const D: usize>(
             break;
         }
     }
-    attributes(level, output, &near, matches, &mut pulls);
+    attributes(level, output, &near, matches, (&mut pulls, budget))?;
     let moved = start.iter().zip(&output.places).zip(&pulls).filter(|((a, b), p)| (**a - **b).norm() > stirs * p.scale);
     let mut stirred: Vec<_> = moved.map(|((_, b), _)| *b).collect();
     let near = level.near(output, budget)?;

@@ -11,6 +11,7 @@ use arabesque_core::{Budget, GridIndex, Result, Similarity, Vector};
 use rayon::prelude::*;
 
 use crate::{
+    each::each,
     energy::level::{Level, Matches, Near, Pull},
     exemplar::{
         bodies::LOOSE,
@@ -30,6 +31,10 @@ const FULLEST: f64 = 0.04;
 /// What is added is no nearer to a point like it than this, in units of the spacing.
 const APART: f64 = 0.45;
 
+/// Work for each point that is seen by a site, and for each pair of points.
+const SEEN: u64 = 12;
+const PAIR: u64 = 20;
+
 /// Places at which points were added, and at which some were removed.
 pub(crate) struct Changed<const D: usize> {
     pub(crate) added: Vec<Vector<D>>,
@@ -45,9 +50,8 @@ pub(crate) fn control<const D: usize>(
     pulls: &[Pull<D>],
     budget: &Budget,
 ) -> Result<Changed<D>> {
-    let surplus = surplus(level, output, near, matches);
-    let goes = remove(level, output, near, (pulls, &surplus));
-    budget.spend(near.pairs.total() as u64 * 20)?;
+    let surplus = surplus(level, output, near, matches, budget)?;
+    let goes = remove(level, output, near, (pulls, &surplus), budget)?;
     let removed: Vec<_> = output.places.iter().zip(&goes).filter(|(_, goes)| **goes).map(|(p, _)| *p).collect();
     if !removed.is_empty() {
         *output = output.filtered(level.pattern, |i| !goes[i]);
@@ -65,7 +69,13 @@ struct Surplus {
     usual: Vec<f64>,
 }
 
-fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near, matches: &Matches<D>) -> Surplus {
+fn surplus<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    near: &Near,
+    matches: &Matches<D>,
+    budget: &Budget,
+) -> Result<Surplus> {
     let points = near.windows.turned_round(level.sites.len());
     let seen = |q: usize, i: usize| {
         let site = &level.sites[q];
@@ -73,19 +83,21 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
         let known = level.tables.known.at(&std::array::from_fn(|k| (matches.places[q][k] + u[k]) as f32));
         (level.tables.kernel.weight(&u), f64::from(known))
     };
-    let of_sites: Vec<(f64, f64)> = (0..level.open)
-        .into_par_iter()
-        .with_min_len(16)
-        .map(|q| {
+    let of_sites = each(
+        level.open,
+        budget,
+        |q| points.of(q).len() as u64 * SEEN,
+        |q| {
             let sums =
                 points.of(q).iter().map(|&i| seen(q, i as usize)).fold((0.0, 0.0), |s, (w, k)| (s.0 + w * k, s.1 + w));
             (sums.0 - level.tables.back.mass(&matches.places[q].0), sums.1 / level.usual - 1.0)
-        })
-        .collect();
-    let means: Vec<(f64, f64)> = (0..output.places.len())
-        .into_par_iter()
-        .with_min_len(64)
-        .map(|i| {
+        },
+    )?;
+    let means = each(
+        output.places.len(),
+        budget,
+        |i| near.windows.of(i).len() as u64 * SEEN,
+        |i| {
             let (mut matched, mut usual, mut weight) = (0.0, 0.0, 1e-12);
             // What the windows of the other sites hold is not all here.
             for &q in near.windows.of(i).iter().filter(|q| (**q as usize) < level.open) {
@@ -95,10 +107,10 @@ fn surplus<const D: usize>(level: &Level<'_, D>, output: &Output<D>, near: &Near
                 weight += w;
             }
             (matched / weight, usual / weight)
-        })
-        .collect();
+        },
+    )?;
     let (matched, usual) = means.into_iter().unzip();
-    Surplus { matched, usual }
+    Ok(Surplus { matched, usual })
 }
 
 /// Which points go, the most superfluous first, each with the ones before it gone.
@@ -107,7 +119,8 @@ fn remove<const D: usize>(
     output: &Output<D>,
     near: &Near,
     (pulls, surplus): (&[Pull<D>], &Surplus),
-) -> Vec<bool> {
+    budget: &Budget,
+) -> Result<Vec<bool>> {
     let n = output.places.len();
     let pair = |i: usize, j: usize| {
         let r2 = level.domain.offset(output.places[i], output.places[j]).norm2();
@@ -117,14 +130,15 @@ fn remove<const D: usize>(
             * f64::from(inner(&output.weights[i], &output.weights[j]))
     };
     // T without a point, less T with it, per point; elements sum over theirs.
-    let mut change: Vec<f64> = (0..n)
-        .into_par_iter()
-        .with_min_len(128)
-        .map(|i| {
+    let mut change = each(
+        n,
+        budget,
+        |i| near.pairs.of(i).len() as u64 * PAIR,
+        |i| {
             let own = f64::from(inner(&output.weights[i], &output.weights[i])) * pulls[i].cover;
             2.0 * pulls[i].wanted - 2.0 * near.pairs.of(i).iter().map(|&j| pair(i, j as usize)).sum::<f64>() - own
-        })
-        .collect();
+        },
+    )?;
     let members = |i: usize| output.members(i);
     let worth = |change: &[f64], i: usize| {
         let all = members(i);
@@ -172,7 +186,7 @@ fn remove<const D: usize>(
             }
         }
     }
-    removed
+    Ok(removed)
 }
 
 /// Something of the exemplar that could be added.

@@ -64,7 +64,7 @@ fn noisy(check: impl FnOnce(&Level<'_, 2>, &Layout<2>, Output<2>, Matches<2>)) {
 
 fn energy(level: &Level<'_, 2>, output: &Output<2>, near: &Near, matches: &Matches<2>) -> f64 {
     let pulls = level.pulls(output, near, matches, &Budget::default()).unwrap();
-    level.energy(output, near, &pulls, matches)
+    level.energy(output, near, &pulls, matches, &Budget::default()).unwrap()
 }
 
 #[test]
@@ -84,12 +84,12 @@ fn no_step_raises_the_error() {
             let mut pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
             let moved = merge(level, &mut output, &near, &matches, (&mut pulls, after), &budget).unwrap();
             assert!(moved.energy <= after && close(moved.energy, energy(level, &output, &near, &matches)));
-            attributes(level, &mut output, &near, &matches, &mut pulls);
+            attributes(level, &mut output, &near, &matches, (&mut pulls, &budget)).unwrap();
             let directed = energy(level, &output, &near, &matches);
             assert!(directed <= moved.energy + 1e-3 * moved.energy.abs(), "{directed} {}", moved.energy);
             let near = level.near(&output, &budget).unwrap();
             let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
-            let before = level.energy(&output, &near, &pulls, &matches);
+            let before = level.energy(&output, &near, &pulls, &matches, &budget).unwrap();
             control(level, &mut output, &near, &matches, &pulls, &budget).unwrap();
             let near = level.near(&output, &budget).unwrap();
             let controlled = energy(level, &output, &near, &matches);
@@ -130,7 +130,7 @@ fn slopes_are_those_of_finite_differences() {
         let budget = Budget::default();
         let near = level.near(&output, &budget).unwrap();
         let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
-        let slopes = System::new(level, &output, &near, &pulls).slopes;
+        let slopes = System::new(level, &output, &near, &pulls, &budget).unwrap().slopes;
         let size = slopes.iter().map(|s| s.norm()).fold(0.0, f64::max);
         let h = 0.02 * level.pattern.spacing;
         let (mut off, mut count) = (0.0, 0.0);

@@ -48,7 +48,9 @@ impl<const D: usize> Territory<D> for Flat<D> {
         let mut sites = Vec::new();
         let cell: f64 = (0..D).filter(|&k| plan.base[k]).map(|k| size[k] / counts[k] as f64).product();
         let repeats = plan.base.iter().filter(|b| **b).count() as i32;
+        let mut meter = budget.meter();
         for index in 0..lattice.count() {
+            meter.spend(100)?;
             let centre = lattice.centre(index);
             let place = Vector(std::array::from_fn(|k| if plan.base[k] { centre[k] } else { plan.axis[k] }));
             let scale = self.fields.scale.at(place);
@@ -57,7 +59,6 @@ impl<const D: usize> Territory<D> for Flat<D> {
                 sites.push(Site { place, rotation, scale, weight: cell / (plan.step * scale).powi(repeats) });
             }
         }
-        budget.spend(lattice.count() as u64 * 100)?;
         Ok(sites)
     }
 

@@ -1,6 +1,6 @@
 //! Points of a solid that lie inside of another one, or of itself.
 
-use arabesque_core::{Bounds, Budget, Result, Vector};
+use arabesque_core::{Bounds, Budget, Meter, Result, Vector};
 use rayon::prelude::*;
 
 use crate::{dipoles::Dipoles, tree::Tree};
@@ -21,10 +21,10 @@ pub(crate) fn buried(
     sheet: &[usize],
     budget: &Budget,
 ) -> Result<Vec<usize>> {
-    budget.spend(sheet.len() as u64 * 500)?;
+    budget.spend(sheet.len() as u64 * 100)?;
     let boxes: Vec<_> = sheet.iter().map(|&i| Bounds::new(points[i], points[i])).collect();
-    let tree = Tree::new(&boxes);
-    if facing(points, normals, spacing, sheet, &tree) * TOUCHING < sheet.len() {
+    let tree = Tree::new(&boxes, budget)?;
+    if facing((points, normals, spacing), sheet, &tree, budget)? * TOUCHING < sheet.len() {
         return Ok(Vec::new());
     }
     let piece = |k: u32| {
@@ -57,15 +57,25 @@ pub(crate) fn buried(
 }
 
 /// How many of some points spread over the sheet have one close by that faces them or their back.
-fn facing(points: &[Vector<3>], normals: &[Vector<3>], spacing: &[f64], sheet: &[usize], tree: &Tree) -> usize {
-    let is_faced = |&i: &usize| {
+fn facing(
+    (points, normals, spacing): (&[Vector<3>], &[Vector<3>], &[f64]),
+    sheet: &[usize],
+    tree: &Tree,
+    budget: &Budget,
+) -> Result<usize> {
+    let is_faced = |i: usize, meter: &mut Meter<'_>| -> Result<bool> {
         let (mut is_faced, reach) = (false, 1.5 * spacing[i]);
-        tree.meeting(&Bounds::new(points[i], points[i]).grown(reach), |k| {
+        let looked = tree.meeting(&Bounds::new(points[i], points[i]).grown(reach), |k| {
             let j = sheet[k as usize];
             is_faced = (points[j] - points[i]).norm() < reach && normals[j].dot(normals[i]) < -0.5;
             !is_faced
         });
-        is_faced
+        meter.spend(looked * 8)?;
+        Ok(is_faced)
     };
-    sheet.par_iter().filter(|i| is_faced(i)).count()
+    let chunk = |chunk: &[usize]| -> Result<usize> {
+        let mut meter = budget.meter();
+        chunk.iter().try_fold(0, |count, &i| Ok(count + usize::from(is_faced(i, &mut meter)?)))
+    };
+    sheet.par_chunks(256).map(chunk).try_reduce(|| 0, |a, b| Ok(a + b))
 }

@@ -22,8 +22,8 @@ impl Neighbours {
     pub(crate) fn new(points: &[Vector<3>], each: usize, budget: &Budget) -> Result<Self> {
         let each = each.min(points.len().saturating_sub(1)).max(1);
         let boxes: Vec<_> = points.iter().map(|&p| Bounds::new(p, p)).collect();
-        budget.spend(points.len() as u64 * 400)?;
-        let tree = Tree::new(&boxes);
+        budget.spend(points.len() as u64 * 200)?;
+        let tree = Tree::new(&boxes, budget)?;
         let chunk = |(c, chunk): (usize, &[Vector<3>])| -> Result<(Vec<u32>, Vec<f64>)> {
             let (mut all, mut spacing) = (Vec::with_capacity(chunk.len() * each), Vec::with_capacity(chunk.len()));
             let (mut found, mut meter) = (Vec::new(), budget.meter());

@@ -7,6 +7,9 @@ use rayon::prelude::*;
 pub(crate) const SIDE: usize = 8;
 /// Nodes of a block.
 pub(crate) const BLOCK: usize = SIDE * SIDE * SIDE;
+/// Balls whose blocks are listed, and entries that are sorted, before somebody is asked whether to stop; and most parts in which is sorted.
+const CHUNK: usize = 4096;
+const PARTS: usize = 16;
 /// Bits of a key for each coordinate of a block.
 const BITS: u32 = 21;
 
@@ -56,8 +59,14 @@ impl Blocks {
                 move |z: u64| (y.0..=y.1).flat_map(move |y| (x.0..=x.1).map(move |x| (packed([x, y, z]), i as u32)));
             (z.0..=z.1).flat_map(plane).collect::<Vec<_>>()
         };
-        let mut reached: Vec<(u64, u32)> = (0..centres.len()).into_par_iter().flat_map_iter(of_ball).collect();
-        reached.par_sort_unstable();
+        let of_chunk = |c: usize| -> Result<Vec<(u64, u32)>> {
+            budget.check()?;
+            Ok((c * CHUNK..(c * CHUNK + CHUNK).min(centres.len())).flat_map(of_ball).collect())
+        };
+        let chunks: Result<Vec<_>> = (0..centres.len().div_ceil(CHUNK)).into_par_iter().map(of_chunk).collect();
+        let mut reached = Vec::with_capacity(usize::try_from(pairs).unwrap_or(0));
+        chunks?.into_iter().for_each(|chunk| reached.extend(chunk));
+        sort(&mut reached, budget)?;
         let (mut keys, mut starts) = (Vec::new(), Vec::new());
         for (k, &(key, _)) in reached.iter().enumerate() {
             if keys.last() != Some(&key) {
@@ -112,6 +121,18 @@ impl Blocks {
     }
 }
 
+/// Sorts a long list in parts, so that a request to stop is heard between them.
+fn sort<T: Ord + Copy + Send>(list: &mut [T], budget: &Budget) -> Result<()> {
+    for part in list.chunks_mut((list.len() / PARTS).max(CHUNK)) {
+        budget.check()?;
+        part.par_sort_unstable();
+    }
+    budget.check()?;
+    // Runs that are in order are merged.
+    list.par_sort();
+    Ok(())
+}
+
 fn packed([x, y, z]: [u64; 3]) -> u64 {
     x | y << BITS | z << (2 * BITS)
 }
@@ -142,6 +163,16 @@ impl Node {
     pub(crate) const UNKNOWN: Self = Self { value: f32::NAN, gradient: [0.0; 3], beyond: f32::INFINITY };
 }
 
+/// A list of one value; that of a large field takes a while.
+fn filled<T: Copy>(value: T, count: usize, budget: &Budget) -> Result<Vec<T>> {
+    let mut list = Vec::with_capacity(count);
+    while list.len() < count {
+        budget.check()?;
+        list.resize(count.min(list.len() + CHUNK * BLOCK / 4), value);
+    }
+    Ok(list)
+}
+
 /// A function at the nodes of blocks.
 #[derive(Debug)]
 pub(crate) struct Field {
@@ -167,8 +198,8 @@ impl Field {
         let count = blocks.len() * BLOCK;
         let each = size_of::<Node>() + if has_colours { size_of::<[f32; 3]>() } else { 0 };
         let held = budget.hold("nodes near the points", count.saturating_mul(each))?;
-        let mut nodes = vec![elsewhere; count];
-        let mut colours = vec![[0.0; 3]; if has_colours { count } else { 0 }];
+        let mut nodes = filled(elsewhere, count, budget)?;
+        let mut colours = filled([0.0; 3], if has_colours { count } else { 0 }, budget)?;
         if has_colours {
             let parts = nodes.par_chunks_mut(BLOCK).zip(colours.par_chunks_mut(BLOCK)).enumerate();
             parts.try_for_each(|(b, (nodes, colours))| evaluate(&blocks, b, nodes, colours))?;

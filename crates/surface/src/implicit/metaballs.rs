@@ -78,8 +78,8 @@ fn kernel(share2: f64) -> f64 {
 /// One over the sum of the kernels at each point.
 fn masses(points: &[Vector<3>], outer: &[f64], budget: &Budget) -> Result<Vec<f64>> {
     let boxes: Vec<_> = points.iter().zip(outer).map(|(&p, &r)| Bounds::new(p, p).grown(r)).collect();
-    budget.spend(points.len() as u64 * 400)?;
-    let tree = Tree::new(&boxes);
+    budget.spend(points.len() as u64 * 200)?;
+    let tree = Tree::new(&boxes, budget)?;
     let chunk = |chunk: &[Vector<3>]| -> Result<Vec<f64>> {
         let mut meter = budget.meter();
         let one = |&p: &Vector<3>| {

@@ -11,6 +11,8 @@ use crate::implicit::{BLOCK, Field, Node, SIDE};
 
 /// Vertices stay so far from the ends of their edge, so that no triangle is without area.
 const MARGIN: f64 = 0.02;
+/// Work for each node: of its edges, and of its triangles.
+const NODE: u64 = 15;
 /// An edge without a vertex.
 const NONE: u16 = u16::MAX;
 /// Marks a vertex in the middle of a loop until it has its number.
@@ -34,7 +36,6 @@ struct Edges {
 pub(crate) fn march(field: &Field, budget: &Budget) -> Result<Patch> {
     let count = field.blocks.len();
     let held = budget.hold("the surface", count * 3 * BLOCK * 2)?;
-    budget.spend(count as u64 * BLOCK as u64 * 30)?;
     let around = |b: usize| {
         let place = field.blocks.place(b);
         std::array::from_fn(|k| {
@@ -42,16 +43,28 @@ pub(crate) fn march(field: &Field, budget: &Budget) -> Result<Patch> {
         })
     };
     let cells = Cells { field, around: (0..count).into_par_iter().map(around).collect() };
-    let edges: Vec<Edges> = (0..count).into_par_iter().map(|b| cells.edges(b)).collect();
+    let edges: Result<Vec<Edges>> = (0..count)
+        .into_par_iter()
+        .map(|b| {
+            budget.spend(BLOCK as u64 * NODE)?;
+            Ok(cells.edges(b))
+        })
+        .collect();
+    let edges = edges?;
     let mut firsts = Vec::with_capacity(count);
     let mut vertices = Vec::with_capacity(edges.iter().map(|e| e.vertices.len()).sum());
     for block in &edges {
         firsts.push(vertices.len() as u32);
         vertices.extend_from_slice(&block.vertices);
     }
-    budget.check()?;
-    let made: Vec<(Vec<[u32; 3]>, Vec<Vertex>)> =
-        (0..count).into_par_iter().map(|b| cells.triangles(b, &edges, &firsts, &vertices)).collect();
+    let made: Result<Vec<(Vec<[u32; 3]>, Vec<Vertex>)>> = (0..count)
+        .into_par_iter()
+        .map(|b| {
+            budget.spend(BLOCK as u64 * NODE)?;
+            Ok(cells.triangles(b, &edges, &firsts, &vertices))
+        })
+        .collect();
+    let made = made?;
     drop(edges);
     drop(held);
     let mut triangles = Vec::with_capacity(made.iter().map(|m| m.0.len()).sum());

@@ -50,11 +50,10 @@ impl MeshIndex {
         check(mesh, name, budget)?;
         let held = budget.hold(name, mesh.triangles.len() * 260 + mesh.positions.len() * 80)?;
         let topology = Topology::new(mesh, budget)?;
-        let log = u64::from(mesh.triangles.len().ilog2()) + 1;
-        budget.spend(mesh.triangles.len() as u64 * (100 + 20 * log))?;
+        budget.spend(mesh.triangles.len() as u64 * 200)?;
         let boxes: Vec<_> =
             (0..topology.triangles.len() as u32).into_par_iter().map(|t| Bounds::around(topology.corners(t))).collect();
-        let tree = Tree::new(&boxes);
+        let tree = Tree::new(&boxes, budget)?;
         let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
         let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
         let normals = vertex_normals(&topology);

@@ -1,6 +1,6 @@
 //! The two shortest offsets that take nearly every mark to another of its kind.
 
-use std::collections::BTreeMap;
+use std::{cmp::Ordering, collections::BTreeMap};
 
 use arabesque_core::{Budget, Result, Vector};
 
@@ -44,6 +44,9 @@ const ROUNDING: f64 = 4e-4;
 /// Marks from which offsets to all others are taken, at most, and so many of one kind.
 const ANCHORS: (usize, usize) = (96, 24);
 
+/// Marks to which offsets are taken from each of these at most, the nearest: no cell of a pattern holds more.
+const PARTNERS: usize = 6000;
+
 /// Offsets that are looked at more closely.
 const CANDIDATES: usize = 40_000;
 
@@ -55,6 +58,8 @@ const FEW_IN_CELL: f64 = 6.5;
 
 /// Work for each offset.
 const OFFSET: u64 = 60;
+/// Work of a look at a mark.
+const LOOK: u64 = 2;
 
 /// The search in one way of comparing.
 pub(crate) struct Search<'a> {
@@ -193,10 +198,9 @@ impl Search<'_> {
             from.sort_by(|&i, &j| far(i).total_cmp(&far(j)).then(i.cmp(&j)));
             from.truncate(ANCHORS.1);
             anchors += from.len();
-            self.budget.spend(OFFSET * (from.len() * kind.len()) as u64)?;
             for &i in &from {
-                for &j in kind.iter().filter(|&&j| j != i) {
-                    let offset = self.marks.all[j].place - self.marks.all[i].place;
+                self.budget.spend(OFFSET * kind.len().min(PARTNERS) as u64 + kind.len() as u64 * LOOK)?;
+                for offset in self.offsets(i, kind) {
                     let offset = if (offset[1], offset[0]) < (0.0, 0.0) { -offset } else { offset };
                     let key = ((offset[0] / cell).floor() as i64, (offset[1] / cell).floor() as i64);
                     let entry = votes.entry(key).or_insert((Vector::ZERO, 0));
@@ -214,6 +218,19 @@ impl Search<'_> {
         }
         offsets.sort_by(|(a, _), (b, _)| a.norm2().total_cmp(&b.norm2()));
         Ok(offsets.into_iter().map(|(offset, _)| offset).collect())
+    }
+
+    /// From one mark to the nearest of its kind.
+    fn offsets(&self, i: usize, kind: &[usize]) -> Vec<Vector<2>> {
+        let from = self.marks.all[i].place;
+        let mut offsets: Vec<_> = kind.iter().filter(|&&j| j != i).map(|&j| self.marks.all[j].place - from).collect();
+        if offsets.len() > PARTNERS {
+            offsets.select_nth_unstable_by(PARTNERS, |a, b| {
+                a.norm2().total_cmp(&b.norm2()).then_with(|| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal))
+            });
+            offsets.truncate(PARTNERS);
+        }
+        offsets
     }
 
     /// The lattice of two vectors, fitted to all marks; `None` where they do not lie on it after all.

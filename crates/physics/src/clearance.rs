@@ -5,7 +5,8 @@ use rapier3d::parry::{bounding_volume::BoundingVolume, query};
 
 use crate::{setting::Body, units::Units};
 
-/// Work of a pair that is compared.
+/// Work of a look at the box of another body, and of a pair that is compared.
+const PER_LOOK: u64 = 20;
 const PER_PAIR: u64 = 4_000;
 /// What is nearer than this share of its size touches, with a gap.
 const NEAR: f64 = 0.12;
@@ -46,6 +47,7 @@ pub fn clearance(bodies: &[Body], budget: &Budget) -> Result<Option<f64>> {
             if seen[b].2.mins.x > seen[a].2.maxs.x + reach || looked == MOST {
                 break;
             }
+            budget.spend(PER_LOOK)?;
             if !seen[a].2.loosened(reach).intersects(&seen[b].2) {
                 continue;
             }

@@ -81,6 +81,7 @@ impl Plane {
         preparation: &mut Preparation<'_>,
     ) -> Result<Self> {
         preparation.warnings.append(&mut exemplar.drawing.warnings);
+        preparation.files.budget().allow_exemplar(exemplar.exemplar().elements.len());
         let engine = Engine::knowing(Arc::clone(exemplar.exemplar()), params, known, preparation.files.budget())
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
         Ok(Self { exemplar: Arc::new(exemplar), engine })

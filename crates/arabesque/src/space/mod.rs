@@ -82,6 +82,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
         let bodies = if space.stands() { bodies.on_floor(others, &space.constrain)? } else { bodies };
         preparation.exemplar = preparation.exemplar.embedding(&bytes);
         let exemplar = Arc::clone(&bodies.exemplar);
+        budget.allow_exemplar(exemplar.elements.len());
         let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
             .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
         let is_soft = !exemplar.softs.is_empty();
@@ -104,6 +105,7 @@ pub(crate) fn prepare(space: &Space, preparation: &mut Preparation<'_>) -> Resul
     };
     preparation.exemplar = preparation.exemplar.embedding(&bytes);
     let exemplar = Arc::new(exemplar);
+    budget.allow_exemplar(exemplar.elements.len());
     let engine = Engine::new(Arc::clone(&exemplar), &params, budget)
         .map_err(|error| in_exemplar(error, preparation.exemplar.name()))?;
     Ok(Volume { exemplar, bodies: None, layer: None, pile: None, engine, stacks: None })

@@ -10,6 +10,8 @@ use crate::error::{Error, Result};
 
 /// Work units in one unit of [`Limits::work`].
 const MILLION: u64 = 1_000_000;
+/// Work that an element of an exemplar allows, as a share of what one of the result does.
+const ANALYSED: f64 = 0.05;
 /// Work units after which a meter pays.
 const INSTALMENT: u64 = 1 << 14;
 
@@ -128,6 +130,11 @@ impl Budget {
         let add = |allowed: u64| Some(allowed.saturating_add(more));
         // The closure never declines.
         let _ = self.account.allowed.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add);
+    }
+
+    /// Allows the work that analysing `elements` elements of an exemplar may take beside: a twentieth of what as many of a result may.
+    pub fn allow_exemplar(&self, elements: usize) {
+        self.allow_elements(elements as f64 * ANALYSED);
     }
 
     /// Whether somebody asked to stop.

@@ -40,3 +40,11 @@ pub struct Repeat {
     /// Share of the marks that the lattice takes to others of their kind, in [0, 1].
     pub share: f64,
 }
+
+impl Repeat {
+    /// A lattice of the plane that a drawing is made on, and that explains all of it.
+    pub(crate) fn drawn(lattice: Lattice) -> Self {
+        let (explains, extent) = (Explains::Everything, Extent::Plane);
+        Self { lattice, explains, extent, anchor: Anchor::Centre, jitter: 0.0, share: 1.0 }
+    }
+}

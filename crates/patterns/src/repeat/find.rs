@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use arabesque_core::{Budget, Exemplar, Result, Vector};
 
 use crate::repeat::{
-    description::{Explains, Extent, Repeat},
+    description::{Extent, Repeat},
     lattice::Lattice,
     lines::Lines,
     marks::{Anchor, Kinds, Mark, Marks},
@@ -175,8 +175,7 @@ impl Finder<'_> {
         {
             return Ok(Some(made));
         }
-        let (explains, extent, anchor) = (Explains::Everything, Extent::Plane, Anchor::Centre);
-        make(&Repeat { lattice, explains, extent, anchor, jitter: 0.0, share: 1.0 })
+        make(&Repeat::drawn(lattice))
     }
 
     fn found(&self, way: Way) -> Result<Option<Found>> {

@@ -28,8 +28,8 @@ const MEASURED_PAIRS: usize = 64;
 /// Widest gap that is asked for when two elements are pushed apart, in mean spacings.
 const WIDEST_GAP: f64 = 0.02;
 
-/// Bytes of a corner of an outline, with what is looked up about it.
-const CORNER: usize = 200;
+/// Bytes of a corner of an outline and of its hull; edges are held where they are sorted.
+const CORNER: usize = 48;
 
 /// The same for an outline, however few corners it has.
 const FIGURE: usize = 400;

@@ -21,7 +21,7 @@ use crate::{
         admit::{Admission, outline_of},
         grid::Grid,
     },
-    repeat::{Anchor, Explains, Extent, Lattice, Repeat},
+    repeat::{Lattice, Repeat},
 };
 use find::Courses;
 use lay::{Laid, Laying};
@@ -52,9 +52,7 @@ impl Boards {
         let (sum, number) = boards.fold((0.0, 0.0), |(sum, n), board| (sum + board.to - board.from, n + 1.0));
         let vectors = [courses.along * (sum / f64::max(number, 1.0)), courses.across * height];
         let Some(lattice) = Lattice::new(vectors[0], vectors[1]) else { return Ok(None) };
-        let (explains, extent) = (Explains::Everything, Extent::Plane);
-        let repeat = Repeat { lattice, explains, extent, anchor: Anchor::Centre, jitter: 0.0, share: 1.0 };
-        Ok(Some(Self { courses, repeat }))
+        Ok(Some(Self { courses, repeat: Repeat::drawn(lattice) }))
     }
 
     /// Fills a domain; `None` for a tile, whose rows have to close, and where fields bend rows or something stays.

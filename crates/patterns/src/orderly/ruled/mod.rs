@@ -27,7 +27,7 @@ use crate::{
         grid::{Grid, Ground},
         strokes::BorderCut,
     },
-    repeat::{Anchor, Explains, Extent, Repeat},
+    repeat::Repeat,
 };
 use net::Net;
 use sheet::Sheet;
@@ -49,9 +49,7 @@ impl Ruled {
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn new(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Self>> {
         let Some(sheet) = Sheet::new(exemplar, &budget.stage("looking for squared paper"))? else { return Ok(None) };
-        let (lattice, explains, extent) = (sheet.lattice, Explains::Everything, Extent::Plane);
-        let repeat = Repeat { lattice, explains, extent, anchor: Anchor::Centre, jitter: 0.0, share: 1.0 };
-        Ok(Some(Self { sheet, repeat }))
+        Ok(Some(Self { repeat: Repeat::drawn(sheet.lattice), sheet }))
     }
 
     /// Fills a domain; `None` where fields bend the paper, a tile does not suit it, or something stays.

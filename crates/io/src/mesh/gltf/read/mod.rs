@@ -139,7 +139,10 @@ impl Reader<'_> {
         let fits = |p: Vector<3>| p.0.iter().all(|c| c.abs() <= most);
         let positions = parts.mesh.positions.iter().chain(&parts.points.positions);
         if let Some(p) = positions.map(|p| placed.place.apply(*p)).find(|p| !fits(*p)) {
-            let place = format!("{name}: node {}", crate::text::short::short(placed.name));
+            let place = match placed.name {
+                "" => format!("{name}: a node without a name"),
+                called => format!("{name}: node {}", crate::text::short::short(called)),
+            };
             let problem = format!("a vertex at {:?} where coordinates between -{most} and {most} were expected", p.0);
             return Err(Error::input(place, problem, "scale the mesh down, or move it nearer to the origin"));
         }

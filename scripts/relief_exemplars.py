@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Draws the reliefs of examples/ that are made by formulas: dunes, mail, scales, knitting.
+"""Draws the reliefs of examples/ that are made by formulas: dunes, mail, scales, knitting, bark.
 
     python3 scripts/relief_exemplars.py [FOLDER]
 
-writes relief-dunes.ply, relief-mail.ply, relief-scales.ply and relief-knit.ply: points on the unit square with normals
-and colours. Needs numpy.
+writes relief-dunes.ply, relief-mail.ply, relief-scales.ply, relief-knit.ply and relief-bark.ply: points on the unit
+square with normals and colours. Needs numpy.
 """
 import sys
 
@@ -120,6 +120,20 @@ def scales(folder):
     write(folder, "scales", points, normals, shaded(points, (30, 66, 62), (110, 176, 132)))
 
 
+def bark(folder):
+    random = np.random.default_rng(7)
+    waves = [(random.uniform(1, 3.5), random.uniform(2, 7), random.uniform(0, TAU)) for _ in range(24)]
+    def height(x, y):
+        noise = [np.cos(TAU * (a * (x if k % 2 else -x) + 0.35 * b * y) + c) for k, (a, b, c) in enumerate(waves)]
+        bent, breaks = sum(noise[:10]) / 10, sum(noise[10:]) / 14
+        ridge = np.sqrt(np.sin(TAU * (3.2 * x + 0.55 * bent)) ** 2 + 0.16)
+        # Ridges are broken across in places.
+        crack = np.exp(-((np.sin(TAU * (1.6 * y + 0.8 * bent + 0.5 * breaks)) / 0.4) ** 2))
+        return 0.036 * ridge * (1 - 0.3 * crack) + 0.004 * breaks
+    points, normals = sheet(height, 4600, 8)
+    write(folder, "bark", points, normals, shaded(points, (66, 46, 32), (158, 124, 92)))
+
+
 def mail(folder):
     random = np.random.default_rng(5)
     side, all_points, all_normals = 1 / 5, [], []
@@ -157,5 +171,5 @@ def knit(folder):
 
 if __name__ == "__main__":
     target = sys.argv[1] if len(sys.argv) > 1 else "examples"
-    for draw in (dunes, mail, scales, knit):
+    for draw in (dunes, mail, scales, knit, bark):
         draw(target)

@@ -81,7 +81,7 @@ fn mail() -> PointSet<3> {
             let (x, y) = (0.72 * side * cos, 0.72 * side * sin);
             Vector([middle[0] + x * lean.cos(), middle[1] + y, x * lean.sin()])
         };
-        points.extend(tube(ring, 0.13 * side, (96, 17)));
+        points.extend(tube(ring, 0.13 * side, (80, 14)));
     }
     kept(points, 71_454)
 }
@@ -101,7 +101,7 @@ fn weave() -> PointSet<3> {
             let y = middle + 0.02 * side * (7.0 * x + f64::from(k)).sin();
             if is_weft { Vector([y, x, z]) } else { Vector([x, y, z]) }
         };
-        points.extend(tube(thread, 0.24 * side, (124, 22)));
+        points.extend(tube(thread, 0.24 * side, (132, 22)));
     }
     kept(points, 43_592)
 }

@@ -28,6 +28,8 @@ const MEET: f64 = 0.03;
 const ON: f64 = 0.02;
 /// Mean of the phases in a lattice from which on things keep to it; of few things, this over the root of their number.
 const KEEPS: (f64, f64) = (0.25, 2.5);
+/// Share of the page in which half of what is strewn is not found, by its distance from a layer.
+const AROUND: f64 = 0.25;
 /// Work for a centre that is looked at.
 const LOOK: u64 = 8;
 /// Work for each pair of boxes.
@@ -90,7 +92,7 @@ pub(crate) fn regular_layer(exemplar: &Exemplar<2>, budget: &Budget) -> Result<O
         let Some(regular) = (if is_all { None } else { found(exemplar, &elements, &curves, budget)? }) else {
             continue;
         };
-        if !is_strewn(exemplar, &elements, regular.repeat.lattice.vectors) {
+        if !is_strewn(exemplar, &elements, regular.repeat.lattice.vectors, budget)? {
             continue;
         }
         let is_clear = is_clear(exemplar, &elements, budget)?;
@@ -123,9 +125,35 @@ fn is_even(exemplar: &Exemplar<2>, elements: &[bool], budget: &Budget) -> Result
 
 /// Whether elements outside of a layer lie anywhere in the cells of its lattice: what keeps to places there belongs to it, however much it
 /// was jittered.
-fn is_strewn(exemplar: &Exemplar<2>, in_layer: &[bool], [a, b]: [Vector<2>; 2]) -> bool {
-    let rest = exemplar.elements.iter().zip(in_layer).filter(|(_, kept)| !**kept);
-    let places: Vec<Vector<2>> = rest.map(|(element, _)| element.centre).collect();
+fn is_strewn(exemplar: &Exemplar<2>, in_layer: &[bool], vectors: [Vector<2>; 2], budget: &Budget) -> Result<bool> {
+    let all = || exemplar.elements.iter().zip(in_layer);
+    let layer: Vec<Vector<2>> = all().filter(|(_, kept)| **kept).map(|(element, _)| element.centre).collect();
+    let rest: Vec<_> = all().filter(|(_, kept)| !**kept).map(|(element, _)| (element.class, element.centre)).collect();
+    if !is_anywhere(&rest.iter().map(|(_, p)| *p).collect::<Vec<_>>(), vectors) {
+        return Ok(false);
+    }
+    budget.spend(PAIR * (layer.len() * rest.len() + exemplar.classes.len() * rest.len()) as u64)?;
+    let of_class = |class: usize| rest.iter().filter(|(c, _)| *c == class).map(|(_, p)| *p).collect::<Vec<_>>();
+    let many = (0..exemplar.classes.len()).map(of_class).filter(|places| places.len() >= LEAST.0);
+    let area = exemplar.window.measure();
+    Ok(many.into_iter().all(|places| is_anywhere(&places, vectors) && !is_around(&places, &layer, area)))
+}
+
+/// Whether half of some places are as far from the nearest of a layer as few would be by chance.
+fn is_around(places: &[Vector<2>], layer: &[Vector<2>], area: f64) -> bool {
+    let nearest = |p: &Vector<2>| layer.iter().map(|q| (*q - *p).norm2()).fold(f64::INFINITY, f64::min);
+    // How much of the page is nearer to one of them.
+    let unit = std::f64::consts::PI * layer.len() as f64 / area;
+    let mut shares: Vec<f64> = places.iter().map(|p| unit * nearest(p)).collect();
+    shares.sort_by(f64::total_cmp);
+    let open = (1.0 - shares.first().copied().unwrap_or(0.0)).max(0.1);
+    let half = shares.len() / 2;
+    let least = shares.windows(half + 1).map(|held| held[half] - held[0]).fold(f64::INFINITY, f64::min);
+    least < open * AROUND.min(0.5 - 1.0 / (places.len() as f64).sqrt())
+}
+
+/// Whether places lie anywhere in the cells of a lattice.
+fn is_anywhere(places: &[Vector<2>], [a, b]: [Vector<2>; 2]) -> bool {
     let (count, cell) = (places.len().max(1) as f64, a.cross(b));
     let most = KEEPS.0.max(KEEPS.1 / count.sqrt());
     [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]].into_iter().all(|[i, j]| {
@@ -233,6 +261,21 @@ mod tests {
         for k in 0..25 {
             let off = Vector::xy(stream.range(12.0, 28.0), stream.range(12.0, 28.0));
             exemplar.elements.push(square(exemplar.elements[k].centre + off, 1.0, 1));
+        }
+        assert!(regular_layer(&exemplar, &Budget::default()).unwrap().is_none());
+    }
+
+    #[test]
+    fn things_around_those_of_a_lattice_belong_to_them() {
+        let mut exemplar = drawing(true);
+        exemplar.elements.truncate(25);
+        let mut stream = Stream::new(6, Stage::TEST, 0);
+        for k in 0..25 {
+            let (hub, turn) = (exemplar.elements[k].centre, stream.range(0.0, 1.0));
+            for n in 0..6 {
+                let angle = std::f64::consts::TAU * (turn + f64::from(n)) / 6.0;
+                exemplar.elements.push(square(hub + Vector::xy(angle.cos(), angle.sin()) * 14.0, 1.0, 1));
+            }
         }
         assert!(regular_layer(&exemplar, &Budget::default()).unwrap().is_none());
     }

@@ -46,8 +46,9 @@ const NOISE_FLOOR: f64 = 0.3;
 /// Elements are never removed below this share of their number at the end, and not at all below it after patch copy.
 const FLOOR: f64 = 0.95;
 
-/// Iterations of a level before it may be at rest, of elements and where there are strokes: these join while the energy hardly falls.
-const SETTLING: (usize, usize) = (1, 3);
+/// Iterations of a level before it may be at rest, of elements and where there are strokes, at the coarsest level and then: strokes join
+/// while the energy hardly falls.
+const SETTLING: (usize, [usize; 2]) = (1, [3, 2]);
 
 /// Moves below this share of the mean spacing do not make the neighbours search again.
 const NOTICEABLE: f64 = 0.04;
@@ -322,7 +323,9 @@ where
         if k == 0 && self.may_regrow() {
             self.regrow(&mut steps, state, watch)?;
         }
-        if self.params.existence == Existence::Voted {
+        // Elements are put into holes once more when the page is evened out; at finer levels, what is put there comes and goes.
+        let has_holes = k == 0 || self.has_strokes() || self.evenness.is_none();
+        if has_holes && self.params.existence == Existence::Voted {
             self.layout(context).fill_holes(state)?;
             edges::link_sources(state)?;
         }
@@ -393,7 +396,7 @@ where
         let k = steps.k;
         // What starts in disorder gains and loses elements for a while, and its strokes join when the energy has long come to rest.
         let is_ordered = self.params.initialisation != Initialisation::WhiteNoise;
-        let settling = if self.has_strokes() { SETTLING.1 } else { SETTLING.0 };
+        let settling = if self.has_strokes() { SETTLING.1[k.min(1)] } else { SETTLING.0 };
         let rest = if is_ordered && self.params.rest > 0.0 { self.params.rest } else { f64::NEG_INFINITY };
         let mut before = f64::INFINITY;
         for iteration in steps.before..steps.before + self.iterations {

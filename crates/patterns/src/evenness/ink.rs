@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Cells of a map of distances in a mean spacing.
-const CELLS: f64 = 10.0;
+const CELLS: f64 = 16.0;
 
 /// Most cells in all maps together: of more, each is larger.
 const MOST_CELLS: usize = 1 << 24;

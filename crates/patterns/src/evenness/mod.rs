@@ -115,7 +115,7 @@ where
         Ok((Evened { numbers, bodies: work.page.bodies }, ended))
     }
 
-    /// Item `i` as a body. What is joined to strokes stays with them.
+    /// Item `i` as a body. What is joined to strokes, or bound to another element, stays with that.
     fn body(&self, state: &State<'_, D>, i: u32) -> Body<D> {
         let (item, pose) = (&state.item(i).item, state.pose(i));
         let pose = Pose { source: item.source, centre: item.position, rotation: pose.rotation, scale: pose.scale };

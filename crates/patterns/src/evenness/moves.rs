@@ -7,7 +7,8 @@ use crate::{
     dimension::Dimension,
     evenness::{
         ink::Pose,
-        work::{Scene, Work},
+        share::Shares,
+        work::{COUNT, Scene, Work},
     },
 };
 
@@ -52,8 +53,8 @@ const AGREEMENT: f64 = 0.15;
 /// Elements that one thread looks at by itself.
 const ALONE: usize = 4;
 
-/// Numbers of elements of a class stay within this share of what they should be.
-const COUNT: f64 = 0.01;
+/// Nanoseconds for a part of the page that is looked at.
+const LOOK: u64 = 4;
 
 impl<const D: usize> Work<'_, D>
 where
@@ -83,11 +84,69 @@ where
         Ok(found.into_iter().flatten().collect())
     }
 
+    /// How far from its centre an element looks that is moved, and what moves there changes what it sees.
+    fn sight(&self, b: u32) -> f64 {
+        let pose = &self.page.body(b).pose;
+        let shares = self.shares.as_ref().map_or(0.0, Shares::widest);
+        FAR * self.unit(pose.centre) + shares.max(self.page.inks.radius(pose) + self.page.reach)
+    }
+
+    /// Moves elements to where the price is lowest nearby, at the same time those that do not see one another. Calls `moved` for each that
+    /// has moved.
+    pub(crate) fn settle_all(
+        &mut self,
+        mut open: Vec<u32>,
+        meter: &mut Meter<'_>,
+        moved: &mut dyn FnMut(&mut Self, u32) -> Result<()>,
+    ) -> Result<()> {
+        let mut seen = vec![0_u32; self.page.parts()];
+        for turn in 1.. {
+            let (mut now, mut later) = (Vec::new(), Vec::new());
+            for b in open {
+                let (centre, sight) = (self.page.body(b).pose.centre, self.sight(b));
+                let mut looked = 0;
+                let mut is_alone = true;
+                self.page.parts_within(centre, sight, |part| {
+                    looked += 1;
+                    is_alone &= seen[part] != turn;
+                });
+                meter.spend(LOOK * looked)?;
+                if is_alone {
+                    self.page.parts_within(centre, sight, |part| seen[part] = turn);
+                    now.push(b);
+                } else {
+                    later.push(b);
+                }
+            }
+            let better = |&b: &u32| self.better_place(b, &mut self.budget.meter());
+            let better = now.par_iter().map(better).collect::<Result<Vec<_>>>()?;
+            self.budget.spend(0)?;
+            for (b, pose) in now.into_iter().zip(better) {
+                if let Some((pose, _)) = pose {
+                    self.change(b, pose, meter)?;
+                    moved(self, b)?;
+                }
+            }
+            if later.is_empty() {
+                break;
+            }
+            open = later;
+        }
+        Ok(())
+    }
+
     /// Moves an element to where the price is lowest nearby. Returns by how much it fell.
     pub(crate) fn settle(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<f64> {
+        let Some((pose, gain)) = self.better_place(b, meter)? else { return Ok(0.0) };
+        self.change(b, pose, meter)?;
+        Ok(gain)
+    }
+
+    /// How an element would lie where the price is lowest nearby, and by how much it would fall.
+    fn better_place(&self, b: u32, meter: &mut Meter<'_>) -> Result<Option<(Pose<D>, f64)>> {
         let body = *self.page.body(b);
         if body.fixed || !body.alive || !self.moves.shift {
-            return Ok(0.0);
+            return Ok(None);
         }
         let unit = self.unit(body.pose.centre);
         let far = FAR * unit;
@@ -95,15 +154,14 @@ where
         let scene = self.scene(Some(b), body.pose.centre, (radius, far), meter)?;
         // Shares of ink alone are as they are in many places of the exemplar.
         if self.price_of_space(&scene, Some(&body.pose), f64::INFINITY, meter)? < QUIET {
-            return Ok(0.0);
+            return Ok(None);
         }
         let start = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
         let (pose, price) = self.descend(&scene, (start, body.pose), (far, f64::INFINITY), meter)?;
         if start - price < WORTH {
-            return Ok(0.0);
+            return Ok(None);
         }
-        self.change(b, pose, meter)?;
-        Ok(start - price)
+        Ok(Some((pose, start - price)))
     }
 
     /// The cheapest pose that steps lead to, none longer than `far`; it is given up where it is sure enough not to become cheaper than
@@ -367,7 +425,7 @@ where
             return Ok(false);
         }
         let class = self.library.class[body.pose.source];
-        if self.counts[class] - 1.0 < (1.0 - COUNT) * self.targets[class] - 0.5 {
+        if self.counts[class] - 1.0 < (1.0 - self.fewer) * self.targets[class] - 0.5 {
             return Ok(false);
         }
         let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), meter)?;

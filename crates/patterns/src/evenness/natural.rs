@@ -50,6 +50,10 @@ const HANDFUL: usize = 4;
 const JOINED: f64 = 0.1;
 const TOUCHING: f64 = 0.02;
 
+/// Elements belong to others that stand as far from them as usual, up to this share of it, and this much nearer than the next; this share
+/// of a kind does.
+const BOUND: (f64, f64, f64) = (0.2, 1.5, 0.9);
+
 /// Nanoseconds for a distance that is looked up, and for a pair of elements.
 const PRICE: (u64, u64) = (10, 1500);
 
@@ -66,7 +70,7 @@ pub(crate) struct Natural {
     otherwise: f64,
     /// Largest of these gaps.
     pub(crate) widest: f64,
-    /// How near elements of each kind come to strokes; `None` for those that are joined to them.
+    /// How near elements of each kind come to strokes; `None` for those that are joined to them, or bound to other elements.
     clear: Numbered<Option<f64>>,
     /// Largest of these.
     pub(crate) clearest: f64,
@@ -103,12 +107,15 @@ impl Natural {
         let kinds = if library.classes() <= TABLE { library.classes() } else { 0 };
         let narrowest = narrowest(&gaps, kinds, otherwise, tolerated);
         let widest = narrowest.iter().map(|&gap| f64::from(gap)).fold(otherwise, f64::max);
-        let clear = shown.clear(tolerated);
+        let mut clear = shown.clear(tolerated);
+        for (clear, is_bound) in clear.iter_mut().zip(shown.bound(budget)?) {
+            *clear = clear.filter(|_| !is_bound);
+        }
         let clearest = clear.iter().flatten().fold(0.0, |most: f64, gap| most.max(*gap));
         Ok(Some(Self { tolerated, narrowest, kinds, otherwise, widest, clear, clearest }))
     }
 
-    /// How near elements of a kind come to strokes; `None` for those that are joined to them.
+    /// How near elements of a kind come to strokes; `None` for those that stay as they are: joined to strokes, or bound to other elements.
     pub(crate) fn clear(&self, kind: u32) -> Option<f64> {
         self.clear[kind]
     }
@@ -252,6 +259,49 @@ impl<'a, const D: usize> Shown<'a, D> {
             (!is_joined).then(|| low(&gaps, NARROWEST).unwrap_or(0.0))
         };
         gaps.into_iter().map(clear).collect()
+    }
+
+    /// Whether elements of each kind stand at a distance of their own from one of some kind, farther from the next one.
+    fn bound(&self, budget: &Budget) -> Result<Vec<bool>> {
+        let kinds = self.library.classes();
+        let mut bound = vec![false; kinds];
+        let reach = 2.0 * self.spacing();
+        // For each two kinds, how far elements of the first are from the nearest of the second and the next, and from the frame.
+        let mut seen = BTreeMap::<[u32; 2], Vec<[f64; 3]>>::new();
+        for a in &self.poses {
+            let depth = self.library.view.signed_distance(a.centre);
+            let mut nearest = BTreeMap::<u32, [f64; 2]>::new();
+            let looked = self.index.within(a.centre, reach, |e, offset| {
+                let b = &self.poses[e];
+                if b.source != a.source {
+                    let entry = nearest.entry(self.library.class[b.source]).or_insert([reach; 2]);
+                    let distance = offset.norm();
+                    if distance < entry[0] {
+                        *entry = [distance, entry[0]];
+                    } else {
+                        entry[1] = entry[1].min(distance);
+                    }
+                }
+            });
+            budget.spend(PRICE.0 * (4 + looked))?;
+            for (kind, [first, second]) in nearest {
+                seen.entry([self.library.class[a.source], kind]).or_default().push([first, second, depth]);
+            }
+        }
+        for ([a, b], mut found) in seen {
+            found.sort_by(|x, y| x[0].total_cmp(&y[0]));
+            let Some(&[median, ..]) = found.get(found.len() / 2) else { continue };
+            found.retain(|[_, _, depth]| *depth > median);
+            let room = BOUND.0 * median + TOUCHING * self.spacing();
+            let is_bound =
+                |[first, second, _]: &&[f64; 3]| (first - median).abs() <= room && *second >= BOUND.1 * first;
+            let count = found.iter().filter(is_bound).count();
+            if found.len() >= MANY && count as f64 >= BOUND.2 * found.len() as f64 {
+                bound[a as usize] = true;
+                bound[b as usize] = true;
+            }
+        }
+        Ok(bound)
     }
 
     /// Mean spacing of the elements, whatever strokes there are.

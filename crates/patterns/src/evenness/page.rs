@@ -281,6 +281,11 @@ impl<const D: usize> Page<'_, D> {
         self.parts.around(pose.centre, self.inks.radius(pose) + self.reach, |part, _| visit(part));
     }
 
+    /// Calls `visit(part)` for the parts that the box around a ball touches.
+    pub(crate) fn parts_within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize)) {
+        self.parts.around(p, radius, |part, _| visit(part));
+    }
+
     /// Elements that may be nearer to `p` than the reach.
     pub(crate) fn near(&self, p: Vector<D>) -> &[u32] {
         &self.lists[self.part(p)]

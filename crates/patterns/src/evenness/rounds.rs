@@ -27,6 +27,9 @@ const OFF: f64 = 0.3;
 /// Elements are too near each other when so much is missing, in tolerated distances.
 const NEAR: f64 = 0.02;
 
+/// Share by which a class may have fewer elements than it should in the end.
+const FEWER: f64 = 0.025;
+
 /// Places that are worked on before something is told.
 const TOLD: usize = 48;
 
@@ -54,7 +57,14 @@ where
         }
         rounds.relax(&mut meter)?;
     }
-    rounds.relax(&mut meter)
+    rounds.relax(&mut meter)?;
+    // What still lies on something has no room: rather a few less than there should be.
+    rounds.work.fewer = FEWER;
+    rounds.work.now += 1;
+    if rounds.clumps(0, &mut meter)? > 0 {
+        rounds.relax(&mut meter)?;
+    }
+    Ok(())
 }
 
 struct Rounds<'r, 'a, const D: usize> {
@@ -79,13 +89,14 @@ where
         let mut open: Vec<u32> = (0..self.work.page.bodies.len() as u32).collect();
         for _ in 0..SWEEPS {
             let mut next = Vec::new();
-            for b in self.work.unsettled(&open)? {
-                if self.work.settle(b, meter)? > 0.0 {
-                    let centre = self.work.page.body(b).pose.centre;
-                    next.extend(self.work.group(centre, NEXT));
-                    self.handled()?;
-                }
-            }
+            let unsettled = self.work.unsettled(&open)?;
+            let (handled, tell) = (&mut self.handled, &mut self.tell);
+            self.work.settle_all(unsettled, meter, &mut |work, b| {
+                next.extend(work.group(work.page.body(b).pose.centre, NEXT));
+                work.keep();
+                *handled += 1;
+                if handled.is_multiple_of(TOLD) { tell(&work.page.bodies) } else { Ok(()) }
+            })?;
             next.sort_unstable();
             next.dedup();
             open = next;

@@ -165,6 +165,11 @@ where
 }
 
 impl<const D: usize> Shares<'_, D> {
+    /// How far an element counts, at most.
+    pub(crate) fn widest(&self) -> f64 {
+        self.widest
+    }
+
     /// Ink of an element; only what lies inside counts, as only places inside do.
     fn mass(&self, (source, scale): (u32, f64), centre: Vector<D>) -> f64 {
         if self.domain.contains(centre) { self.spread.mass[source] * scale.powi(D as i32) } else { 0.0 }

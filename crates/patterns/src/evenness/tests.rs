@@ -326,3 +326,36 @@ proptest! {
         }
     }
 }
+
+/// Large squares anywhere, each with a small one beside it, in any direction.
+fn pairs() -> Arc<Exemplar<2>> {
+    let mut random = Stream::new(9, Stage::TEST, 0);
+    let mut elements: Vec<Element<2>> = Vec::new();
+    for (x, y) in grid(8, 4) {
+        let (x, y) = (2.0 * x + random.range(-3.0, 3.0), 2.0 * y + random.range(-3.0, 3.0));
+        let angle = random.range(0.0, std::f64::consts::TAU);
+        elements.push(square(0, (x, y), 4.0));
+        let far = random.range(4.2, 4.8);
+        elements.push(square(1, (x + far * angle.cos(), y + far * angle.sin()), 1.0));
+    }
+    drawing(elements, 160.0)
+}
+
+#[test]
+fn what_always_stands_beside_another_stays_with_it() {
+    let exemplar = pairs();
+    let sampled = sampled(&exemplar);
+    let evenness = |e: &Arc<Exemplar<2>>, s: &LevelExemplar<2>| {
+        Evenness::new(e, &s.library, None, e.elements.len(), &Budget::default()).unwrap().unwrap()
+    };
+    let natural = evenness(&exemplar, &sampled).natural;
+    assert!((0..2).all(|kind| natural.clear(kind).is_none()), "both are bound");
+    let alone = squares();
+    assert!(evenness(&alone, &self::sampled(&alone)).natural.clear(0).is_some(), "these stand by themselves");
+    // Nothing moves, whatever the page looks like.
+    let items: Vec<_> = (0..exemplar.elements.len() as u32)
+        .map(|e| item(e, exemplar.elements[e as usize].centre + Vector::xy(3.0 * f64::from(e % 3), 0.0)))
+        .collect();
+    let after = evened(&exemplar, &items, 160.0, &mut |_| ());
+    assert!(items.iter().zip(&after).all(|(a, b)| a.source == b.source && a.position == b.position));
+}

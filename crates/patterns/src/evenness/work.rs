@@ -23,6 +23,9 @@ use crate::{
 /// Price of a gap that is too narrow: of what is missing, and of its square, in tolerated distances.
 const NARROW: (f64, f64) = (2.0, 20.0);
 
+/// Numbers of elements of a class stay within this share of what they should be.
+pub(crate) const COUNT: f64 = 0.01;
+
 /// Nanoseconds for a pair of elements.
 const PAIR: u64 = 600;
 
@@ -46,6 +49,8 @@ pub(crate) struct Work<'a, const D: usize> {
     pub(crate) counts: Numbered<f64>,
     pub(crate) targets: Numbered<f64>,
     pub(crate) moves: Moves,
+    /// By which share a class may have fewer elements than it should.
+    pub(crate) fewer: f64,
     /// What is tried at the same time draws on it.
     pub(crate) budget: Budget,
     steps: Vec<Undo<D>>,
@@ -110,7 +115,8 @@ impl<'a, const D: usize> Work<'a, D> {
     ) -> Self {
         let changed = vec![1; page.parts()];
         let steps = Vec::new();
-        Self { page, shares, natural, library, extent, counts, targets, moves, budget, steps, changed, now: 1 }
+        let (fewer, now) = (COUNT, 1);
+        Self { page, shares, natural, library, extent, counts, targets, moves, fewer, budget, steps, changed, now }
     }
 
     /// Whether anything has changed around `p` since some time.
@@ -250,6 +256,8 @@ impl<'a, const D: usize> Work<'a, D> {
 
     /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
     pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
+        // Gaps are measured from the rim of one: of the same one, whoever asks.
+        let (a, b) = if a.centre.0 > b.centre.0 { (b, a) } else { (a, b) };
         let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
         let scale = self.page.spacing_scale(a.centre);
         let offset = self.page.domain().offset(a.centre, b.centre);

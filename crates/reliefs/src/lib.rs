@@ -13,7 +13,9 @@
 //! | places that fit, by cross-correlation | `search::best`, `search::fft` | [Duranleau 2008 §4 step 2, §5.1] |
 //! | pairs of points | `patch::pairing` | [Duranleau 2008 §5.2, eqs 1 to 3] |
 //! | thin-plate spline, normals, folds | `patch::spline`, `patch::site` | [Duranleau 2008 §5.2] |
+//! | how a bend is told to many points | `patch::warp` | |
 //! | blending, replacement | `patch::blend`, `patch::mask` | [Duranleau 2008 §5.3, §4 steps 5 and 6] |
+//! | what was seen how often | `patch::usage` | |
 //! | loose pieces, laid whole | `texture::pieces` | |
 //! | the result while it grows | `ground::store` | [Duranleau 2008 §4] |
 //! | rows of patches; tiles | `ground::plane` | [Duranleau 2008 fig. 1] |
@@ -39,6 +41,13 @@
 //! - A place that goes on from a neighbour's in the texture is not taken: otherwise the result is the texture itself up to its border, and then a seam.
 //! - Overlaps are narrower (a tenth of the patch, not a third) and patches larger: every blended point is a little off, and half of the
 //!   surface would be blended.
+//! - Of the places within ε the one is taken of which least was seen so far, and least nearby; chance has a say. ε is larger for it.
+//! - Of the nodes of an overlap at most some hundred are compared: every second one along both axes, or every fourth.
+//! - Patches are laid along diagonals of the rows, whose patches do not see one another, so that they are made at once.
+//! - A patch is bent beside the overlap alone, and is as in the texture a third of its side on. Where it has many points, the spline is worked
+//!   out at the nodes of a grid.
+//! - Blending moves points by what leads from the smooth surface of the patch to that of what is there: both leave out the same edges, which
+//!   so survive, while points that are moved onto a smooth surface lose them.
 //! - The spline is stiff: it passes by its pairs rather than through them, since a point's partner is half a spacing off along the surface whatever
 //!   is done. Pairs that lie in one plane leave the third direction open; some are lifted above and below it.
 //! - A spline that folds is made again without its worst pairs; a patch that still folds, for which there are few pairs, or beside which
@@ -46,11 +55,13 @@
 //! - Distances end at a reach, gradients fade towards it.
 //! - What is there already, what is replaced and what is free are cells of a grid (`patch::mask`), so that rows, tiles, gaps and charts are one case.
 //! - The surface variation of a point of the result is that of the point it stands for.
+//! - At the border only what an overlap is wide is cut off: farther in everything was blended.
 //! - Relaxation moves points along seams alone: the others lie as in the texture.
 //!
 //! Not handled: sharp edges stay as sharp as the points show them; rigid elements of a texture are not kept rigid; a patch is never turned
 //! or mirrored; what repeats in the texture does not have to repeat in a tile, whose size is the caller's.
 
+mod distance;
 mod ground;
 mod params;
 mod patch;

@@ -37,8 +37,8 @@ params! {
         overlap "overlap": f64 = 0.1, in 0.05..=0.5;
         /// Width of the border that is pasted beyond a patch, as a share of the patch.
         border "border": f64 = 0.25, in 0.0..=0.5;
-        /// Patches that are worse than the best by at most this share of its difference are chosen from at random.
-        tolerance "tolerance": f64 = 0.1, in 0.0..=10.0;
+        /// Of patches that are worse than the best by at most this share of its difference the one of which least was seen so far is taken.
+        tolerance "tolerance": f64 = 0.25, in 0.0..=10.0;
         /// How far a patch is kept from the one that goes on from its neighbours in the texture, as a share of the patch; 0 allows copies.
         apart "apart": f64 = 0.25, in 0.0..=1.0;
         /// Side of the cells of the distance field.

@@ -191,35 +191,32 @@ impl Prepared {
                 break;
             }
         }
-        self.outcome(&*canvas, notes, stopped, budget)
+        self.outcome(canvas, notes, stopped, budget)
     }
 
     fn outcome(
         &self,
-        canvas: &dyn Canvas,
+        canvas: Box<dyn Canvas + '_>,
         notes: Notes,
         stopped: StopReason,
         budget: &Budget,
     ) -> Result<ReliefOutcome> {
-        let mut samples = canvas.samples();
+        let (period, is_flat, scale) = (canvas.period(), canvas.is_flat(), canvas.scale());
+        let mut samples = canvas.into_samples();
         let mut warnings = self.texture.warnings.clone();
         let (message, advice) = budget.spent();
         // What is still to be done with the best so far has an account of its own.
         let budget = if stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
         let texture = &*self.texture;
-        let before = samples.clone();
-        let scale = (texture.spacing * canvas.scale(), texture.radius * canvas.scale());
-        // Who asks to stop does not want to wait for points to be evened out.
+        let scale = (texture.spacing * scale, texture.radius * scale);
+        // Who asks to stop does not want to wait for points to be evened out; without the time for it they stay where they are.
         let rounds = if stopped == StopReason::Stopped { 0 } else { self.params.relax };
-        let merged = match relax(&mut samples, scale, rounds, canvas.period(), &budget) {
+        let merged = match relax(&mut samples, scale, rounds, period, &budget) {
             Ok(merged) => merged,
-            Err(Error::Limit { .. } | Error::Stopped { .. }) => {
-                samples = before;
-                0
-            }
+            Err(Error::Limit { .. } | Error::Stopped { .. }) => 0,
             Err(error) => return Err(error),
         };
-        if let Some([width, depth]) = canvas.period() {
+        if let Some([width, depth]) = period {
             for s in &mut samples {
                 (s.at[0], s.at[1]) = (s.at[0].rem_euclid(width), s.at[1].rem_euclid(depth));
             }
@@ -238,7 +235,7 @@ impl Prepared {
             );
             warnings.push(Warning::new(message, "give a larger texture, other patches with --patch, or another seed"));
         }
-        let (points, sources) = self.points_of(&samples, canvas.is_flat());
+        let (points, sources) = self.points_of(&samples, is_flat);
         let statistics = Statistics {
             patches: notes.patches,
             folds: notes.folds,

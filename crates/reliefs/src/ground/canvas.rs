@@ -18,6 +18,9 @@ pub(crate) trait Canvas {
     /// The points of the result, in its frame: what is beyond its border is cut off [Duranleau 2008 §4, step 8].
     fn samples(&self) -> Vec<Sample>;
 
+    /// The same, when no more patches are laid.
+    fn into_samples(self: Box<Self>) -> Vec<Sample>;
+
     /// How the result repeats.
     fn period(&self) -> Period {
         None

@@ -7,7 +7,7 @@ use crate::{
     ground::store::Store,
     params::ReliefParams,
     patch::mask::Mask,
-    patch::{blend::Site, notes::Notes},
+    patch::{blend::Site, notes::Notes, usage::Usage},
     sample::Sample,
     texture::gap::Gap,
     texture::understand::Texture,
@@ -81,7 +81,8 @@ impl<'a> HoleCanvas<'a> {
         let mut samples = Vec::new();
         self.store.within(&bounds, |s| samples.push(Sample { at: s.at - origin, ..*s }));
         self.budget.spend(samples.len() as u64 * 40)?;
-        let site = Site { texture, params: self.params, mask, samples, shunned, budget: &self.budget };
+        let (usage, nearby, budget) = (&Usage::default(), Vec::new(), &self.budget);
+        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
         let Some(laid) = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))? else { return Ok(None) };
         let seam = 1.6 * texture.spacing;
         self.store.remove(&bounds, |s| {
@@ -115,5 +116,9 @@ impl Canvas for HoleCanvas<'_> {
 
     fn samples(&self) -> Vec<Sample> {
         self.store.all().copied().collect()
+    }
+
+    fn into_samples(self: Box<Self>) -> Vec<Sample> {
+        self.store.into_all().collect()
     }
 }

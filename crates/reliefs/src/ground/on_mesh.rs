@@ -11,12 +11,14 @@ use crate::{
     ground::store::Store,
     params::ReliefParams,
     patch::mask::Mask,
-    patch::{blend::Site, notes::Notes},
+    patch::{blend::Site, notes::Notes, usage::Usage},
     sample::Sample,
     texture::understand::Texture,
 };
 
 const PATCHES: Stage = Stage::new(503);
+/// How far from a patch others are nearby, in sides.
+const NEARBY: f64 = 2.2;
 /// Samples along a cell of the field.
 const SAMPLES: f64 = 1.0;
 
@@ -34,7 +36,9 @@ pub(crate) struct MeshCanvas<'a> {
     from_covered: Vec<f64>,
     /// In which order samples were reached: patches stay together.
     store: Store,
-    laid: usize,
+    /// Where patches lie, and what they are of.
+    laid: Vec<(Vector<3>, [u32; 2])>,
+    usage: Usage,
     seed: u64,
     budget: Budget,
 }
@@ -63,7 +67,8 @@ impl<'a> MeshCanvas<'a> {
             from_covered: vec![f64::INFINITY; samples.feet.len()],
             samples,
             store: Store::new(0.25 * texture.patch_side() * scale),
-            laid: 0,
+            laid: Vec::new(),
+            usage: Usage::new((texture.field.width, texture.field.height), texture.patch),
             seed,
             budget: budget.clone(),
         })
@@ -73,7 +78,7 @@ impl<'a> MeshCanvas<'a> {
     fn next(&self) -> Option<u32> {
         let side = self.texture.patch_side() * self.scale;
         let wanted = (0.5 - self.params.overlap) * side;
-        if self.laid == 0 {
+        if self.laid.is_empty() {
             return Some(0);
         }
         let first = self.samples.feet[0].point;
@@ -134,8 +139,8 @@ impl Canvas for MeshCanvas<'_> {
         let half = 0.5 * side;
         let more =
             (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius + 2.0 * texture.pieces.reach;
-        let foot = &self.samples.feet[start as usize];
-        let frame = self.directions.frame(self.mesh, foot);
+        let foot = self.samples.feet[start as usize];
+        let frame = self.directions.frame(self.mesh, &foot);
         let chart = Chart::new((&self.samples, self.mesh), start, &frame, (half + more) * scale, &self.budget)?;
         let is_filled = |x: f64, y: f64| {
             let at = [(x - half) * scale, (y - half) * scale];
@@ -155,8 +160,13 @@ impl Canvas for MeshCanvas<'_> {
         self.budget.spend(found.len() as u64 * 6000)?;
         let is_near = |p: Vector<3>| (0..2).all(|k| p[k] > -more && p[k] < side + more);
         samples.extend(found.iter().filter_map(local).filter(|s| is_near(s.at)));
-        let site = Site { texture, params: self.params, mask, samples, shunned: Vec::new(), budget: &self.budget };
-        let Some(laid) = site.lay(&mut Stream::new(self.seed, PATCHES, self.laid as u64))? else { return Ok(None) };
+        let (shunned, usage, budget) = (Vec::new(), &self.usage, &self.budget);
+        let near = |(at, _): &&(Vector<3>, [u32; 2])| (*at - foot.point).norm() < NEARBY * side * scale;
+        let nearby = self.laid.iter().filter(near).map(|(_, place)| *place).collect();
+        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
+        let Some(laid) = site.lay(&mut Stream::new(self.seed, PATCHES, self.laid.len() as u64))? else {
+            return Ok(None);
+        };
         let seam = 1.6 * texture.spacing;
         self.store.remove(&bounds, |s| {
             let Some(flat) = local(s) else { return false };
@@ -175,7 +185,8 @@ impl Canvas for MeshCanvas<'_> {
         covered.push(start);
         drop(chart);
         self.cover(&covered)?;
-        self.laid += 1;
+        self.laid.push((foot.point, laid.place));
+        self.usage.add(laid.place);
         Ok(Some(laid.notes))
     }
 
@@ -190,6 +201,10 @@ impl Canvas for MeshCanvas<'_> {
 
     fn samples(&self) -> Vec<Sample> {
         self.store.all().copied().collect()
+    }
+
+    fn into_samples(self: Box<Self>) -> Vec<Sample> {
+        self.store.into_all().collect()
     }
 
     fn is_flat(&self) -> bool {

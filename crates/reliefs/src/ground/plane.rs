@@ -1,18 +1,21 @@
 //! Patches side by side in the plane, row by row [Duranleau 2008 fig. 1]; in a tile the last ones meet the first.
 
 use arabesque_core::{Bounds, Budget, Error, Result, Stage, Stream, Vector};
+use rayon::prelude::*;
 
 use crate::{
     ground::canvas::Canvas,
     ground::store::Store,
     params::ReliefParams,
     patch::mask::Mask,
-    patch::{blend::Site, notes::Notes, site::Laid},
+    patch::{blend::Site, notes::Notes, site::Laid, usage::Usage},
     sample::Sample,
     texture::understand::Texture,
 };
 
 const PATCHES: Stage = Stage::new(501);
+/// Patches that are made at once at most: it must not depend on the number of threads.
+const BATCH: usize = 16;
 
 /// Patches at most.
 const MOST: f64 = 4e6;
@@ -35,7 +38,10 @@ pub(crate) struct PlaneCanvas<'a> {
     store: Store,
     /// For each patch the place in the texture that it is from, once it is laid.
     laid: Vec<Option<[u32; 2]>>,
+    /// The order in which patches are laid, and how many are.
+    order: Vec<u32>,
     next: usize,
+    usage: Usage,
     seed: u64,
     budget: Budget,
 }
@@ -49,15 +55,16 @@ impl<'a> PlaneCanvas<'a> {
         budget: &Budget,
     ) -> Result<Self> {
         let cell = texture.lattice.cell;
-        let (patch, border) = (texture.patch_side(), texture.border as f64 * cell);
+        // At the rim of the first and last patches there is nothing to blend with: so much is cut off.
+        let (patch, rim) = (texture.patch_side(), (texture.overlap + 1) as f64 * cell);
         let step = (texture.patch - texture.overlap) as f64 * cell;
         let row = |length: f64| {
             if is_tile {
                 let count = (length / step).ceil().max(1.0);
                 Row { first: 0.0, step: length / count, count: count as usize }
             } else {
-                let count = ((length + 2.0 * border - patch) / step).ceil().max(0.0) + 1.0;
-                Row { first: -border, step, count: count as usize }
+                let count = ((length + 2.0 * rim - patch) / step).ceil().max(0.0) + 1.0;
+                Row { first: -rim, step, count: count as usize }
             }
         };
         if let Some(k) = (0..2).find(|&k| !(size[k].is_finite() && size[k] > 0.0)) {
@@ -88,7 +95,9 @@ impl<'a> PlaneCanvas<'a> {
             rows,
             store: Store::new(0.25 * patch),
             laid: vec![None; count],
+            order: along_diagonals(rows[0].count, count),
             next: 0,
+            usage: Usage::new((texture.field.width, texture.field.height), texture.patch),
             seed,
             budget: budget.clone(),
         })
@@ -132,12 +141,56 @@ impl<'a> PlaneCanvas<'a> {
     }
 }
 
-impl Canvas for PlaneCanvas<'_> {
-    fn step(&mut self) -> Result<Option<Notes>> {
-        if self.next >= self.laid.len() {
-            return Ok(None);
+/// Patches by the diagonals of the rows: those of a diagonal see all that they would see in rows, and do not see one another.
+fn along_diagonals(across: usize, count: usize) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    order.sort_by_key(|&k| (k as usize % across + 2 * (k as usize / across), k));
+    order
+}
+
+/// A patch that was made, and what it takes the place of.
+struct Made {
+    k: usize,
+    bounds: Bounds<3>,
+    mask: Mask,
+    laid: Laid,
+}
+
+impl PlaneCanvas<'_> {
+    /// How far from a patch something may be that it sees.
+    fn seen(&self) -> f64 {
+        let texture = self.texture;
+        let border = texture.border as f64 * texture.lattice.cell;
+        let far = texture.lattice.reach.max(self.params.reach * texture.patch_side());
+        border.max(far) + texture.radius + 2.0 * texture.pieces.reach
+    }
+
+    /// The patches that are laid next: some of one diagonal that neither see nor touch one another, wherever the plane repeats.
+    fn batch(&self) -> Vec<usize> {
+        let reach = self.texture.patch_side() + 2.0 * self.seen();
+        let diagonal = |k: usize| k % self.rows[0].count + 2 * (k / self.rows[0].count);
+        let mut batch: Vec<usize> = Vec::new();
+        for &k in self.order[self.next..].iter().take(BATCH) {
+            let k = k as usize;
+            let is_clear = |&other: &usize| {
+                let (a, b) = (self.corner(k), self.corner(other));
+                (0..2).any(|axis| {
+                    let d = (a[axis] - b[axis]).abs();
+                    let d = if self.is_tile { d.min(self.size[axis] - d) } else { d };
+                    d > reach
+                })
+            };
+            let goes_on = batch.first().is_none_or(|&first| diagonal(first) == diagonal(k));
+            if !goes_on || !batch.iter().all(is_clear) {
+                break;
+            }
+            batch.push(k);
         }
-        let k = self.next;
+        batch
+    }
+
+    /// Makes a patch; `None` where the texture has no place for it.
+    fn make(&self, k: usize) -> Result<Option<Made>> {
         let texture = self.texture;
         let (corner, side, cell) = (self.corner(k), texture.patch_side(), texture.lattice.cell);
         let around = self.laid_around(corner);
@@ -155,8 +208,7 @@ impl Canvas for PlaneCanvas<'_> {
             .filter(|(c, _)| near(c))
             .map(|(c, place)| [0, 1].map(|k| f64::from(place[k]) + (corner[k] - c[k]) / cell))
             .collect();
-        let more =
-            (texture.border as f64 * cell).max(self.params.reach * side) + texture.radius + 2.0 * texture.pieces.reach;
+        let more = self.seen();
         let origin = Vector([corner[0], corner[1], 0.0]);
         let bounds =
             Bounds::new(origin - Vector([more, more, f64::MAX]), origin + Vector([side + more, side + more, f64::MAX]));
@@ -166,29 +218,50 @@ impl Canvas for PlaneCanvas<'_> {
             self.store.within(&shifted, |s| samples.push(Sample { at: s.at + shift - origin, ..*s }));
         }
         self.budget.spend(samples.len() as u64 * 40)?;
-        let site = Site { texture, params: self.params, mask, samples, shunned, budget: &self.budget };
-        let Some(Laid { samples, place, notes }) = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))? else {
-            return Ok(None);
-        };
-        let seam = 1.6 * texture.spacing;
+        let nearby = around.iter().map(|(_, place)| *place).collect();
+        let (usage, budget) = (&self.usage, &self.budget);
+        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
+        let laid = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))?;
+        Ok(laid.map(|laid| Made { k, bounds, mask: site.mask, laid }))
+    }
+
+    /// Puts a patch in its place.
+    fn paste(&mut self, made: Made) -> Notes {
+        let Made { k, bounds, mask, laid } = made;
+        let corner = self.corner(k);
+        let origin = Vector([corner[0], corner[1], 0.0]);
+        let seam = 1.6 * self.texture.spacing;
+        let has_overlap = mask.has_overlap();
         for shift in self.shifts() {
             let shifted = Bounds::new(bounds.min - shift, bounds.max - shift);
             self.store.remove(&shifted, |s| {
                 let p = s.at + shift - origin;
-                s.is_at_seam |= site.mask.has_overlap() && site.mask.is_at_seam(p, seam);
-                site.mask.replaces(&Sample { at: p, ..*s })
+                s.is_at_seam |= has_overlap && mask.is_at_seam(p, seam);
+                mask.replaces(&Sample { at: p, ..*s })
             });
         }
-        for s in samples {
+        for s in laid.samples {
             let mut at = s.at + origin;
             if self.is_tile {
                 (at[0], at[1]) = (at[0].rem_euclid(self.size[0]), at[1].rem_euclid(self.size[1]));
             }
             self.store.insert(Sample { at, ..s });
         }
-        self.laid[k] = Some(place);
-        self.next += 1;
-        Ok(Some(notes))
+        self.laid[k] = Some(laid.place);
+        self.usage.add(laid.place);
+        laid.notes
+    }
+}
+
+impl Canvas for PlaneCanvas<'_> {
+    fn step(&mut self) -> Result<Option<Notes>> {
+        let batch = self.batch();
+        let made: Result<Vec<Option<Made>>> = batch.par_iter().map(|&k| self.make(k)).collect();
+        let mut notes = Notes::default();
+        self.next += batch.len();
+        made?.into_iter().flatten().for_each(|made| notes.add(self.paste(made)));
+        // Where the texture has no place for a patch it has none for the others.
+        Ok((notes.patches > 0).then_some(notes))
     }
 
     fn steps(&self) -> usize {
@@ -200,12 +273,28 @@ impl Canvas for PlaneCanvas<'_> {
     }
 
     fn samples(&self) -> Vec<Sample> {
+        self.cut(self.store.all().copied())
+    }
+
+    fn into_samples(mut self: Box<Self>) -> Vec<Sample> {
+        let all = std::mem::replace(&mut self.store, Store::new(1.0)).into_all();
+        self.cut(all)
+    }
+
+    fn period(&self) -> Option<[f64; 2]> {
+        self.is_tile.then_some(self.size)
+    }
+}
+
+impl PlaneCanvas<'_> {
+    /// What lies within the extent.
+    fn cut(&self, all: impl Iterator<Item = Sample>) -> Vec<Sample> {
         // Loose pieces are not cut at the border.
-        let inside = |s: &&Sample| {
+        let inside = |s: &Sample| {
             let at = if self.is_tile { s.at } else { s.middle() };
             (0..2).all(|k| (0.0..=self.size[k]).contains(&at[k]))
         };
-        let mut samples: Vec<Sample> = self.store.all().filter(inside).copied().collect();
+        let mut samples: Vec<Sample> = all.filter(inside).collect();
         for s in &mut samples {
             // What lies at the far border of a tile lies at the near one.
             for k in 0..2 {
@@ -216,8 +305,25 @@ impl Canvas for PlaneCanvas<'_> {
         }
         samples
     }
+}
 
-    fn period(&self) -> Option<[f64; 2]> {
-        self.is_tile.then_some(self.size)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_patch_comes_after_those_that_it_sees_in_rows() {
+        let (across, count) = (5, 35);
+        let order = along_diagonals(across, count);
+        let when: Vec<usize> = (0..count as u32).map(|k| order.iter().position(|&o| o == k).unwrap()).collect();
+        for k in 0..count {
+            let (i, j) = (k % across, k / across);
+            let before = [
+                (i > 0).then(|| k - 1),
+                (j > 0).then(|| k - across),
+                (j > 0 && i + 1 < across).then(|| k + 1 - across),
+            ];
+            assert!(before.into_iter().flatten().all(|other| when[other] < when[k]), "{k}");
+        }
     }
 }

@@ -43,7 +43,30 @@ fn with_ghosts(samples: &[Sample], period: Period, margin: f64) -> (Vec<Vector<3
     (positions, normals, numbers)
 }
 
-/// Spreads the points along seams; answers how many went.
+/// Points that are near seams, by their numbers: all that lie within `reach` of one along a seam, and some more.
+fn near_seams(samples: &[Sample], period: Period, reach: f64) -> Vec<u32> {
+    // Cells share slots: what is in a slot by chance does no harm.
+    let slots = samples.len().next_power_of_two().max(1 << 10);
+    let cell = |at: Vector<3>| at.0.map(|v| (v / (2.0 * reach)).floor() as i64);
+    let slot = |[x, y, z]: [i64; 3]| {
+        let mixed = x.wrapping_mul(73_856_093) ^ y.wrapping_mul(19_349_663) ^ z.wrapping_mul(83_492_791);
+        (mixed as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) as usize >> 8 & (slots - 1)
+    };
+    let mut is_near = vec![false; slots];
+    let seams: Vec<Sample> = samples.iter().filter(|s| s.is_at_seam).copied().collect();
+    let (positions, _, _) = with_ghosts(&seams, period, reach);
+    for at in positions {
+        let (low, high) = (cell(at - Vector::splat(reach)), cell(at + Vector::splat(reach)));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                (low[0]..=high[0]).for_each(|x| is_near[slot([x, y, z])] = true);
+            }
+        }
+    }
+    (0..samples.len() as u32).filter(|&i| is_near[slot(cell(samples[i as usize].at))]).collect()
+}
+
+/// Spreads the points along seams; answers how many went. When it cannot be done, they stay as they are.
 pub(crate) fn relax(
     samples: &mut Vec<Sample>,
     (spacing, radius): (f64, f64),
@@ -51,42 +74,53 @@ pub(crate) fn relax(
     period: Period,
     budget: &Budget,
 ) -> Result<usize> {
-    let cloud = |samples: &[Sample]| -> Result<(OrientedPoints, Vec<u32>)> {
-        let (positions, normals, numbers) = with_ghosts(samples, period, radius);
+    budget.spend(samples.len() as u64 * 20)?;
+    let near = near_seams(samples, period, 2.0 * radius);
+    let mut some: Vec<Sample> = near.iter().map(|&i| samples[i as usize]).collect();
+    let cloud = |some: &[Sample]| -> Result<(OrientedPoints, Vec<u32>)> {
+        let (positions, normals, numbers) = with_ghosts(some, period, radius);
         Ok((OrientedPoints::new(positions, normals, radius, budget)?, numbers))
     };
-    let (points, numbers) = cloud(samples)?;
-    let mut is_gone = vec![false; samples.len()];
+    let (points, numbers) = cloud(&some)?;
+    let mut is_gone = vec![false; some.len()];
     let mut meter = budget.meter();
-    for i in 0..samples.len() {
-        if !samples[i].is_at_seam {
+    for i in 0..some.len() {
+        if !some[i].is_at_seam {
             continue;
         }
         meter.spend(400)?;
         let mut is_close = false;
-        points.around(samples[i].at, CLOSE * spacing, |j, _| {
+        points.around(some[i].at, CLOSE * spacing, |j, _| {
             let other = numbers[j] as usize;
-            is_close |= other != i && !is_gone[other] && points.normals()[j].dot(samples[i].normal) > 0.3;
+            is_close |= other != i && !is_gone[other] && points.normals()[j].dot(some[i].normal) > 0.3;
         });
         is_gone[i] = is_close;
     }
-    let merged = is_gone.iter().filter(|gone| **gone).count();
+    drop(points);
+    let kept: Vec<usize> = (0..some.len()).filter(|&i| !is_gone[i]).collect();
+    let merged = some.len() - kept.len();
+    some = kept.iter().map(|&i| some[i]).collect();
+    let (surface, _) = cloud(&some)?;
+    let seams: Vec<usize> = (0..some.len()).filter(|&i| some[i].is_at_seam).collect();
+    for round in 0..rounds {
+        let moved = if round == 0 { None } else { Some(cloud(&some)?.0) };
+        let now = moved.as_ref().unwrap_or(&surface);
+        budget.spend(seams.len() as u64 * 2500)?;
+        let moved: Vec<(Vector<3>, Vector<3>)> =
+            seams.par_iter().with_min_len(128).map(|&i| step(&some[i], now, &surface, spacing)).collect();
+        for (&i, (at, normal)) in seams.iter().zip(moved) {
+            (some[i].at, some[i].normal) = (at, normal);
+        }
+    }
+    for (&i, s) in kept.iter().zip(&some) {
+        samples[near[i] as usize] = *s;
+    }
+    let mut gone = near.iter().zip(&is_gone).filter(|(_, gone)| **gone).map(|(i, _)| *i).peekable();
     let mut k = 0;
     samples.retain(|_| {
         k += 1;
-        !is_gone[k - 1]
+        gone.next_if_eq(&(k - 1)).is_none()
     });
-    let (surface, _) = cloud(samples)?;
-    let seams: Vec<usize> = (0..samples.len()).filter(|&i| samples[i].is_at_seam).collect();
-    for _ in 0..rounds {
-        let (now, _) = cloud(samples)?;
-        budget.spend(seams.len() as u64 * 2500)?;
-        let moved: Vec<(Vector<3>, Vector<3>)> =
-            seams.par_iter().with_min_len(128).map(|&i| step(&samples[i], &now, &surface, spacing)).collect();
-        for (&i, (at, normal)) in seams.iter().zip(moved) {
-            (samples[i].at, samples[i].normal) = (at, normal);
-        }
-    }
     Ok(merged)
 }
 
@@ -106,12 +140,15 @@ fn step(sample: &Sample, now: &OrientedPoints, surface: &OrientedPoints, spacing
         return (sample.at, sample.normal);
     }
     let to = sample.at + along.unit_or_zero() * length;
-    match surface.project(to, spacing, Some(sample.normal)) {
-        // Near an edge the surface is not where the points say.
-        Some(foot) if (foot.point - to).norm() < OFF * spacing && foot.normal.dot(sample.normal) > ALIKE => {
-            (foot.point, foot.normal)
-        }
-        _ => (sample.at, sample.normal),
+    let onto = |x: Vector<3>| surface.project(x, spacing, Some(sample.normal));
+    let (Some(from), Some(foot)) = (onto(sample.at), onto(to)) else { return (sample.at, sample.normal) };
+    // Near an edge the surface is smoother than the points: they keep off it as far as they were.
+    let step = foot.point - from.point;
+    if (sample.at + step - to).norm() < OFF * spacing && foot.normal.dot(from.normal) > ALIKE {
+        let normal = (sample.normal + foot.normal - from.normal).unit_if_longer(1e-9).unwrap_or(sample.normal);
+        (sample.at + step, normal)
+    } else {
+        (sample.at, sample.normal)
     }
 }
 

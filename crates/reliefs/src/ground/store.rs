@@ -39,6 +39,11 @@ impl Store {
         self.cells.values().flatten()
     }
 
+    /// All points in the same order; what they lay in is let go cell by cell.
+    pub(crate) fn into_all(self) -> impl Iterator<Item = Sample> {
+        self.cells.into_values().flatten()
+    }
+
     /// The keys of the cells that meet a box and hold points.
     fn meeting(&self, bounds: &Bounds<3>) -> Vec<[i32; 3]> {
         let (low, high) = (self.of(bounds.min), self.of(bounds.max));

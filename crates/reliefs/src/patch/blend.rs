@@ -6,11 +6,13 @@ use rayon::prelude::*;
 
 use crate::{
     params::ReliefParams,
-    patch::{mask::Mask, notes::Notes},
+    patch::{mask::Mask, notes::Notes, usage::Usage},
     sample::Sample,
     texture::understand::Texture,
 };
 
+/// Surfaces that are farther apart, in spacings, do not have the same edges.
+const ALIKE: f64 = 1.5;
 /// Share of a loose piece that may lie within others.
 const PASSING: f64 = 0.02;
 
@@ -23,12 +25,16 @@ pub(crate) struct Site<'a> {
     pub(crate) samples: Vec<Sample>,
     /// Places of the texture that would go on from patches around, in cells.
     pub(crate) shunned: Vec<[f64; 2]>,
+    /// What was used of the texture so far, and by the patches nearby.
+    pub(crate) usage: &'a Usage,
+    pub(crate) nearby: Vec<[u32; 2]>,
     pub(crate) budget: &'a Budget,
 }
 
 /// What is there already, as a surface.
 pub(super) struct Around {
     pub(super) points: OrientedPoints,
+    pub(super) samples: Vec<Sample>,
     /// Targets of pairs.
     pub(super) targets: Vec<Sample>,
     pub(super) overlapped: Vec<u32>,
@@ -42,35 +48,28 @@ impl Site<'_> {
 
     /// Moves points in the overlap towards what is there, along their normals if that leads to it, and keeps those that are pasted.
     pub(super) fn blended(&self, bent: Vec<Sample>, around: &Around, notes: &mut Notes) -> Result<Vec<Sample>> {
-        let reach = (0.6 * self.reach()).max(3.0 * self.texture.spacing);
+        let texture = self.texture;
+        let near: Vec<&Sample> =
+            bent.iter().filter(|s| s.piece == 0 && self.mask.is_near_overlap(s.at, texture.radius)).collect();
+        let positions = near.iter().map(|s| s.at).collect();
+        let normals = near.iter().map(|s| s.normal).collect();
+        let own = OrientedPoints::new(positions, normals, texture.radius, self.budget)?;
         let blend = |s: &Sample| -> Result<Option<(Sample, u8)>> {
             if s.piece > 0 {
                 return Ok(self.mask.takes(s.middle()).then_some((*s, 0)));
             }
             // What lies beside may be moved in.
-            let is_at_seam = self.mask.is_at_seam(s.at, 1.6 * self.texture.spacing);
+            let is_at_seam = self.mask.is_at_seam(s.at, 1.6 * texture.spacing);
             if !self.mask.is_pasted(s.at) && !is_at_seam {
                 return Ok(None);
             }
-            let mut sample = Sample { is_at_seam, ..*s };
+            let sample = Sample { is_at_seam, ..*s };
             let share = self.mask.share(s.at);
             if share <= 0.0 {
                 return Ok(Some((sample, 0)));
             }
-            self.budget.spend(6000)?;
-            let hit = around.points.hit(s.at, s.normal, reach);
-            let how = if hit.is_some() { 1 } else { 2 };
-            let Some(foot) = hit.or_else(|| around.points.project(s.at, reach, Some(s.normal))) else {
-                return Ok(Some((sample, 3)));
-            };
-            let other = &self.samples[foot.nearest];
-            sample.at = s.at + (foot.point - s.at) * share;
-            let mixed = s.normal * (1.0 - share) + foot.normal * share;
-            sample.normal = mixed.unit_if_longer(1e-9).unwrap_or(s.normal);
-            let mix = |a: f32, b: f32| a + (b - a) * share as f32;
-            sample.variation = mix(s.variation, other.variation);
-            sample.colour = std::array::from_fn(|k| mix(s.colour[k], other.colour[k]));
-            Ok(Some((sample, how)))
+            self.budget.spend(9000)?;
+            Ok(Some(self.moved(sample, share, (around, &own))))
         };
         let blended: Result<Vec<Option<(Sample, u8)>>> = bent.par_iter().with_min_len(64).map(blend).collect();
         let mut samples = Vec::with_capacity(bent.len());
@@ -84,6 +83,28 @@ impl Site<'_> {
             samples.push(sample);
         }
         Ok(samples)
+    }
+
+    /// A point moved by a share of what leads from the surface of the patch to that of what is there; and how: 1 along its normal, 2 by
+    /// projection, 3 not at all. Both surfaces are as smooth, so that edges stay where both have them.
+    fn moved(&self, mut sample: Sample, share: f64, (around, own): (&Around, &OrientedPoints)) -> (Sample, u8) {
+        let reach = (0.6 * self.reach()).max(3.0 * self.texture.spacing);
+        let (at, normal) = (sample.at, sample.normal);
+        let hit = around.points.hit(at, normal, reach);
+        let how = if hit.is_some() { 1 } else { 2 };
+        let Some(foot) = hit.or_else(|| around.points.project(at, reach, Some(normal))) else { return (sample, 3) };
+        let (mut from, mut facing) = own.beside(at, normal).unwrap_or((at, normal));
+        // Where the surfaces are far apart, they are not alike: the point goes all the way.
+        let alike = (1.0 - (foot.point - from).norm() / (ALIKE * self.texture.spacing)).max(0.0);
+        (from, facing) = (at + (from - at) * alike, normal + (facing - normal) * alike);
+        let other = &around.samples[foot.nearest];
+        sample.at = at + (foot.point - from) * share;
+        let turned = normal + (foot.normal - facing) * share;
+        sample.normal = turned.unit_if_longer(1e-9).unwrap_or(normal);
+        let mix = |a: f32, b: f32| a + (b - a) * share as f32;
+        sample.variation = mix(sample.variation, other.variation);
+        sample.colour = std::array::from_fn(|k| mix(sample.colour[k], other.colour[k]));
+        (sample, how)
     }
 
     /// Leaves out loose pieces that would pass through those that stay.
@@ -114,13 +135,14 @@ impl Site<'_> {
 
     /// Points of the result near what is kept that nothing in the patch goes on from.
     pub(super) fn cracks(&self, samples: &[Sample], around: &Around) -> Result<usize> {
-        let positions = samples.iter().map(|s| s.at).collect();
-        let normals = samples.iter().map(|s| s.normal).collect();
-        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         let reach = 2.2 * self.texture.spacing;
+        let near: Vec<&Sample> = samples.iter().filter(|s| self.mask.is_near_overlap(s.at, reach)).collect();
+        let positions = near.iter().map(|s| s.at).collect();
+        let normals = near.iter().map(|s| s.normal).collect();
+        let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         self.budget.spend(around.overlapped.len() as u64 * 400)?;
         let is_lost = |i: &&u32| {
-            let sample = &self.samples[**i as usize];
+            let sample = &around.samples[**i as usize];
             sample.piece == 0
                 && self.mask.share(sample.at) > 0.6
                 && points.nearest(sample.at, reach, |j| points.normals()[j].dot(sample.normal) > 0.3).is_none()

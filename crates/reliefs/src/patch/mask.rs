@@ -5,7 +5,10 @@
 
 use arabesque_core::Vector;
 
-use crate::sample::Sample;
+use crate::{distance::distances, sample::Sample};
+
+/// Where a patch ceases to be bent, as a share of its side, from the overlap on: beyond, it is as it is in the texture.
+const FADE: f64 = 0.3;
 
 /// Cells around the place of a patch, whose corner is the origin.
 #[derive(Clone, Debug)]
@@ -18,9 +21,12 @@ pub(crate) struct Mask {
     kinds: Vec<Kind>,
     /// Share of the result in what is pasted, at the middle of each cell.
     shares: Vec<f64>,
-    /// Distance of each cell from those that are kept, and from those that are pasted, in cells.
+    /// How much of its bend a patch keeps, at the middle of each cell.
+    bends: Vec<f64>,
+    /// Distance of each cell from those that are kept, from those that are pasted, and from those that overlap, in cells.
     from_kept: Vec<f64>,
     from_pasted: Vec<f64>,
+    from_overlap: Vec<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,15 +53,25 @@ impl Mask {
             })
             .collect();
         let inner = |k: usize| [k % side, k / side].iter().all(|i| (margin..margin + patch).contains(i));
-        let from_free = distances(side, |k| !filled[k]);
+        let cells = |counts: &dyn Fn(usize) -> bool| -> Vec<f64> {
+            let is_marked: Vec<bool> = (0..side * side).map(counts).collect();
+            distances(&is_marked, (side, side), false)
+        };
+        let from_free = cells(&|k| !filled[k]);
         let kind = |k: usize| match (filled[k], inner(k) && from_free[k] <= overlap as f64 + 0.01) {
             (false, _) => Kind::Free,
             (true, true) => Kind::Overlap,
             (true, false) => Kind::Kept,
         };
         let kinds: Vec<Kind> = (0..side * side).map(kind).collect();
-        let from_kept = distances(side, |k| kinds[k] == Kind::Kept);
-        let from_pasted = distances(side, |k| kinds[k] != Kind::Kept);
+        let from_kept = cells(&|k| kinds[k] == Kind::Kept);
+        let from_pasted = cells(&|k| kinds[k] != Kind::Kept);
+        let from_overlap = cells(&|k| kinds[k] == Kind::Overlap);
+        let fade = FADE * patch as f64;
+        let bend = |k: usize| {
+            let x = 1.0 - ((from_overlap[k] - 1.0) / fade).clamp(0.0, 1.0);
+            if kinds[k] == Kind::Free { x * x * (3.0 - 2.0 * x) } else { 1.0 }
+        };
         let share = |k: usize| match kinds[k] {
             Kind::Kept => 1.0,
             Kind::Free => 0.0,
@@ -68,12 +84,13 @@ impl Mask {
             }
         };
         let shares = (0..side * side).map(share).collect();
-        Self { cell, margin, side, kinds, shares, from_kept, from_pasted }
+        let bends = (0..side * side).map(bend).collect();
+        Self { cell, margin, side, kinds, shares, bends, from_kept, from_pasted, from_overlap }
     }
 
     /// The cell under a place; `None` beyond the border.
     fn under(&self, p: Vector<3>) -> Option<usize> {
-        let at = [0, 1].map(|k| (p[k] / self.cell).floor() + self.margin as f64);
+        let at = [0, 1].map(|k| p[k] / self.cell + self.margin as f64);
         let is_in = at.iter().all(|v| (0.0..self.side as f64).contains(v));
         is_in.then(|| at[1] as usize * self.side + at[0] as usize)
     }
@@ -129,43 +146,49 @@ impl Mask {
         cells.map(|k| [k % self.side, k / self.side].map(|i| (i - self.margin) as u32)).collect()
     }
 
+    /// Whether a point of the texture that lies here can come to lie where the patch is pasted, if it moves by no more than `reach`.
+    pub(crate) fn may_be_pasted(&self, p: Vector<3>, reach: f64) -> bool {
+        let last = self.side as f64 - 0.5;
+        let at = [0, 1].map(|k| p[k] / self.cell + self.margin as f64);
+        let inside = at.map(|v| v.clamp(0.5, last));
+        let k = inside[1] as usize * self.side + inside[0] as usize;
+        let beyond = (at[0] - inside[0]).abs().max((at[1] - inside[1]).abs()) - 0.5;
+        // Where nothing is bent nothing moves in.
+        let reach = if self.bends[k] > 0.0 { reach / self.cell } else { 1.0 };
+        beyond.max(self.from_pasted[k] - 1.0) <= reach
+    }
+
+    /// Whether an overlapped cell lies within `reach`.
+    pub(crate) fn is_near_overlap(&self, p: Vector<3>, reach: f64) -> bool {
+        let at = [0, 1].map(|k| p[k] / self.cell + self.margin as f64);
+        let inside = at.map(|v| v.clamp(0.5, self.side as f64 - 0.5));
+        let k = inside[1] as usize * self.side + inside[0] as usize;
+        let beyond = (at[0] - inside[0]).abs().max((at[1] - inside[1]).abs());
+        (self.from_overlap[k] - 1.0).max(beyond) * self.cell <= reach
+    }
+
     /// The share of the result at a place, as smooth as the cells tell it.
     pub(crate) fn share(&self, p: Vector<3>) -> f64 {
+        self.smoothed(&self.shares, p).0
+    }
+
+    /// How much of its bend a patch keeps at a place, and how that grows along x and y.
+    pub(crate) fn bend(&self, p: Vector<3>) -> (f64, [f64; 2]) {
+        self.smoothed(&self.bends, p)
+    }
+
+    /// What the cells say of a place, with the slope.
+    fn smoothed(&self, cells: &[f64], p: Vector<3>) -> (f64, [f64; 2]) {
         let last = self.side - 1;
         let at = [0, 1].map(|k| (p[k] / self.cell + self.margin as f64 - 0.5).clamp(0.0, last as f64));
-        let low = at.map(|v| (v.floor() as usize).min(last.saturating_sub(1)));
+        let low = at.map(|v| (v as usize).min(last.saturating_sub(1)));
         let [u, v] = [at[0] - low[0] as f64, at[1] - low[1] as f64];
-        let of = |dx: usize, dy: usize| self.shares[(low[1] + dy).min(last) * self.side + (low[0] + dx).min(last)];
-        (of(0, 0) * (1.0 - u) + of(1, 0) * u) * (1.0 - v) + (of(0, 1) * (1.0 - u) + of(1, 1) * u) * v
+        let of = |dx: usize, dy: usize| cells[(low[1] + dy).min(last) * self.side + (low[0] + dx).min(last)];
+        let [a, b, c, d] = [of(0, 0), of(1, 0), of(0, 1), of(1, 1)];
+        let [below, above] = [a * (1.0 - u) + b * u, c * (1.0 - u) + d * u];
+        let slope = [((b - a) * (1.0 - v) + (d - c) * v) / self.cell, (above - below) / self.cell];
+        (below * (1.0 - v) + above * v, slope)
     }
-}
-
-/// Distance of the middle of each cell from that of the nearest for which `counts` holds.
-fn distances(side: usize, counts: impl Fn(usize) -> bool) -> Vec<f64> {
-    let far = f64::INFINITY;
-    let mut along = vec![far; side * side];
-    for y in 0..side {
-        let row = y * side..(y + 1) * side;
-        let mut last = far;
-        for k in row.clone() {
-            last = if counts(k) { 0.0 } else { last + 1.0 };
-            along[k] = last;
-        }
-        last = far;
-        for k in row.rev() {
-            last = if counts(k) { 0.0 } else { last + 1.0 };
-            along[k] = along[k].min(last);
-        }
-    }
-    let of = |k: usize| {
-        let (x, y) = (k % side, k / side);
-        let squares = (0..side).map(|j| {
-            let (dx, dy) = (along[j * side + x], y.abs_diff(j) as f64);
-            dx * dx + dy * dy
-        });
-        squares.fold(far, f64::min).sqrt()
-    };
-    (0..side * side).map(of).collect()
 }
 
 #[cfg(test)]
@@ -204,6 +227,29 @@ mod tests {
             assert!(share <= last + 1e-12 && last - share < 0.02, "{k}: {last} {share}");
             last = share;
         }
+    }
+
+    #[test]
+    fn a_patch_is_bent_beside_the_overlap_alone_and_nowhere_by_a_jump() {
+        let mask = Mask::new(1.0, (20, 3, 5), |x, _| x < 3.0);
+        let of = |x: f64| mask.bend(Vector([x, 10.0, 0.0]));
+        assert_eq!((of(-0.5).0, of(1.0).0, of(10.5).0), (1.0, 1.0, 0.0));
+        for k in 0..1000 {
+            let x = 0.01 * f64::from(k);
+            let drop = of(x).0 - of(x + 0.01).0;
+            assert!((-1e-12..0.004).contains(&drop), "{x}: {drop}");
+        }
+    }
+
+    #[test]
+    fn only_points_that_can_be_moved_in_may_be_pasted() {
+        let mask = Mask::new(1.0, (20, 3, 5), |x, _| x < 3.0);
+        let may = |x: f64| mask.may_be_pasted(Vector([x, 10.0, 0.0]), 2.0);
+        assert!(may(5.0) && may(0.5) && may(-1.0) && !may(-3.6), "the patch begins at 0");
+        assert!(may(24.5) && may(25.5) && !may(27.5), "nothing moves at the far border");
+        assert!(
+            mask.is_near_overlap(Vector([4.0, 10.0, 0.0]), 2.0) && !mask.is_near_overlap(Vector([8.0, 10.0, 0.0]), 2.0)
+        );
     }
 
     #[test]

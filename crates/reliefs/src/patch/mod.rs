@@ -6,3 +6,5 @@ pub(crate) mod notes;
 pub(crate) mod pairing;
 pub(crate) mod site;
 pub(crate) mod spline;
+pub(crate) mod usage;
+pub(crate) mod warp;

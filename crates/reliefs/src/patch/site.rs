@@ -3,6 +3,8 @@
 //! All is in the frame of the patch: its corner is the origin, its sides are x and y. Who lays patches brings what is there into this frame and
 //! takes the new points out of it.
 
+use std::collections::BTreeMap;
+
 use arabesque_core::{Bounds, Result, Stream, Vector};
 use arabesque_surface::{OrientedPoints, clusters};
 use rayon::prelude::*;
@@ -10,6 +12,7 @@ use rayon::prelude::*;
 use crate::{
     patch::pairing::{Pair, Pairing},
     patch::spline::{Spline, carried, determinant},
+    patch::warp::Warp,
     patch::{
         blend::{Around, Site},
         notes::Notes,
@@ -31,8 +34,42 @@ const TORN: f64 = 0.01;
 const FLOOR: f64 = 2e-3;
 /// Share of a target's surface that bends at most, from which its cluster is split.
 const FLAT: f64 = 0.06;
+/// Columns of nodes that are compared at most.
+const ENOUGH: usize = 400;
+/// Places that are looked at for each that is tried: many of them lie side by side.
+const LEAST: usize = 16;
+/// Places, apart from one another, that are chosen from at most.
+const DISTINCT: usize = 32;
+/// What was not seen counts so much, so that chance has a say.
+const SEEN: f64 = 0.05;
 /// How far pairs listen to one another, as a share of the patch.
 const LISTENING: f64 = 0.15;
+
+/// Every second node along both axes, again and again, while there are more than enough.
+fn thinned(mut nodes: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
+    let mut step = 2;
+    while nodes.len() > ENOUGH {
+        nodes.retain(|[x, y]| x % step == 0 && y % step == 0);
+        step *= 2;
+    }
+    nodes
+}
+
+/// A map of which a share counts, with the columns of its Jacobian matrix: `x + share (W(x) - x)`.
+fn faded(
+    x: Vector<3>,
+    (image, columns): (Vector<3>, [Vector<3>; 3]),
+    share: f64,
+    slope: [f64; 2],
+) -> (Vector<3>, [Vector<3>; 3]) {
+    let shift = image - x;
+    let column = |k: usize| {
+        let mut axis = Vector::ZERO;
+        axis[k] = 1.0;
+        axis + (columns[k] - axis) * share + shift * slope.get(k).copied().unwrap_or(0.0)
+    };
+    (x + shift * share, std::array::from_fn(column))
+}
 
 /// A patch, ready to be pasted.
 #[derive(Debug)]
@@ -49,7 +86,7 @@ impl Site<'_> {
         if self.texture.places.is_empty() {
             return Ok(None);
         }
-        let nodes = self.mask.overlapped();
+        let nodes = thinned(self.mask.overlapped());
         if nodes.is_empty() || self.samples.is_empty() {
             let place = self.texture.places[random.below(self.texture.places.len())];
             let samples = self.source(place).into_iter().filter(|s| self.mask.replaces(s)).collect();
@@ -78,10 +115,14 @@ impl Site<'_> {
         Ok(best)
     }
 
-    /// What is there already, prepared.
+    /// What is there already, prepared: no more of it than projections and rays from the overlap may meet.
     fn around(&self) -> Result<Around> {
-        let positions: Vec<_> = self.samples.iter().map(|s| s.at).collect();
-        let normals = self.samples.iter().map(|s| s.normal).collect();
+        let texture = self.texture;
+        let far = texture.lattice.reach.max(self.reach()) + texture.radius;
+        let is_near = |s: &&Sample| self.mask.is_near_overlap(s.at, far);
+        let samples: Vec<Sample> = self.samples.iter().filter(is_near).copied().collect();
+        let positions: Vec<_> = samples.iter().map(|s| s.at).collect();
+        let normals = samples.iter().map(|s| s.normal).collect();
         let overlapped: Vec<u32> =
             (0..positions.len() as u32).filter(|&i| self.mask.is_overlap(positions[i as usize])).collect();
         let most = (overlapped.len() / self.params.pairs).max(3);
@@ -91,17 +132,14 @@ impl Site<'_> {
             let mean = sum * (1.0 / cluster.len() as f64);
             let far = |i: u32| (positions[i as usize] - mean).norm2();
             let nearest = cluster.iter().copied().min_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-            nearest.map(|i| self.samples[i as usize])
+            nearest.map(|i| samples[i as usize])
         };
         let targets = some.iter().filter_map(target).collect();
-        Ok(Around {
-            points: OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?,
-            targets,
-            overlapped,
-        })
+        let points = OrientedPoints::new(positions, normals, texture.radius, self.budget)?;
+        Ok(Around { points, samples, targets, overlapped })
     }
 
-    /// Places to try, in the order in which they are tried: one of the best at random, then the others from the best on.
+    /// Places to try, in the order in which they are tried: of the best the one that was seen least, then the others from the best on.
     fn candidates(&self, overlap: &Overlap, random: &mut Stream) -> Result<Vec<Candidate>> {
         let texture = self.texture;
         let apart = self.params.apart * texture.patch as f64;
@@ -122,24 +160,34 @@ impl Site<'_> {
             texture.searcher.as_ref(),
             overlap,
             &places,
-            (tolerance, floor, 4 * self.params.tries),
+            (tolerance, floor, LEAST * self.params.tries),
             (self.params.search, self.budget),
         )?;
-        let most = (1.0 + tolerance) * found[0].difference.max(floor);
-        let within = found.partition_point(|c| c.difference <= most).max(1);
-        let mut order = vec![found[random.below(within)]];
         // Beside those that were tried others are hardly better.
         let near = (0.1 * texture.patch as f64).max(1.5);
-        for candidate in found {
+        let mut distinct: Vec<Candidate> = Vec::new();
+        for candidate in &found {
             let is_near = |c: &Candidate| {
                 let d = [0, 1].map(|k| f64::from(c.place[k]) - f64::from(candidate.place[k]));
                 d[0] * d[0] + d[1] * d[1] < near * near
             };
-            if order.len() < self.params.tries && !order.iter().any(is_near) {
-                order.push(candidate);
+            if distinct.len() < DISTINCT && !distinct.iter().any(is_near) {
+                distinct.push(*candidate);
             }
         }
-        Ok(order)
+        // Of those that are good enough the one of which least was seen so far.
+        let most = (1.0 + tolerance) * found[0].difference.max(floor);
+        let within = distinct.partition_point(|c| c.difference <= most).max(1);
+        let seen = |c: &Candidate| self.usage.of(c.place, &self.nearby) + SEEN;
+        let mut least = (f64::INFINITY, 0);
+        for (k, candidate) in distinct[..within].iter().enumerate() {
+            let rank = seen(candidate) * random.range(0.5, 1.5);
+            least = if rank < least.0 { (rank, k) } else { least };
+        }
+        let first = distinct.remove(least.1);
+        distinct.insert(0, first);
+        distinct.truncate(self.params.tries);
+        Ok(distinct)
     }
 
     /// The points of the texture for a patch, and as far around as they may move.
@@ -165,7 +213,9 @@ impl Site<'_> {
             let sample = texture.sample(i);
             Sample { at: sample.at - corner, ..sample }
         };
-        numbers.into_iter().map(moved).collect()
+        let reach = self.reach();
+        let may_be_pasted = |s: &Sample| s.piece > 0 || self.mask.may_be_pasted(s.at, reach);
+        numbers.into_iter().map(moved).filter(may_be_pasted).collect()
     }
 
     /// The patch of a place, bent and blended.
@@ -201,21 +251,8 @@ impl Site<'_> {
             let Some(spline) = Spline::new(&self.with_anchors(&pairs), stiffness, self.budget)? else {
                 return Ok(None);
             };
-            self.budget.spend(spline.work() * source.len() as u64)?;
-            let bend = |s: &Sample| {
-                let (at, columns) = spline.apply(s.at);
-                let volume = determinant(columns);
-                let is_sound = (FOLDED.0..FOLDED.1).contains(&volume) || !self.mask.is_pasted(at);
-                if s.piece > 0 {
-                    // A loose piece is moved, not bent.
-                    let shift = spline.apply(s.middle()).0 - s.middle();
-                    return (Sample { at: s.at + Vector([shift[0], shift[1], 0.0]), ..*s }, is_sound);
-                }
-                (Sample { at, normal: carried(s.normal, columns), ..*s }, is_sound)
-            };
-            let bent: Vec<(Sample, bool)> = source.par_iter().with_min_len(256).map(bend).collect();
-            if bent.iter().all(|(_, is_sound)| *is_sound) {
-                return Ok(Some(bent.into_iter().map(|(s, _)| s).collect()));
+            if let Some(bent) = self.warped(source, &spline)? {
+                return Ok(Some(bent));
             }
             notes.folds += 1;
             let fewer = ((pairs.len() as f64 * (1.0 - WORST)) as usize).min(pairs.len() - 1);
@@ -225,6 +262,35 @@ impl Site<'_> {
             pairs.truncate(fewer);
         }
         Ok(None)
+    }
+
+    /// The points, bent by a spline; `None` where it folds.
+    fn warped(&self, source: &[Sample], spline: &Spline) -> Result<Option<Vec<Sample>>> {
+        let positions: Vec<_> = source.iter().map(|s| s.at).filter(|at| self.mask.bend(*at).0 > 0.0).collect();
+        let warp = Warp::new(spline, &positions, self.texture.patch_side(), self.budget)?;
+        // Loose pieces are moved, not bent.
+        let mut shifts: BTreeMap<u32, Vector<3>> = BTreeMap::new();
+        for s in source.iter().filter(|s| s.piece > 0) {
+            shifts.entry(s.piece).or_insert_with(|| {
+                let middle = s.middle();
+                let shift = (spline.apply(middle).0 - middle) * self.mask.bend(middle).0;
+                Vector([shift[0], shift[1], 0.0])
+            });
+        }
+        let bend = |s: &Sample| {
+            if s.piece > 0 {
+                let shift = shifts.get(&s.piece).copied().unwrap_or(Vector::ZERO);
+                return Some(Sample { at: s.at + shift, ..*s });
+            }
+            let (share, slope) = self.mask.bend(s.at);
+            if share <= 0.0 {
+                return Some(*s);
+            }
+            let (at, columns) = faded(s.at, warp.apply(s.at), share, slope);
+            let is_sound = (FOLDED.0..FOLDED.1).contains(&determinant(columns)) || !self.mask.is_pasted(at);
+            is_sound.then(|| Sample { at, normal: carried(s.normal, columns), ..*s })
+        };
+        Ok(source.par_iter().with_min_len(256).map(bend).collect())
     }
 
     /// The pairs, with points that stay where they are: in the free part of the patch, and above and below some of the pairs, since all pairs

@@ -5,9 +5,8 @@ use arabesque_core::{Budget, Result, Vector};
 /// A map of space that takes given points to given points and bends as little as it can in between.
 #[derive(Clone, Debug)]
 pub(crate) struct Spline {
-    centres: Vec<Vector<3>>,
-    /// For each centre how much it pulls.
-    weights: Vec<Vector<3>>,
+    /// Pairs of centres, and how much each pulls: coordinate by coordinate, so that both are worked out at once.
+    pulls: Vec<[[f64; 2]; 6]>,
     /// Images of the origin and of the axes, as rows: constant, x, y, z.
     affine: [Vector<3>; 4],
 }
@@ -38,32 +37,44 @@ impl Spline {
             return Ok(None);
         }
         let answer = |i: usize| Vector([rows[i][size], rows[i][size + 1], rows[i][size + 2]]);
-        Ok(Some(Self {
-            centres: pairs.iter().map(|p| p.0).collect(),
-            weights: (0..n).map(answer).collect(),
-            affine: std::array::from_fn(|k| answer(n + k)),
-        }))
+        // An odd one is paired with itself, and pulls but once.
+        let two = |i: usize| {
+            let (centres, weights) =
+                ([pairs[i].0, pairs[(i + 1).min(n - 1)].0], [i, i + 1].map(|i| (i < n).then(|| answer(i))));
+            std::array::from_fn(|k| {
+                [0, 1].map(|j| if k < 3 { centres[j][k] } else { weights[j].map_or(0.0, |w| w[k - 3]) })
+            })
+        };
+        Ok(Some(Self { pulls: (0..n).step_by(2).map(two).collect(), affine: std::array::from_fn(|k| answer(n + k)) }))
     }
 
     /// Work units of one application.
     pub(crate) fn work(&self) -> u64 {
-        self.centres.len() as u64 * 4 + 20
+        self.pulls.len() as u64 * 8 + 20
     }
 
     /// The image of `x`, and the images of small steps along the axes: the columns of the Jacobian matrix.
     pub(crate) fn apply(&self, x: Vector<3>) -> (Vector<3>, [Vector<3>; 3]) {
         let [start, ex, ey, ez] = self.affine;
-        let mut image = start + ex * x[0] + ey * x[1] + ez * x[2];
-        let mut columns = [ex, ey, ez];
-        for (c, w) in self.centres.iter().zip(&self.weights) {
-            let d = x - *c;
-            let r = d.norm();
-            image += *w * -r;
-            if r > 1e-12 {
-                let pull = *w * (-1.0 / r);
-                columns.iter_mut().enumerate().for_each(|(k, column)| *column += pull * d[k]);
+        // Sums over the centres of weight times distance, and of weight times each coordinate of the direction.
+        let mut sums = [[[0.0_f64; 2]; 3]; 4];
+        for [cx, cy, cz, wx, wy, wz] in &self.pulls {
+            for j in 0..2 {
+                let d = [x[0] - cx[j], x[1] - cy[j], x[2] - cz[j]];
+                let r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                // At a centre itself the direction is none.
+                let inverse = 1.0 / r2.max(1e-24).sqrt();
+                let factors = [r2 * inverse, d[0] * inverse, d[1] * inverse, d[2] * inverse];
+                for (sum, factor) in sums.iter_mut().zip(factors) {
+                    sum[0][j] += wx[j] * factor;
+                    sum[1][j] += wy[j] * factor;
+                    sum[2][j] += wz[j] * factor;
+                }
             }
         }
+        let [far, dx, dy, dz] = sums.map(|sum| Vector(sum.map(|[a, b]| a + b)));
+        let image = start + ex * x[0] + ey * x[1] + ez * x[2] - far;
+        let columns = [ex - dx, ey - dy, ez - dz];
         (image, columns)
     }
 }

@@ -2,6 +2,8 @@
 
 use arabesque_core::{Bounds, Budget, Error, Result, Vector};
 
+use crate::distance::distances;
+
 /// Side of a cell, in spacings.
 const CELL: f64 = 1.0;
 /// How much wider than the others a gap is.
@@ -37,7 +39,7 @@ impl Gap {
             let [x, y] = [0, 1].map(|k| ((p[k] - all.min[k]) / cell) as usize);
             is_there[y.min(height - 1) * width + x.min(width - 1)] = true;
         }
-        let far = distances(&is_there, (width, height));
+        let far = distances(&is_there, (width, height), true);
         let mut tops: Vec<f64> = Vec::new();
         let at = |x: usize, y: usize| far[y * width + x];
         for y in 1..height.saturating_sub(1) {
@@ -141,61 +143,6 @@ impl Gap {
     }
 }
 
-/// Distance of each cell from the nearest that is marked; what lies beyond the border is.
-fn distances(is_marked: &[bool], (width, height): (usize, usize)) -> Vec<f64> {
-    let mut squares: Vec<f64> = vec![0.0; width * height];
-    for x in 0..width {
-        let mut last = 1.0;
-        for y in 0..height {
-            last = if is_marked[y * width + x] { 0.0 } else { last };
-            squares[y * width + x] = last;
-            last += 1.0;
-        }
-        last = 1.0;
-        for y in (0..height).rev() {
-            last = if is_marked[y * width + x] { 0.0 } else { last };
-            let d = squares[y * width + x].min(last);
-            squares[y * width + x] = d * d;
-            last += 1.0;
-        }
-    }
-    for row in squares.chunks_exact_mut(width) {
-        envelope(row);
-    }
-    squares
-}
-
-/// From squared distances along columns to distances, along one row: the lower envelope of parabolas [Felzenszwalb 2012].
-fn envelope(row: &mut [f64]) {
-    let n = row.len() as i64;
-    // Beyond both ends stands a cell that is marked.
-    let value = |i: i64, row: &[f64]| if (0..n).contains(&i) { row[i as usize] } else { 0.0 };
-    let (mut feet, mut starts): (Vec<i64>, Vec<f64>) = (vec![-1], vec![f64::NEG_INFINITY]);
-    for q in 0..=n {
-        loop {
-            let p = feet[feet.len() - 1];
-            let meet = ((value(q, row) + (q * q) as f64) - (value(p, row) + (p * p) as f64)) / (2 * (q - p)) as f64;
-            if meet > starts[starts.len() - 1] {
-                feet.push(q);
-                starts.push(meet);
-                break;
-            }
-            feet.pop();
-            starts.pop();
-        }
-    }
-    let mut k = 0;
-    let answers: Vec<f64> = (0..n)
-        .map(|x| {
-            while k + 1 < feet.len() && starts[k + 1] < x as f64 {
-                k += 1;
-            }
-            (value(feet[k], row) + (x - feet[k]).pow(2) as f64).sqrt()
-        })
-        .collect();
-    row.copy_from_slice(&answers);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -226,19 +173,5 @@ mod tests {
         let whole = find(&sheet(|_, _| false)).unwrap_err().to_string();
         assert!(whole.contains("no gap"), "{whole}");
         assert!(find(&sheet(|x, y| x as u32 % 4 == 1 && y as u32 % 4 == 1)).is_err());
-    }
-
-    #[test]
-    fn distances_are_those_of_an_exhaustive_search() {
-        let (width, height) = (13, 9);
-        let is_marked: Vec<bool> = (0..width * height).map(|k| k * k % 31 == 5).collect();
-        let far = distances(&is_marked, (width, height));
-        for (k, d) in far.iter().enumerate() {
-            let (x, y) = ((k % width) as i64, (k / width) as i64);
-            let border = [x + 1, y + 1, width as i64 - x, height as i64 - y].into_iter().min().unwrap() as f64;
-            let marked = (0..width * height).filter(|&m| is_marked[m]);
-            let own = marked.map(|m| ((x - (m % width) as i64) as f64).hypot((y - (m / width) as i64) as f64));
-            assert!((d - own.fold(border, f64::min)).abs() < 1e-9, "{k}");
-        }
     }
 }

@@ -25,7 +25,7 @@ const CELL: f64 = 1.3;
 /// Cells along the longer side of the field at most, where nobody says.
 const CELLS: f64 = 400.0;
 /// Rows of nodes above one another at most.
-const ROWS: f64 = 16.0;
+const ROWS: f64 = 10.0;
 /// Cells of a field at most.
 const NODES: usize = 4_000_000;
 /// Places that are enough to choose from beside a gap.
@@ -204,10 +204,10 @@ impl Texture {
             ));
         }
         let border = (params.border * patch).ceil();
-        // Beside the border there is what a patch may move.
+        // What is missing of a border at the edge of the texture is hardly missed, but there have to be points that may be moved in.
         let margin = match given {
             Some(_) => 0.0,
-            None => ((border + params.reach * patch) * cell).min(0.2 * short),
+            None => ((0.5 * params.reach * patch + 2.0) * cell).min(0.2 * short),
         };
         let inner = given.unwrap_or(Bounds::new(
             Vector([all.min[0] + margin, all.min[1] + margin, all.min[2]]),

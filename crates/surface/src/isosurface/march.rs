@@ -32,6 +32,9 @@ struct Edges {
     numbers: Vec<u16>,
 }
 
+/// The triangles of a block, and the vertices in the middle of its loops.
+type Made = (Vec<[u32; 3]>, Vec<Vertex>);
+
 /// The surface where a field is zero; triangles face where it is positive.
 pub(crate) fn march(field: &Field, budget: &Budget) -> Result<Patch> {
     let count = field.blocks.len();
@@ -57,7 +60,7 @@ pub(crate) fn march(field: &Field, budget: &Budget) -> Result<Patch> {
         firsts.push(vertices.len() as u32);
         vertices.extend_from_slice(&block.vertices);
     }
-    let made: Result<Vec<(Vec<[u32; 3]>, Vec<Vertex>)>> = (0..count)
+    let made: Result<Vec<Made>> = (0..count)
         .into_par_iter()
         .map(|b| {
             budget.spend(BLOCK as u64 * NODE)?;

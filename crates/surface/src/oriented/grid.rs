@@ -1,9 +1,17 @@
 //! Points in the cells of a regular grid, cell by cell in one list.
 
+use std::ops::Range;
+
 use arabesque_core::{Bounds, Vector};
 
 /// Cells for each point at most; where points lie far apart the cells are larger.
 const CELLS: f64 = 4.0;
+
+/// The largest whole number that is not larger. A cast of what is too large gives the largest number.
+fn floored(v: f64) -> i64 {
+    let whole = v as i64;
+    if (whole as f64) > v { whole.saturating_sub(1) } else { whole }
+}
 
 /// A grid over points. The points of a cell are next to one another, in their order.
 #[derive(Clone, Debug)]
@@ -57,51 +65,83 @@ impl Grid {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    /// Calls `visit` for all points in the cells that meet a box.
-    pub(super) fn within(&self, bounds: &Bounds<3>, mut visit: impl FnMut(u32)) {
+    /// Numbers of the points, cell by cell.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Calls `visit` with the places in the order that the cells of a box take.
+    pub(super) fn runs(&self, bounds: &Bounds<3>, mut visit: impl FnMut(Range<usize>)) {
         let (low, high) = (self.of(bounds.min), self.of(bounds.max));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 let (first, last) = (self.flat([low[0], y, z]), self.flat([high[0], y, z]));
                 let run = self.starts[first] as usize..self.starts[last + 1] as usize;
-                self.order[run].iter().for_each(|&i| visit(i));
+                if !run.is_empty() {
+                    visit(run);
+                }
             }
         }
     }
 
-    /// The nearest point of those for which `distance2` gives something, if it is no farther than `reach`.
+    /// The place in the order of the nearest point of those that fit, if it is no farther than `reach`, with its squared distance. Of equally
+    /// near ones it is the first in number.
     pub(super) fn nearest(
         &self,
         p: Vector<3>,
         reach: f64,
-        mut distance2: impl FnMut(u32) -> Option<f64>,
-    ) -> Option<(u32, f64)> {
-        let (mut best, mut radius): (Option<(u32, f64)>, f64) = (None, (0.5 * self.cell).min(reach));
-        loop {
-            self.within(&Bounds::new(p, p).grown(radius), |i| {
-                let Some(d2) = distance2(i) else { return };
-                if best.is_none_or(|(other, least)| d2 < least || d2 == least && i < other) {
-                    best = Some((i, d2));
+        mut distance2: impl FnMut(usize) -> Option<f64>,
+    ) -> Option<(usize, f64)> {
+        let at: [i64; 3] = std::array::from_fn(|k| floored((p[k] - self.origin[k]) / self.cell));
+        let last: [i64; 3] = self.counts.map(|n| n as i64 - 1);
+        let aside = |k: usize| at[k].saturating_neg().max(at[k].saturating_sub(last[k])).max(0);
+        let across = |k: usize| at[k].max(last[k].saturating_sub(at[k]));
+        let first = (0..3).map(aside).max().unwrap_or(0);
+        let most = (0..3).map(across).max().unwrap_or(0);
+        // How near the walls of its own cell are.
+        let wall = (0..3).fold(f64::INFINITY, |near: f64, k| {
+            let low = p[k] - (self.origin[k] + at[k] as f64 * self.cell);
+            near.min(low).min(self.cell - low)
+        });
+        let mut best: Option<(usize, f64)> = None;
+        for shell in first..=most {
+            // Rounding may put a point beside its cell.
+            let least = wall + (shell as f64 - 1.0 - 1e-9) * self.cell;
+            if shell > 0 && (least > reach || best.is_some_and(|(_, d2)| least > 0.0 && least * least > d2)) {
+                break;
+            }
+            self.shell(at, shell, |run| {
+                for k in run {
+                    let Some(d2) = distance2(k) else { continue };
+                    if best.is_none_or(|(other, b2)| d2 < b2 || d2 == b2 && self.order[k] < self.order[other]) {
+                        best = Some((k, d2));
+                    }
                 }
             });
-            match best {
-                // Nothing nearer can lie outside of the box that was searched.
-                Some((_, d2)) if d2 <= radius * radius => return best.filter(|_| d2 <= reach * reach),
-                Some((_, d2)) => radius = d2.sqrt().min(reach).max(radius * 1.001),
-                None => radius *= 2.0,
-            }
-            if radius >= reach {
-                if radius >= 2.0 * reach {
-                    return best.filter(|(_, d2)| *d2 <= reach * reach);
-                }
-                radius = reach;
-                self.within(&Bounds::new(p, p).grown(radius), |i| {
-                    let Some(d2) = distance2(i) else { return };
-                    if best.is_none_or(|(other, least)| d2 < least || d2 == least && i < other) {
-                        best = Some((i, d2));
+        }
+        best.filter(|(_, d2)| *d2 <= reach * reach)
+    }
+
+    /// Calls `visit` with the runs of the cells that are so many cells from one.
+    fn shell(&self, at: [i64; 3], shell: i64, mut visit: impl FnMut(Range<usize>)) {
+        let [low, high]: [[i64; 3]; 2] = [
+            std::array::from_fn(|k| at[k].saturating_sub(shell).max(0)),
+            std::array::from_fn(|k| at[k].saturating_add(shell).min(self.counts[k] as i64 - 1)),
+        ];
+        let mut cells = |from: i64, to: i64, y: i64, z: i64| {
+            let flat = |x: i64| self.flat([x as usize, y as usize, z as usize]);
+            visit(self.starts[flat(from)] as usize..self.starts[flat(to) + 1] as usize);
+        };
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                if (z - at[2]).abs() == shell || (y - at[1]).abs() == shell {
+                    if low[0] <= high[0] {
+                        cells(low[0], high[0], y, z);
                     }
-                });
-                return best.filter(|(_, d2)| *d2 <= reach * reach);
+                    continue;
+                }
+                let ends = [at[0].saturating_sub(shell), at[0].saturating_add(shell)];
+                ends.into_iter().filter(|x| (low[0]..=high[0]).contains(x)).for_each(|x| cells(x, x, y, z));
             }
         }
     }

@@ -21,6 +21,8 @@ pub struct OrientedPoints {
     /// Radius in which points count.
     radius: f64,
     grid: Grid,
+    /// Positions and normals, cell by cell, so that what lies together is read together.
+    packed: Vec<(Vector<3>, Vector<3>)>,
     _held: Held,
 }
 
@@ -41,10 +43,11 @@ impl OrientedPoints {
     /// # Errors
     /// [`arabesque_core::Error::Limit`] when memory or work are used up.
     pub fn new(positions: Vec<Vector<3>>, normals: Vec<Vector<3>>, radius: f64, budget: &Budget) -> Result<Self> {
-        let held = budget.hold("points of a surface", positions.len() * 80)?;
+        let held = budget.hold("points of a surface", positions.len() * 130)?;
         budget.spend(positions.len() as u64 * 30)?;
         let grid = Grid::new(&positions, 0.5 * radius);
-        Ok(Self { positions, normals, radius, grid, _held: held })
+        let packed = grid.order().iter().map(|&i| (positions[i as usize], normals[i as usize])).collect();
+        Ok(Self { positions, normals, radius, grid, packed, _held: held })
     }
 
     /// Number of points.
@@ -69,25 +72,32 @@ impl OrientedPoints {
 
     /// The nearest point that is no farther than `reach` and fits, with its squared distance.
     pub fn nearest(&self, p: Vector<3>, reach: f64, fits: impl Fn(usize) -> bool) -> Option<(usize, f64)> {
-        let distance2 = |i: u32| fits(i as usize).then(|| (self.positions[i as usize] - p).norm2());
-        self.grid.nearest(p, reach, distance2).map(|(i, d2)| (i as usize, d2))
+        let order = self.grid.order();
+        let distance2 = |k: usize| fits(order[k] as usize).then(|| (self.packed[k].0 - p).norm2());
+        self.grid.nearest(p, reach, distance2).map(|(k, d2)| (order[k] as usize, d2))
     }
 
     /// Calls `visit` for all points within `reach` of `p`.
     pub fn around(&self, p: Vector<3>, reach: f64, mut visit: impl FnMut(usize, f64)) {
-        self.grid.within(&Bounds::new(p, p).grown(reach), |i| {
-            let d2 = (self.positions[i as usize] - p).norm2();
-            if d2 <= reach * reach {
-                visit(i as usize, d2);
+        let order = self.grid.order();
+        self.grid.runs(&Bounds::new(p, p).grown(reach), |run| {
+            for (&i, (at, _)) in order[run.clone()].iter().zip(&self.packed[run]) {
+                let d2 = (*at - p).norm2();
+                if d2 <= reach * reach {
+                    visit(i as usize, d2);
+                }
             }
         });
     }
 
     /// Calls `visit` for all points in a box.
     pub fn inside(&self, bounds: &Bounds<3>, mut visit: impl FnMut(usize)) {
-        self.grid.within(bounds, |i| {
-            if bounds.contains(self.positions[i as usize]) {
-                visit(i as usize);
+        let order = self.grid.order();
+        self.grid.runs(bounds, |run| {
+            for (&i, (at, _)) in order[run.clone()].iter().zip(&self.packed[run]) {
+                if bounds.contains(*at) {
+                    visit(i as usize);
+                }
             }
         });
     }
@@ -95,13 +105,17 @@ impl OrientedPoints {
     /// Weighted mean of the points around `x` whose normals face as `side` does, and of their normals.
     fn mean(&self, x: Vector<3>, side: Vector<3>) -> Option<(Vector<3>, Vector<3>)> {
         let (mut a, mut n, mut sum) = (Vector::ZERO, Vector::ZERO, 0.0);
-        self.around(x, self.radius, |i, d2| {
-            if self.normals[i].dot(side) > 0.0 {
-                let w = 1.0 - d2 / (self.radius * self.radius);
-                let w = w * w * w;
-                a += self.positions[i] * w;
-                n += self.normals[i] * w;
-                sum += w;
+        let (r2, inverse) = (self.radius * self.radius, 1.0 / (self.radius * self.radius));
+        self.grid.runs(&Bounds::new(x, x).grown(self.radius), |run| {
+            for (at, normal) in &self.packed[run] {
+                let d2 = (*at - x).norm2();
+                if d2 <= r2 && normal.dot(side) > 0.0 {
+                    let w = 1.0 - d2 * inverse;
+                    let w = w * w * w;
+                    a += *at * w;
+                    n += *normal * w;
+                    sum += w;
+                }
             }
         });
         if sum < 1e-9 {
@@ -110,10 +124,23 @@ impl OrientedPoints {
         Some((a * (1.0 / sum), n.unit_if_longer(1e-9 * sum)?))
     }
 
+    /// Where the surface that faces as `way` does is met from a place beside it, along `way`, with its normal: one step of [`Self::hit`], for places
+    /// that lie on the surface but for what its smoothness leaves out.
+    pub fn beside(&self, x: Vector<3>, way: Vector<3>) -> Option<(Vector<3>, Vector<3>)> {
+        let (a, n) = self.mean(x, way)?;
+        let slope = n.dot(way);
+        (slope > 0.1).then(|| (x + way * (n.dot(a - x) / slope), n))
+    }
+
     /// Projects `x` onto the surface, if it is no farther than `reach`: along the mean normal, again and again until it stays. Only points that
     /// face as `side` does count, where that is given.
     pub fn project(&self, x: Vector<3>, reach: f64, side: Option<Vector<3>>) -> Option<Foot> {
-        let (nearest, d2) = self.nearest(x, reach, |i| side.is_none_or(|s| self.normals[i].dot(s) > 0.0))?;
+        let order = self.grid.order();
+        let distance2 = |k: usize| {
+            let (at, normal) = self.packed[k];
+            side.is_none_or(|s| normal.dot(s) > 0.0).then(|| (at - x).norm2())
+        };
+        let (nearest, d2) = self.grid.nearest(x, reach, distance2).map(|(k, d2)| (order[k] as usize, d2))?;
         let facing = self.normals[nearest];
         // From far away the first step leads from the nearest point.
         let mut y = if d2 > 0.25 * self.radius * self.radius { self.positions[nearest] } else { x };
@@ -136,25 +163,7 @@ impl OrientedPoints {
     /// Where the nearer of two rays from `x`, along `way` and against it, meets the surface on the side that faces as `way` does, if that is no
     /// farther than `reach`: a limited form of the intersection with rays [Adamson 2003].
     pub fn hit(&self, x: Vector<3>, way: Vector<3>, reach: f64) -> Option<Foot> {
-        let across = 0.6 * self.radius;
-        let ends = way * reach;
-        let bounds = Bounds::around([x - ends, x + ends]).grown(across);
-        let mut best: Option<(f64, usize)> = None;
-        self.grid.within(&bounds, |i| {
-            let i = i as usize;
-            let d = self.positions[i] - x;
-            let along = d.dot(way);
-            let aside2 = d.norm2() - along * along;
-            if along.abs() > reach || aside2 > across * across || self.normals[i].dot(way) < 0.2 {
-                return;
-            }
-            // A little more for what lies aside, so that the surface straight ahead wins.
-            let far = along.abs() + aside2.max(0.0).sqrt();
-            if best.is_none_or(|b| (far, i) < b) {
-                best = Some((far, i));
-            }
-        });
-        let (_, nearest) = best?;
+        let nearest = self.ahead(x, way, (0.6 * self.radius).min(reach)).or_else(|| self.ahead(x, way, reach))?;
         let facing = self.normals[nearest];
         let mut t = (self.positions[nearest] - x).dot(way);
         let mut normal = facing;
@@ -172,6 +181,31 @@ impl OrientedPoints {
             }
         }
         (t.abs() <= 1.2 * reach).then_some(Foot { point: x + way * t, normal, nearest })
+    }
+
+    /// The point nearest to both rays from `x`, no farther along them than `reach`.
+    fn ahead(&self, x: Vector<3>, way: Vector<3>, reach: f64) -> Option<usize> {
+        let across = 0.6 * self.radius;
+        let ends = way * reach;
+        let bounds = Bounds::around([x - ends, x + ends]).grown(across);
+        let order = self.grid.order();
+        let mut best: Option<(f64, u32)> = None;
+        self.grid.runs(&bounds, |run| {
+            for (&i, (at, normal)) in order[run.clone()].iter().zip(&self.packed[run]) {
+                let d = *at - x;
+                let along = d.dot(way);
+                let aside2 = d.norm2() - along * along;
+                if along.abs() > reach || aside2 > across * across || normal.dot(way) < 0.2 {
+                    continue;
+                }
+                // A little more for what lies aside, so that the surface straight ahead wins.
+                let far = along.abs() + aside2.max(0.0).sqrt();
+                if best.is_none_or(|b| (far, i) < b) {
+                    best = Some((far, i));
+                }
+            }
+        });
+        best.map(|(_, i)| i as usize)
     }
 
     /// How far the surface around a point is from a plane: 0 on planes, a third at most [Pauly 2002].
@@ -217,6 +251,8 @@ mod tests {
             let foot = sphere.project(x, 1.0, None).unwrap();
             assert!((foot.point.norm() - 1.0).abs() < 0.01, "{foot:?}");
             assert!(foot.normal.dot(x.unit()) > 0.97, "{foot:?}");
+            let (beside, normal) = sphere.beside(x.unit() * 1.02, x.unit()).unwrap();
+            assert!((beside - x.unit()).norm() < 0.01 && normal.dot(x.unit()) > 0.99, "{beside:?}");
             let hit = sphere.hit(x, x.unit(), 0.5).unwrap();
             assert!((hit.point - x.unit()).norm() < 0.01, "{hit:?}");
         }

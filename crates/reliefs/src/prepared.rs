@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Budget, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
+use arabesque_core::{Bounds, Budget, Error, Forecast, PointSet, Progress, Result, StopReason, Warning, Watch};
 
 use crate::{
     ground::canvas::Canvas,
@@ -17,8 +17,10 @@ use crate::{
     texture::{axes::Axes, understand::Texture},
 };
 
-/// Work units a point of the result takes, about.
+/// Work units that a point of the result may take, at most.
 const EACH: f64 = 60_000.0;
+/// The same as they usually are.
+const WORK: f64 = 10_000.0;
 /// Overlap of the patches in a gap at least, as a share of the patch.
 const GAP_OVERLAP: f64 = 0.2;
 /// How many more patches are tried in a gap.
@@ -126,15 +128,15 @@ impl Prepared {
         let canvas: Box<dyn Canvas + '_> = match &request.ground {
             Ground::Plane(size) | Ground::Tile(size) => {
                 let is_tile = matches!(request.ground, Ground::Tile(_));
-                self.allow(self.expected(size[0] * size[1]), &budget)?;
+                self.allow(self.expected(size[0] * size[1]), &budget, watch)?;
                 Box::new(PlaneCanvas::new(both, *size, is_tile, request.seed, &budget)?)
             }
             Ground::Hole => {
-                self.allow(2.0 * self.points() as f64, &budget)?;
+                self.allow(2.0 * self.points() as f64, &budget, watch)?;
                 Box::new(HoleCanvas::new(both, request.seed, &budget)?)
             }
             Ground::Mesh(mesh, directions, scale) => {
-                self.allow(self.expected(mesh.area() / (scale * scale)), &budget)?;
+                self.allow(self.expected(mesh.area() / (scale * scale)), &budget, watch)?;
                 Box::new(MeshCanvas::new(both, (mesh, directions, *scale), request.seed, &budget)?)
             }
         };
@@ -148,10 +150,12 @@ impl Prepared {
         size * area / (all[0] * all[1])
     }
 
-    fn allow(&self, expected: f64, budget: &Budget) -> Result<()> {
+    /// Allows the work of as many points, and tells how much that will be.
+    fn allow(&self, expected: f64, budget: &Budget, watch: &mut dyn Watch<PointSet<3>>) -> Result<()> {
         let limits = budget.limits();
         budget.within("points of the result", expected as usize, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected * EACH / 1e6);
+        watch.foreseen(&Forecast { count: expected, work: expected * WORK, allowed: budget.allowed() as f64 });
         Ok(())
     }
 

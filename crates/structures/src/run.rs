@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Budget, EnergyPoint, Error, Forecast, PointSet, Progress, Result, StopReason, Vector, Warning, Watch};
+use arabesque_core::{
+    Budget, EnergyPoint, Error, Forecast, PointSet, Progress, Result, StopReason, Vector, Warning, Watch,
+};
 
 use crate::{
     energy::{

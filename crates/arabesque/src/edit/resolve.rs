@@ -71,16 +71,16 @@ pub(super) fn resolve<const D: usize>(edit: &Edit, layout: &Layout<D>, budget: &
 /// Refuses what no reader would take: elements beyond the largest coordinate.
 fn within_reach<const D: usize>(edit: &Edit, resolved: &Resolved<D>, budget: &Budget) -> Result<()> {
     let most = budget.limits().coordinate;
-    let is_beyond = |touched: &&Touched<D>| {
-        touched.to.is_some_and(|to| to.0.iter().any(|c| !(c.abs() + touched.reach <= most)))
-    };
+    let is_beyond =
+        |touched: &&Touched<D>| touched.to.is_some_and(|to| to.0.iter().any(|c| !(c.abs() + touched.reach <= most)));
     let Some(far) = resolved.touched.iter().find(is_beyond) else { return Ok(()) };
     let option = match (&edit.scale, edit.insert.is_empty()) {
         (_, false) => "insert",
         (Some(_), true) => "scale",
         (None, true) => "move",
     };
-    let expected = format!("an edit after which element {} lies between -{} and {}", far.id, rounded(most), rounded(most));
+    let expected =
+        format!("an edit after which element {} lies between -{} and {}", far.id, rounded(most), rounded(most));
     Err(Error::parameter(option, "too far", expected))
 }
 

@@ -230,7 +230,11 @@ impl Budget {
             what: self.named(what),
             found,
             limit: limit.to_string(),
-            advice: format!("make it smaller, or raise the limit with --limit {name}={enough}"),
+            advice: if Limits::default().set(name, &enough.to_string()).is_ok() {
+                format!("make it smaller, or raise the limit with --limit {name}={enough}")
+            } else {
+                "make it smaller".into()
+            },
         }
     }
 
@@ -251,7 +255,8 @@ impl Budget {
     pub fn spent(&self) -> (String, String) {
         let work = self.account.limits.work;
         let allowed = self.allowed() / MILLION;
-        let message = format!("{}: {allowed} million units of work were used up: this is the best so far", self.stage_name());
+        let message =
+            format!("{}: {allowed} million units of work were used up: this is the best so far", self.stage_name());
         (message, format!("give it less to do, or raise the limit with --limit work={}", work.saturating_mul(2)))
     }
 
@@ -359,6 +364,12 @@ mod tests {
         let budget = Budget::stopping_at(Limits::default(), 3);
         assert_eq!([(); 4].map(|()| budget.check().is_ok()), [true, true, false, false]);
         assert_eq!(budget.checks(), 4);
+    }
+
+    #[test]
+    fn a_limit_is_not_to_be_raised_beyond_what_it_may_be() {
+        let error = Budget::default().within("points", usize::MAX, ("output-elements", 8)).unwrap_err();
+        assert!(error.to_string().ends_with("; make it smaller"), "{error}");
     }
 
     #[test]

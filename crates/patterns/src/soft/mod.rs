@@ -24,7 +24,8 @@ mod tests;
 mod wall;
 
 use arabesque_core::{
-    Border, Budget, Error, Exemplar, Matrix, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot, Watch,
+    Border, Budget, Error, Exemplar, Forecast, Matrix, Outcome, Placement, Progress, Request, Result, Similarity,
+    Snapshot, Watch,
 };
 
 use crate::{
@@ -38,6 +39,8 @@ use layout::{Plan, empty, holding};
 use natural::Natural;
 use relax::{BETWEEN, ROUNDS, Relaxation};
 
+/// Work that an element takes, about.
+const PER_ELEMENT: f64 = 8e6;
 /// Share of the progress that the layout counts for.
 const LAYOUT_SHARE: f64 = 0.6;
 /// Elements are laid out so often at most, and no more once so small a share of them is missing.

@@ -90,7 +90,7 @@ impl Texture {
         if contradictions(&points, radius, budget)? > 0.1 {
             return Err(fail(
                 "neighbouring normals face opposite ways",
-                "leave the normals out, so that they are estimated, or turn them to one side",
+                "leave the normals out, so that they are estimated, or turn them to one side; lower the heights of a picture",
             ));
         }
         let lattice = lattice(&all, spacing, params);
@@ -231,6 +231,13 @@ impl Texture {
         let ((x0, x1), (y0, y1)) = (limits(0), limits(1));
         if x1 < x0 || y1 < y0 {
             let side = self.bounds.size();
+            if params.patch.is_none() {
+                let problem = format!("no room for a patch in its box, which is {:.4} by {:.4}", side[0], side[1]);
+                return Err(fail(
+                    problem,
+                    "leave out points that lie far from all others, or say with --patch how large patches are",
+                ));
+            }
             return Err(Error::parameter(
                 "patch",
                 format!("{:.4}", patch * cell),

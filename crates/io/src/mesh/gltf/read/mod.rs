@@ -72,6 +72,7 @@ pub fn read_scene_beside(name: &str, bytes: &[u8], beside: &dyn Beside, budget: 
         tree.of_node.resize(reader.scene.nodes.len(), place.branch);
     }
     reader.warn();
+    let flat = reader.reshaped.flat;
     // Meshes of one shape are told apart by their looks.
     let (looks, warnings) = materials::looks(&binary, &mut sources)?;
     reader.scene.looks = looks;
@@ -79,6 +80,10 @@ pub fn read_scene_beside(name: &str, bytes: &[u8], beside: &dyn Beside, budget: 
     let shown = document.scenes.get(document.scene.unwrap_or(0));
     extras::to_scene(shown.and_then(|s| s.extras.as_deref()), budget.limits().coordinate, &mut scene);
     scene.warnings.extend(warnings);
+    if scene.nodes.is_empty() && scene.points.is_empty() && flat > 0 {
+        let problem = format!("{flat} nodes with meshes, all scaled to nothing in some direction");
+        return Err(Error::input(name, problem, "give their scales other values than 0"));
+    }
     if scene.nodes.is_empty() && scene.points.is_empty() {
         return Err(Error::input(name, "no mesh and no points in its scene", "give a file with meshes or points"));
     }
@@ -194,10 +199,13 @@ impl Reader<'_> {
         }
         let Reshaped { stretched, mirrored, flat } = self.reshaped;
         if stretched + mirrored > 0 {
-            let message = format!(
-                "{stretched} nodes stretch what they show along one direction, and {mirrored} mirror it: each shape that arises is a mesh of \
-                 its own"
-            );
+            let parts = [(stretched, "nodes stretch what they show along one direction"), (mirrored, "mirror it")];
+            let parts = match parts {
+                [(0, _), (n, _)] => format!("{n} nodes mirror what they show"),
+                [(n, what), (0, _)] => format!("{n} {what}"),
+                [(n, what), (m, other)] => format!("{n} {what}, and {m} {other}"),
+            };
+            let message = format!("{parts}: each shape that arises is a mesh of its own");
             warn(message, "apply scales before saving, if these are to be copies of one element");
         }
         if flat > 0 {

@@ -98,5 +98,7 @@ fn a_reader_that_goes_away_before_the_end_is_told() {
     let mut said = String::new();
     child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(1), "{said}");
-    assert!(said.contains("standard output: the reader has gone away"), "{said}");
+    // The write fails, or whoever keeps watch has seen it before.
+    let ways = ["standard output: the reader has gone away", "standard output: whoever reads it went away"];
+    assert!(ways.iter().any(|way| said.contains(way)), "{said}");
 }

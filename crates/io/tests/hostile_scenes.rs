@@ -59,7 +59,7 @@ fn numbers_that_are_none_are_refused_and_flat_things_left_out() {
         read("{\"mesh\": 0}, {\"mesh\": 0, \"scale\": [0, 0, 0]}, {\"mesh\": 0, \"scale\": [1, 0, 1]}", "").unwrap();
     assert_eq!(scene.nodes.len(), 1);
     assert!(scene.warnings[0].message.contains("2 nodes whose transform leaves no volume are left out"));
-    refused("{\"mesh\": 0, \"scale\": [0, 0, 0]}", "", "no mesh and no points");
+    refused("{\"mesh\": 0, \"scale\": [0, 0, 0]}", "", "1 nodes with meshes, all scaled to nothing");
     refused("", "", "no mesh and no points");
     refused("{\"name\": \"empty\"}", "", "no mesh and no points");
 }

@@ -135,7 +135,7 @@ fn what_cannot_be_is_refused_with_what_to_do() {
         ("relief few.csv --extent 5x4 -o a.ply", "4 points"),
         ("relief nan.csv --extent 5x4 -o a.ply", "nan.csv"),
         ("relief bumps.csv --extent 5x4 --set stifness=1 -o a.ply", "stiffness"),
-        ("relief bumps.csv --extent 1000000x1000000 -o a.ply", "output-elements"),
+        ("relief bumps.csv --extent 3000x3000 -o a.ply", "output-elements"),
     ] {
         let output = folder.run(line);
         let message = common::stderr(&output);

@@ -54,7 +54,7 @@ fn trees_that_are_deep_or_no_trees_are_refused() {
 #[test]
 fn numbers_that_are_none_are_refused_and_flat_things_left_out() {
     refused("{\"mesh\": 0, \"translation\": [1e999, 0, 0]}", "", "its JSON: number out of range");
-    refused("{\"mesh\": 0, \"scale\": [1e300, 1e300, 1e300]}", "", "a.gltf: node");
+    refused("{\"mesh\": 0, \"scale\": [1e300, 1e300, 1e300]}", "", "a.gltf: a node without a name");
     let scene =
         read("{\"mesh\": 0}, {\"mesh\": 0, \"scale\": [0, 0, 0]}, {\"mesh\": 0, \"scale\": [1, 0, 1]}", "").unwrap();
     assert_eq!(scene.nodes.len(), 1);

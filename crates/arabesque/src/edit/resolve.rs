@@ -71,8 +71,9 @@ pub(super) fn resolve<const D: usize>(edit: &Edit, layout: &Layout<D>, budget: &
 /// Refuses what no reader would take: elements beyond the largest coordinate.
 fn within_reach<const D: usize>(edit: &Edit, resolved: &Resolved<D>, budget: &Budget) -> Result<()> {
     let most = budget.limits().coordinate;
-    let is_beyond =
-        |touched: &&Touched<D>| touched.to.is_some_and(|to| to.0.iter().any(|c| !(c.abs() + touched.reach <= most)));
+    let is_beyond = |touched: &&Touched<D>| {
+        touched.to.is_some_and(|to| to.0.iter().any(|c| c.abs() > most - touched.reach || !c.is_finite()))
+    };
     let Some(far) = resolved.touched.iter().find(is_beyond) else { return Ok(()) };
     let option = match (&edit.scale, edit.insert.is_empty()) {
         (_, false) => "insert",

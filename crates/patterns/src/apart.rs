@@ -3,7 +3,7 @@
 //! A repeat is looked for in all that is drawn; what lies strewn over or under things that repeat would hide theirs. So where the
 //! whole has none, parts of it are looked at: its strokes, and classes of elements.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Result, Role, Vector};
 
@@ -32,8 +32,6 @@ const KEEPS: (f64, f64) = (0.25, 2.5);
 const AROUND: f64 = 0.25;
 /// Work for a centre that is looked at.
 const LOOK: u64 = 8;
-/// Work for each pair of boxes.
-const PAIR: u64 = 2;
 
 /// A part of an exemplar that repeats by itself.
 pub(crate) struct Layer {
@@ -132,24 +130,33 @@ fn is_strewn(exemplar: &Exemplar<2>, in_layer: &[bool], vectors: [Vector<2>; 2],
     if !is_anywhere(&rest.iter().map(|(_, p)| *p).collect::<Vec<_>>(), vectors) {
         return Ok(false);
     }
-    budget.spend(PAIR * (layer.len() * rest.len() + exemplar.classes.len() * rest.len()) as u64)?;
-    let of_class = |class: usize| rest.iter().filter(|(c, _)| *c == class).map(|(_, p)| *p).collect::<Vec<_>>();
-    let many = (0..exemplar.classes.len()).map(of_class).filter(|places| places.len() >= LEAST.0);
-    let area = exemplar.window.measure();
-    Ok(many.into_iter().all(|places| is_anywhere(&places, vectors) && !is_around(&places, &layer, area)))
+    // What is farther from the layer than a cell is wide is far, however far it is.
+    let reach = vectors[0].norm() + vectors[1].norm();
+    let index = GridIndex::new(&layer, reach, &Domain::Box(exemplar.window));
+    let (mut of_class, mut meter) = (BTreeMap::<usize, (Vec<Vector<2>>, Vec<f64>)>::new(), budget.meter());
+    for (class, p) in rest {
+        let (nearest, looked) = index.nearest_counted(p, reach, None);
+        meter.spend(LOOK * (1 + looked))?;
+        let (places, far) = of_class.entry(class).or_default();
+        places.push(p);
+        far.push(nearest.map_or(reach, |(_, distance)| distance));
+    }
+    // How much of the page is nearer to one of them.
+    let unit = std::f64::consts::PI * layer.len() as f64 / exemplar.window.measure();
+    let is_free = |(places, far): (Vec<Vector<2>>, Vec<f64>)| {
+        let shares = far.into_iter().map(|d| unit * d * d).collect();
+        is_anywhere(&places, vectors) && !is_around(shares)
+    };
+    Ok(of_class.into_values().filter(|(places, _)| places.len() >= LEAST.0).all(is_free))
 }
 
-/// Whether half of some places are as far from the nearest of a layer as few would be by chance.
-fn is_around(places: &[Vector<2>], layer: &[Vector<2>], area: f64) -> bool {
-    let nearest = |p: &Vector<2>| layer.iter().map(|q| (*q - *p).norm2()).fold(f64::INFINITY, f64::min);
-    // How much of the page is nearer to one of them.
-    let unit = std::f64::consts::PI * layer.len() as f64 / area;
-    let mut shares: Vec<f64> = places.iter().map(|p| unit * nearest(p)).collect();
+/// Whether half of some places are as far from the nearest of a layer as few would be by chance: for each, how much of the page is nearer.
+fn is_around(mut shares: Vec<f64>) -> bool {
     shares.sort_by(f64::total_cmp);
     let open = (1.0 - shares.first().copied().unwrap_or(0.0)).max(0.1);
     let half = shares.len() / 2;
     let least = shares.windows(half + 1).map(|held| held[half] - held[0]).fold(f64::INFINITY, f64::min);
-    least < open * AROUND.min(0.5 - 1.0 / (places.len() as f64).sqrt())
+    least < open * AROUND.min(0.5 - 1.0 / (shares.len() as f64).sqrt())
 }
 
 /// Whether places lie anywhere in the cells of a lattice.
@@ -194,11 +201,19 @@ fn found(exemplar: &Exemplar<2>, elements: &[bool], curves: &[bool], budget: &Bu
 fn is_clear(exemplar: &Exemplar<2>, in_layer: &[bool], budget: &Budget) -> Result<bool> {
     let boxes: Vec<_> = exemplar.elements.iter().map(|e| e.outline.bounds()).collect();
     let (layer, rest): (Vec<usize>, Vec<usize>) = (0..boxes.len()).partition(|&e| in_layer[e]);
-    budget.spend(PAIR * (layer.len() * rest.len()) as u64)?;
-    let mut met = 0;
+    let centre = |e: usize| exemplar.elements[e].centre;
+    let radius = |e: usize| exemplar.elements[e].outline.radius(centre(e));
+    let centres: Vec<Vector<2>> = layer.iter().map(|&l| centre(l)).collect();
+    let widest = layer.iter().map(|&l| radius(l)).fold(0.0, f64::max);
+    let index = GridIndex::new(&centres, widest.max(1e-9), &Domain::Box(exemplar.window));
+    let (mut met, mut meter) = (0, budget.meter());
     for &r in &rest {
         let outline = &exemplar.elements[r].outline;
-        for &l in layer.iter().filter(|&&l| boxes[l].intersects(&boxes[r])) {
+        let mut near = Vec::new();
+        let looked = index.within(centre(r), radius(r) + widest, |k, _| near.push(layer[k]));
+        meter.spend(LOOK * (1 + looked))?;
+        near.sort_unstable();
+        for l in near.into_iter().filter(|&l| boxes[l].intersects(&boxes[r])) {
             let common = outline.try_intersection(&exemplar.elements[l].outline, budget)?.area();
             if common > ON * outline.area() {
                 met += 1;

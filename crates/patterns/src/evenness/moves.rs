@@ -425,7 +425,7 @@ where
             return Ok(false);
         }
         let class = self.library.class[body.pose.source];
-        if self.counts[class] - 1.0 < (1.0 - self.fewer) * self.targets[class] - 0.5 {
+        if self.counts[class] - 1.0 < (1.0 - self.fewer) * self.targets[class] - self.spare {
             return Ok(false);
         }
         let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), meter)?;

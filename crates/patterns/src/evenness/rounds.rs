@@ -27,8 +27,8 @@ const OFF: f64 = 0.3;
 /// Elements are too near each other when so much is missing, in tolerated distances.
 const NEAR: f64 = 0.02;
 
-/// Share by which a class may have fewer elements than it should in the end.
-const FEWER: f64 = 0.025;
+/// Share by which a class may have fewer elements than it should in the end, and how many beside: of a handful, one is more than a share.
+const FEWER: (f64, f64) = (0.025, 1.5);
 
 /// Places that are worked on before something is told.
 const TOLD: usize = 48;
@@ -59,7 +59,7 @@ where
     }
     rounds.relax(&mut meter)?;
     // What still lies on something has no room: rather a few less than there should be.
-    rounds.work.fewer = FEWER;
+    (rounds.work.fewer, rounds.work.spare) = FEWER;
     rounds.work.now += 1;
     if rounds.clumps(0, &mut meter)? > 0 {
         rounds.relax(&mut meter)?;

@@ -25,6 +25,8 @@ const NARROW: (f64, f64) = (2.0, 20.0);
 
 /// Numbers of elements of a class stay within this share of what they should be.
 pub(crate) const COUNT: f64 = 0.01;
+/// Numbers are whole.
+const ROUNDING: f64 = 0.5;
 
 /// Nanoseconds for a pair of elements.
 const PAIR: u64 = 600;
@@ -49,8 +51,9 @@ pub(crate) struct Work<'a, const D: usize> {
     pub(crate) counts: Numbered<f64>,
     pub(crate) targets: Numbered<f64>,
     pub(crate) moves: Moves,
-    /// By which share a class may have fewer elements than it should.
+    /// By which share a class may have fewer elements than it should, and by how many beside.
     pub(crate) fewer: f64,
+    pub(crate) spare: f64,
     /// What is tried at the same time draws on it.
     pub(crate) budget: Budget,
     steps: Vec<Undo<D>>,
@@ -115,8 +118,23 @@ impl<'a, const D: usize> Work<'a, D> {
     ) -> Self {
         let changed = vec![1; page.parts()];
         let steps = Vec::new();
-        let (fewer, now) = (COUNT, 1);
-        Self { page, shares, natural, library, extent, counts, targets, moves, fewer, budget, steps, changed, now }
+        let (fewer, spare, now) = (COUNT, ROUNDING, 1);
+        Self {
+            page,
+            shares,
+            natural,
+            library,
+            extent,
+            counts,
+            targets,
+            moves,
+            fewer,
+            spare,
+            budget,
+            steps,
+            changed,
+            now,
+        }
     }
 
     /// Whether anything has changed around `p` since some time.

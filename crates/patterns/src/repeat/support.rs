@@ -17,6 +17,9 @@ const ENOUGH_LINE: f64 = 0.975;
 /// Marks that are looked at before a hopeless translation is given up, and the share of them that must have a partner.
 const FIRST: (usize, f64) = (24, 0.6);
 
+/// The same of many, which tell nearly what all will: where a part repeats and the rest does not, it takes most of them to others.
+const MORE: (usize, f64) = (400, 0.85);
+
 /// Of so many marks, less than a quarter with a partner is hopeless.
 const HOPELESS: usize = 8;
 
@@ -71,7 +74,7 @@ pub(crate) fn is_supported(
             found[group] += usize::from(partner.is_some());
         }
         let (so_far, met) = (seen[0] + seen[1], found[0] + found[1]);
-        let is_poor = so_far >= FIRST.0 && (met as f64) < FIRST.1 * so_far as f64;
+        let is_poor = [FIRST, MORE].iter().any(|(seen, share)| so_far >= *seen && (met as f64) < share * so_far as f64);
         if is_poor || (so_far >= HOPELESS && 4 * met < so_far) {
             break;
         }

@@ -41,6 +41,9 @@ pub(crate) const NEAR: f64 = 0.2;
 /// Coordinates are taken to be rounded to this share of the side of the frame at worst.
 const ROUNDING: f64 = 4e-4;
 
+/// Where marks of a kind are nearer than this share of the tolerance, any offset takes about all of them to others, and tells nothing.
+const CROWDED: f64 = 0.25;
+
 /// Marks from which offsets to all others are taken, at most, and so many of one kind.
 const ANCHORS: (usize, usize) = (96, 24);
 
@@ -86,6 +89,9 @@ impl Search<'_> {
     /// When the budget is used up, or somebody asks to stop.
     pub(crate) fn lattice(&self) -> Result<Option<Repeat>> {
         let tolerance = self.tolerance();
+        if self.mode.tolerance > EXACT && self.marks.closest < CROWDED * tolerance {
+            return Ok(None);
+        }
         let (mut first, mut along): (Option<Vector<2>>, Option<Vector<2>>) = (None, None);
         for by in self.candidates()? {
             let is_new = first.is_none_or(|a| !are_parallel(a, by));

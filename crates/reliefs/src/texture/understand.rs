@@ -2,7 +2,6 @@
 
 use arabesque_core::{Bounds, Budget, Error, Held, PointSet, Result, Vector, Warning};
 use arabesque_surface::{OrientedPoints, spacing_of};
-use rayon::prelude::*;
 
 use crate::{
     params::{ReliefParams, Search},
@@ -30,6 +29,16 @@ const ROWS: f64 = 10.0;
 const NODES: usize = 4_000_000;
 /// Places that are enough to choose from beside a gap.
 const ENOUGH: usize = 12;
+/// Share of a patch that overlaps the next: least, and most.
+const OVERLAP: (f64, f64) = (0.1, 0.2);
+/// Mean surface variation of what has no edges.
+const SMOOTH: f64 = 0.03;
+/// Cells across an overlap that tell which way things go on there.
+const OVERLAPPED: f64 = 4.0;
+/// Share of a patch that its border is wide: least, and most.
+const BORDER: (f64, f64) = (0.15, 0.25);
+/// Cells across a border that tell where the surface goes on.
+const PASTED: f64 = 6.0;
 /// How far distances are told, in cells.
 const REACH: f64 = 5.0;
 
@@ -107,7 +116,7 @@ impl Texture {
         let field = Field::new(&points, &lattice, origin, (nodes[0], nodes[1]), budget)?;
         let repetition = repetition(&field, budget)?;
         budget.spend(points.len() as u64 * 900)?;
-        let variations: Vec<f32> = (0..points.len()).into_par_iter().map(|i| points.variation(i) as f32).collect();
+        let variations: Vec<f32> = points.variations();
         let mut texture = Self {
             axes,
             points,
@@ -203,7 +212,8 @@ impl Texture {
                 format!("at most {:.4}, a good part of the box of the texture, which is {room:.4} wide", 0.6 * room),
             ));
         }
-        let border = (params.border * patch).ceil();
+        let border = params.border.unwrap_or_else(|| (PASTED / patch).clamp(BORDER.0, BORDER.1));
+        let border = (border * patch).ceil();
         // What is missing of a border at the edge of the texture is hardly missed, but there have to be points that may be moved in.
         let margin = match given {
             Some(_) => 0.0,
@@ -218,7 +228,11 @@ impl Texture {
             Vector([inner.max[0], inner.max[1], all.max[2]]),
         );
         self.patch = patch as usize;
-        self.overlap = ((params.overlap * patch).round() as usize).clamp(2, self.patch / 2);
+        let mean = self.variations.iter().map(|v| f64::from(*v)).sum::<f64>() / self.variations.len() as f64;
+        // Where there are edges, blending does more harm than steps do.
+        let widest = if mean < SMOOTH { OVERLAP.1 } else { OVERLAP.0 };
+        let overlap = params.overlap.unwrap_or_else(|| (OVERLAPPED / patch).clamp(OVERLAP.0, widest));
+        self.overlap = ((overlap * patch).round() as usize).clamp(2, self.patch / 2);
         self.border = border as usize;
         let limits = |k: usize| {
             let low = ((self.bounds.min[k] - self.origin[k]) / cell - 1e-6).ceil().max(0.0);

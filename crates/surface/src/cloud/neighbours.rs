@@ -7,6 +7,9 @@ use rayon::prelude::*;
 
 use crate::tree::Tree;
 
+/// Points whose neighbours say how densely all of them lie.
+const ASKED: usize = 4000;
+
 /// The nearest points of each point.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours {
@@ -47,6 +50,25 @@ impl Neighbours {
             spacing.extend(theirs);
         }
         Ok(Self { all, each, spacing })
+    }
+
+    /// The spacing that half of the points have at least, by `each` neighbours of some thousand of them.
+    pub(crate) fn usual_spacing(points: &[Vector<3>], each: usize, budget: &Budget) -> Result<f64> {
+        let each = each.min(points.len().saturating_sub(1)).max(1);
+        let boxes: Vec<_> = points.iter().map(|&p| Bounds::new(p, p)).collect();
+        let tree = Tree::new(&boxes, budget)?;
+        let asked: Vec<usize> = (0..points.len()).step_by(points.len().div_ceil(ASKED).max(1)).collect();
+        budget.spend(asked.len() as u64 * 800)?;
+        let spacing = |&own: &usize| {
+            let mut found = Vec::new();
+            tree.nearest_many(points[own], each, &mut found, |i| {
+                (i as usize != own).then(|| (points[i as usize] - points[own]).norm2())
+            });
+            (PI * found.last().map_or(0.0, |f| f.0) / (each as f64 + 0.5)).sqrt()
+        };
+        let mut spacings: Vec<f64> = asked.par_iter().with_min_len(64).map(spacing).collect();
+        let half = spacings.len() / 2;
+        Ok(*spacings.select_nth_unstable_by(half, f64::total_cmp).1)
     }
 
     /// The neighbours of point `i`, nearest first.

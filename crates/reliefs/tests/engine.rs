@@ -107,6 +107,42 @@ fn a_tile_goes_on_at_its_borders() {
     }
 }
 
+/// Waves of all directions that are half as high as a patch is wide, over a square of 1.
+fn hills() -> PointSet<3> {
+    let waves: Vec<[f64; 3]> =
+        (0..24).map(|k| f64::from(k)).map(|k| [9.0 * (2.4 * k).cos(), 9.0 * (2.4 * k).sin(), 1.7 * k]).collect();
+    let mut set = PointSet { normals: Some(Vec::new()), ..PointSet::default() };
+    for k in 0..6400_u32 {
+        let (x, y) = (f64::from(k % 80) / 80.0, f64::from(k / 80) / 80.0);
+        let (mut z, mut slope) = (0.0, [0.0; 2]);
+        for [a, b, c] in &waves {
+            let (sin, cos) = (a * x + b * y + c).sin_cos();
+            z += 0.025 * cos;
+            slope = [slope[0] - 0.025 * a * sin, slope[1] - 0.025 * b * sin];
+        }
+        set.positions.push(Vector([x, y, z]));
+        set.normals.as_mut().unwrap().push(Vector([-slope[0], -slope[1], 1.0]).unit());
+    }
+    set
+}
+
+#[test]
+fn high_hills_meet_without_a_step() {
+    let texture = hills();
+    assert!(texture.bounds().size()[2] > 0.25, "{:?}", texture.bounds());
+    let made = run(&texture, Ground::Plane([1.6, 1.6]), 1);
+    let s = made.statistics;
+    assert!(s.patches > 8 && (s.cracks + s.seams) * 50 < s.overlapped, "{s:?}");
+    // No point is far above or below those beside it.
+    let points = &made.points.positions;
+    for a in points.iter().step_by(23) {
+        for b in points {
+            let apart = (a[0] - b[0]).hypot(a[1] - b[1]);
+            assert!(apart > 0.012 || (a[2] - b[2]).abs() < 0.08, "a step of {} over {apart}", a[2] - b[2]);
+        }
+    }
+}
+
 #[test]
 fn a_gap_is_filled_and_the_rest_stays() {
     let in_gap = |x: f64, y: f64| (x - 4.1).hypot(y - 3.4) < 0.8;

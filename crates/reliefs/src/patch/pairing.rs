@@ -198,6 +198,29 @@ mod tests {
     }
 
     #[test]
+    fn looking_no_farther_than_costs_allow_chooses_as_looking_at_all() {
+        let choice = |q: usize, k: usize| Choice {
+            source: (q * 7 + k * 5) % 40,
+            way: Vector::ZERO,
+            length: ((q * 13 + k * 29) % 17) as f64 / 17.0,
+            cost: k as f64 * 0.1 + (q % 3) as f64 * 0.01,
+        };
+        let all: Vec<Vec<Choice>> = (0..30).map(|q| (0..20).map(|k| choice(q, k)).collect()).collect();
+        let more = |_: usize, choice: &Choice| choice.length;
+        let mut taken = std::collections::BTreeSet::new();
+        let naive: Vec<Option<(usize, f64)>> = all
+            .iter()
+            .map(|choices| {
+                let free = choices.iter().enumerate().filter(|(_, c)| !taken.contains(&c.source));
+                let best = free.map(|(k, c)| (k, c.cost + c.length)).min_by(|a, b| a.1.total_cmp(&b.1));
+                taken.extend(best.map(|(k, _)| choices[k].source));
+                best
+            })
+            .collect();
+        assert_eq!(choose(&all, 40, more), naive);
+    }
+
+    #[test]
     fn what_faces_away_or_is_too_far_is_no_pair() {
         let (sources, variations) = bumps(0.0);
         let params = ReliefParams::default();

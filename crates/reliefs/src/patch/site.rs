@@ -247,7 +247,7 @@ impl Site<'_> {
         let variations: Vec<f32> = source.iter().map(|s| s.variation).collect();
         let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         let listening = LISTENING * self.texture.patch_side();
-        let pairing = Pairing { params: self.params, reach: self.reach(), listening };
+        let pairing = Pairing { params: self.params, reach: self.reach_of_pairs(), listening };
         let mut pairs = pairing.pairs(&around.targets, &points, &variations, self.budget)?;
         if pairs.len() * 2 < around.targets.len() || pairs.len() < 4 {
             return Ok(None);
@@ -330,5 +330,20 @@ impl Site<'_> {
             }
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_are_thinned_evenly_and_some_are_left() {
+        let nodes: Vec<[u32; 2]> = (0..60 * 60).map(|k| [k % 60, k / 60]).filter(|[x, y]| *x < 8 || *y < 8).collect();
+        let thin = thinned(nodes.clone());
+        assert!(thin.len() <= ENOUGH && 3 * thin.len() > ENOUGH, "{}", thin.len());
+        let far = |n: &[u32; 2]| thin.iter().map(|t| n[0].abs_diff(t[0]) + n[1].abs_diff(t[1])).min().unwrap();
+        assert!(nodes.iter().all(|n| far(n) <= 4), "{:?}", nodes.iter().map(far).max());
+        assert_eq!(thinned(nodes[..ENOUGH].to_vec()), nodes[..ENOUGH]);
     }
 }

@@ -94,3 +94,23 @@ impl Neighbours {
         (0..self.spacing.len()).map(even).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_points_tell_the_spacing_of_all() {
+        let jitter = |k: usize| ((k * 7919) % 101) as f64 / 101.0 * 0.3;
+        let points: Vec<_> = (0..20_000)
+            .map(|k| Vector([(k % 200) as f64 + jitter(k), (k / 200) as f64 + jitter(k + 5), jitter(k + 9)]))
+            .collect();
+        let budget = Budget::default();
+        let all = Neighbours::new(&points, 6, &budget).unwrap().median_spacing();
+        let some = Neighbours::usual_spacing(&points, 6, &budget).unwrap();
+        assert!((some / all - 1.0).abs() < 0.02, "{some} {all}");
+        let few = &points[..900];
+        let all = Neighbours::new(few, 6, &budget).unwrap().median_spacing();
+        assert_eq!(Neighbours::usual_spacing(few, 6, &budget).unwrap(), all);
+    }
+}

@@ -9,6 +9,7 @@ use arabesque_core::{
 };
 use arabesque_reliefs::{Ground, Plane, Prepared, ReliefOutcome, ReliefParams, ReliefRequest};
 use arabesque_surface::{DirectionField, Directions, MeshIndex};
+use proptest::prelude::*;
 
 const UP: Vector<3> = Vector([0.0, 0.0, 1.0]);
 
@@ -104,6 +105,26 @@ fn a_tile_goes_on_at_its_borders() {
             let apart = (a[0] - b[0]).hypot(a[1] - b[1]);
             assert!(apart > 0.08 || (a[2] - b[2]).abs() < 0.16, "a step of {} over {apart}", a[2] - b[2]);
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn whatever_the_extent_it_is_covered_and_nothing_lies_beyond(
+        size in [1.6_f64..4.0, 1.6_f64..4.0], seed in 0_u64..1000, is_tile in prop::bool::ANY, overlap in 0.05_f64..0.4,
+    ) {
+        let texture = bumps(3.5, |_, _| true);
+        let params = ReliefParams { patch: Some(0.8), overlap: Some(overlap), ..ReliefParams::default() };
+        let engine = Prepared::new(&texture, None, &params, &Budget::default()).unwrap();
+        let ground = if is_tile { Ground::Tile(size) } else { Ground::Plane(size) };
+        let made = engine.run(&ReliefRequest { seed, ..ReliefRequest::new(ground) }, &mut Unobserved).unwrap();
+        let points = &made.points.positions;
+        prop_assert!(points.iter().all(|p| (0..2).all(|k| (0.0..=size[k]).contains(&p[k])) && p[2].abs() < 0.3));
+        prop_assert!(widest_gap(points, [0.0, 0.0], size) < 0.25, "a hole");
+        prop_assert!((points.len() as f64 / (size[0] * size[1]) / 144.0 - 1.0).abs() < 0.12, "{}", points.len());
+        prop_assert!(made.sources.iter().all(|&i| i < texture.len()));
     }
 }
 
@@ -251,6 +272,9 @@ fn what_is_no_texture_is_refused_with_what_to_do() {
     assert!(refused(&none, None, &[]).contains("1 of 2304 normals"), "{}", refused(&none, None, &[]));
     let mixed = with(&|p| p.normals.as_mut().unwrap().iter_mut().step_by(2).for_each(|n| *n = -*n));
     assert!(refused(&mixed, None, &[]).contains("opposite ways"));
+    let halves = with(&|p| p.normals.as_mut().unwrap().iter_mut().take(1152).for_each(|n| *n = -*n));
+    let told = |points: &PointSet<3>| prepared(points).warnings().iter().any(|w| w.message.contains("opposite ways"));
+    assert!(told(&halves) && !told(&good));
     let nan = with(&|p| p.positions[3][1] = f64::NAN);
     assert!(refused(&nan, None, &[]).contains("point 4"));
     assert!(refused(&good.selected(&[0, 1, 2, 3]), None, &[]).contains("4 points"));

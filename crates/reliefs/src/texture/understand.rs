@@ -12,7 +12,7 @@ use crate::{
         axes::Axes,
         gap::Gap,
         pieces::Pieces,
-        reading::{axes, checked, contradictions, fail, oriented},
+        reading::{axes, checked, contradictions, fail, oriented, told},
         repetition::{Repetition, repetition},
     },
 };
@@ -107,12 +107,7 @@ impl Texture {
         let radius = RADIUS * spacing;
         let all = Bounds::around(positions.iter().copied());
         let points = OrientedPoints::new(positions, normals, radius, budget)?;
-        if contradictions(&points, radius, budget)? > 0.1 {
-            return Err(fail(
-                "neighbouring normals face opposite ways",
-                "leave the normals out, so that they are estimated, or turn them to one side; lower the heights of a picture",
-            ));
-        }
+        warnings.extend(told(contradictions(&points, radius, budget)?)?);
         let lattice = lattice(&all, spacing, params);
         let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
         if nodes.iter().fold(lattice.heights.len(), |all, n| all.saturating_mul(*n)) > NODES {
@@ -255,7 +250,7 @@ impl Texture {
                 let problem = format!("no room for a patch in its box, which is {:.4} by {:.4}", side[0], side[1]);
                 return Err(fail(
                     problem,
-                    "leave out points that lie far from all others, or say with --patch how large patches are",
+                    "give more points, leave out those that lie far from all others, or say with --patch how large patches are",
                 ));
             }
             return Err(Error::parameter(

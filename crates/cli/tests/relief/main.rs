@@ -144,7 +144,7 @@ fn what_is_odd_is_told() {
 }
 
 #[test]
-fn statistics_and_time_limits_are_told() {
+fn what_was_counted_is_told_as_json() {
     let folder = folder();
     let made = json(&folder, "relief bumps.csv --extent 6x6 -o all.ply --json");
     let reliefs = made["outputs"][0]["reliefs"].as_object().unwrap();

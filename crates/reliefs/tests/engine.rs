@@ -131,7 +131,7 @@ proptest! {
 /// Waves of all directions that are half as high as a patch is wide, over a square of 1.
 fn hills() -> PointSet<3> {
     let waves: Vec<[f64; 3]> =
-        (0..24).map(|k| f64::from(k)).map(|k| [9.0 * (2.4 * k).cos(), 9.0 * (2.4 * k).sin(), 1.7 * k]).collect();
+        (0..24).map(f64::from).map(|k: f64| [9.0 * (2.4 * k).cos(), 9.0 * (2.4 * k).sin(), 1.7 * k]).collect();
     let mut set = PointSet { normals: Some(Vec::new()), ..PointSet::default() };
     for k in 0..6400_u32 {
         let (x, y) = (f64::from(k % 80) / 80.0, f64::from(k / 80) / 80.0);

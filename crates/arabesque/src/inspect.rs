@@ -18,6 +18,7 @@ use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
     recipe::{Format, Input, NO_RECIPE, Reading},
     resources::Resources,
+    space::SceneUnderstood,
     spacing::{length, spacing},
 };
 
@@ -69,6 +70,8 @@ pub struct Report {
     pub layers: Vec<&'static str>,
     /// What was noticed while reading.
     pub warnings: Vec<Warning>,
+    /// Millions of units of work that reading and understanding took.
+    pub work: u64,
     /// The picture of what was understood.
     #[serde(skip)]
     drawing: Option<Drawing>,
@@ -157,8 +160,9 @@ const LINE: usize = 110;
 const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 
 /// What was understood of a scene of meshes, and what is to be told of it.
-pub(crate) fn of_scene(input: &Input, exemplar: &Exemplar<3>, told: Vec<String>, warnings: Vec<Warning>) -> Report {
-    Report { told, warnings, ..describe(input, "scene of meshes", exemplar) }
+pub(crate) fn of_scene(input: &Input, scene: &SceneUnderstood) -> Report {
+    let (told, warnings) = (scene.told.clone(), scene.warnings.clone());
+    Report { told, warnings, work: scene.work, ..describe(input, "scene of meshes", &scene.exemplar) }
 }
 
 /// What was understood of an exemplar that is no scene of meshes.
@@ -172,7 +176,7 @@ pub(crate) fn of_other(
     resources: &Resources,
 ) -> Result<Report> {
     let budget = resources.budget();
-    Ok(match LoadedExemplar::read(input, bytes, reading, &budget)? {
+    let report = match LoadedExemplar::read(input, bytes, reading, &budget)? {
         LoadedExemplar::Drawing(drawing, known) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);
             report.repeat = RepeatReport::of(&drawing.exemplar, known, &budget)?;
@@ -197,7 +201,8 @@ pub(crate) fn of_other(
                 ..describe(input, kind, &exemplar)
             }
         }
-    })
+    };
+    Ok(Report { work: budget.millions(), ..report })
 }
 
 fn layers(drawing: &Drawing) -> Vec<&'static str> {
@@ -240,6 +245,7 @@ fn describe<const D: usize>(input: &Input, kind: &'static str, exemplar: &Exempl
         repeat: None,
         layers: Vec::new(),
         warnings: Vec::new(),
+        work: 0,
         drawing: None,
     }
 }

@@ -54,6 +54,17 @@ pub(crate) fn print(value: &impl Serialize) -> Result<(), Failure> {
     written.map_err(Failure::summary)
 }
 
+/// [`print`], with the bytes that were in use at most.
+pub(crate) fn print_with_memory(told: &impl Serialize) -> Result<(), Failure> {
+    #[derive(Serialize)]
+    struct WithMemory<'a, T> {
+        #[serde(flatten)]
+        told: &'a T,
+        memory: usize,
+    }
+    print(&WithMemory { told, memory: memory::peak() })
+}
+
 /// Tells a machine about a failure, where it asked for JSON.
 pub(crate) fn print_failure(failure: &Failure) {
     let value = serde_json::json!({ "error": { "code": failure.code(), "message": failure.message(), "memory": memory::peak() } });

@@ -1,5 +1,7 @@
 //! Errors, sorted by who must act.
 
+use crate::text::abridged;
+
 /// What went wrong. Every message ends with what to do about it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -76,9 +78,9 @@ impl Error {
         Self::Input { place: place.into(), problem: problem.into(), advice: advice.into() }
     }
 
-    /// An [`Error::Parameter`].
+    /// An [`Error::Parameter`]; of a long value, head and tail are shown.
     pub fn parameter(name: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
-        Self::Parameter { name: name.into(), value: value.to_string(), expected: expected.into() }
+        Self::Parameter { name: name.into(), value: abridged(&value.to_string()), expected: expected.into() }
     }
 
     /// An [`Error::NoResult`].

@@ -51,7 +51,7 @@ const FLOOR: f64 = 0.95;
 const SETTLING: (usize, [usize; 2]) = (1, [3, 2]);
 
 /// Moves below this share of the mean spacing do not make the neighbours search again.
-const NOTICEABLE: f64 = 0.04;
+const NOTICEABLE: f64 = 0.06;
 
 /// A level, with what it means for the request.
 pub(crate) struct LevelContext<'a, const D: usize> {
@@ -238,13 +238,17 @@ where
             matching: params.matching,
             prices: Prices { missing: params.missing as f32, outside: params.boundary as f32 },
             coherence: params.coherence,
-            random: if first { 8 } else { 2 },
+            random: match (params.search, first) {
+                (_, true) => 8,
+                (Search::KCoherence, false) => 0,
+                (_, false) => 2,
+            },
             rounds: match (params.search, first) {
                 (Search::PatchMatch, true) => 5,
                 (Search::PatchMatch, false) => 2,
                 _ => 1,
             },
-            thorough: done < 2 || params.search != Search::KCoherence || self.has_strokes(),
+            thorough: first || params.search != Search::KCoherence || self.has_strokes(),
             step: (k * 10_000 + iteration) as u64,
         }
     }

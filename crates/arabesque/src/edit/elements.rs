@@ -4,7 +4,7 @@ use arabesque_core::{Budget, Error, Result};
 use arabesque_io::{
     file,
     json::placed::{self as json, JsonElements},
-    mesh::gltf::GlbElements,
+    mesh::gltf::{GlbElements, GltfElements},
     placed::{Changes, Layout, PlacedFile},
     svg::SvgElements,
     table::placed::{self as csv, CsvElements},
@@ -27,7 +27,7 @@ pub(crate) enum AnyChanges {
 }
 
 /// The formats that can be edited, in words.
-const EDITABLE: &str = "edit the result as SVG, JSON, CSV or GLB";
+const EDITABLE: &str = "edit the result as SVG, JSON, CSV, GLB or glTF";
 
 impl Elements {
     /// The elements of a file of that format; `recipe` says whether its page is a tile.
@@ -63,12 +63,11 @@ impl Elements {
                 }
             }
             Format::Glb => Ok(Self::Space(Box::new(GlbElements::open(name, bytes, budget)?))),
-            Format::Png | Format::Obj | Format::Gltf | Format::Ply | Format::Usda | Format::Toml => {
-                Err(Error::Unsupported {
-                    what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
-                    advice: EDITABLE.into(),
-                })
-            }
+            Format::Gltf => Ok(Self::Space(Box::new(GltfElements::open(name, &text()?, budget)?))),
+            Format::Png | Format::Obj | Format::Ply | Format::Usda | Format::Toml => Err(Error::Unsupported {
+                what: format!("{name}: editing {}, which does not say where each element is,", format.name()),
+                advice: EDITABLE.into(),
+            }),
         }
     }
 

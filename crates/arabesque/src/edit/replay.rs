@@ -53,9 +53,8 @@ impl Replayed {
 
 /// The format in which edits are made where they do not say.
 fn usual(recipe: &Recipe) -> Format {
-    let of_output =
-        recipe.output.format.filter(|f| matches!(f, Format::Svg | Format::Json | Format::Csv | Format::Glb));
-    of_output.unwrap_or_else(|| recipe.usual_format())
+    let can_be_edited = |f: &Format| matches!(f, Format::Svg | Format::Json | Format::Csv | Format::Glb | Format::Gltf);
+    recipe.output.format.filter(can_be_edited).unwrap_or_else(|| recipe.usual_format())
 }
 
 /// Refuses to edit another result than the one that was edited.

@@ -134,6 +134,11 @@ impl EditSession {
         Ok(Self { name: name.to_owned(), bytes, format, elements, recipe, budget })
     }
 
+    /// Millions of units of work that reading and editing took so far.
+    pub fn work(&self) -> u64 {
+        self.budget.millions()
+    }
+
     /// The format of the file.
     pub fn format(&self) -> Format {
         self.format

@@ -5,7 +5,7 @@ mod report;
 mod subject;
 mod text;
 
-use arabesque_core::{Domain, Error, Exemplar, Result};
+use arabesque_core::{Budget, Domain, Error, Exemplar, Result};
 use arabesque_measure::{Options, Subject, measure as measure_content};
 
 use crate::{exemplar::LoadedExemplar, recipe::Input, resources::Resources};
@@ -25,25 +25,28 @@ pub fn measure(
     resources: &Resources,
 ) -> Result<Measurements> {
     let bytes = resources.read_as("exemplar", exemplar)?;
-    let loaded = LoadedExemplar::read(exemplar, &bytes, options.reading, &resources.budget())?;
-    let one = |result: &Input| one(&loaded, result, options, resources);
-    Ok(Measurements {
-        version: env!("CARGO_PKG_VERSION"),
-        exemplar: exemplar.name().to_owned(),
-        reports: results.iter().map(one).collect::<Result<_>>()?,
-    })
+    let budget = resources.budget();
+    let loaded = LoadedExemplar::read(exemplar, &bytes, options.reading, &budget)?;
+    let mut work = budget.millions();
+    let mut reports = Vec::new();
+    for result in results {
+        // Each has the whole of the limits for itself.
+        let budget = resources.budget();
+        reports.push(one((&loaded, result), options, resources, &budget)?);
+        work += budget.millions();
+    }
+    Ok(Measurements { version: env!("CARGO_PKG_VERSION"), exemplar: exemplar.name().to_owned(), reports, work })
 }
 
 fn one(
-    exemplar: &LoadedExemplar,
-    input: &Input,
+    (exemplar, input): (&LoadedExemplar, &Input),
     options: &MeasureOptions,
     resources: &Resources,
+    budget: &Budget,
 ) -> Result<MeasureReport> {
-    let budget = resources.budget();
     let bytes = resources.read_as("result", input)?;
     let intent = Intent::of(input.name(), &bytes);
-    let found = read(exemplar, input, &bytes, options.reading, &budget)?;
+    let found = read(exemplar, input, &bytes, options.reading, budget)?;
     let judged = Options {
         turns: !options.any_direction && !intent.is_turned(),
         sizes: !options.any_size && !intent.is_scaled(),
@@ -54,19 +57,19 @@ fn one(
             let (domain, what) = intent.domain(own, &drawing, options.domain.as_ref(), resources)?;
             let sources: Vec<Option<usize>> = drawing.fragments.iter().map(|f| f.source).collect();
             let subject = Subject { content: &drawing.exemplar, domain, sources: &sources };
-            let report = measure_content(name, &own.exemplar, &subject, judged, &budget)?;
+            let report = measure_content(name, &own.exemplar, &subject, judged, budget)?;
             Ok(MeasureReport { file: name.to_owned(), kind: "drawing", domain: what, report, drawing: Some(drawing) })
         }
         (LoadedExemplar::Points(own), Found::Points(content)) => {
             let drawing = crate::exemplar::points_as_drawing(&content);
             let domain = Domain::Box(intent.page().unwrap_or(content.window));
-            let report = plain(name, (own, &content, domain), judged, &budget)?;
+            let report = plain(name, (own, &content, domain), judged, budget)?;
             let drawing = Some(Box::new(drawing));
             Ok(MeasureReport { file: name.to_owned(), kind: "points", domain: "page", report, drawing })
         }
         (LoadedExemplar::Space(own, _), Found::Space(content)) => {
             let domain = Domain::Box(intent.cuboid().unwrap_or(content.window));
-            let report = plain(name, (own, &content, domain), judged, &budget)?;
+            let report = plain(name, (own, &content, domain), judged, budget)?;
             let kind = if own.curves.is_empty() { "points in space" } else { "curves in space" };
             Ok(MeasureReport { file: name.to_owned(), kind, domain: "page", report, drawing: None })
         }

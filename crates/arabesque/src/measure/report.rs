@@ -29,6 +29,8 @@ pub struct Measurements {
     pub exemplar: String,
     /// One report a result, in their order.
     pub reports: Vec<MeasureReport>,
+    /// Millions of units of work that reading and measuring took.
+    pub work: u64,
 }
 
 /// The report of one result.

@@ -43,7 +43,7 @@ impl FromStr for Size {
             Error::parameter(
                 "size",
                 format!("\"{text}\""),
-                "width x height with positive numbers, such as 800x600, 210mmx297mm or 8inx8in (px, mm, cm, in, pt, pc, q)",
+                "width x height with positive numbers up to 1e9, such as 800x600, 210mmx297mm or 8inx8in (px, mm, cm, in, pt, pc, q)",
             )
         };
         let lower = text.trim().to_ascii_lowercase();
@@ -133,7 +133,7 @@ impl FromStr for Cuboid {
         let sides: Option<Vec<f64>> =
             lower.split(['x', '*']).map(|side| side.trim().parse().ok().filter(sound)).collect();
         sides.and_then(|sides| <[f64; 3]>::try_from(sides).ok()).map(Self).ok_or_else(|| {
-            let expected = "three positive numbers in the units of the exemplar, such as 10x10x5";
+            let expected = "three positive numbers up to 1e9 in the units of the exemplar, such as 10x10x5";
             Error::parameter("box", format!("\"{text}\""), expected)
         })
     }

@@ -42,6 +42,7 @@ impl Ready for Strips {
     fn run(self: Arc<Self>, mut context: RunContext<'_>, watch: &mut dyn Watch<Artwork>) -> Result<Artwork> {
         resolution_of_canvas(context.output(), None)?;
         let track = Arc::new(Track::of(&mut context, self.0.finer)?);
+        track.check_picture(context.output(), context.budget())?;
         let origin = context.origin();
         let mut made = match &*track {
             Track::Plane { request, .. } => {

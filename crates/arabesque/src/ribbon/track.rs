@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Error, Held, Path, Result, Warning};
+use arabesque_core::{Bounds, Budget, Error, Held, Path, Result, Warning};
 use arabesque_io::{
     file,
     mesh::obj,
@@ -14,7 +14,7 @@ use arabesque_ribbons::{Mask, RibbonRequest};
 use crate::{
     method::RunContext,
     plane::options,
-    recipe::{Format, Input, Job, Ribbon, Size},
+    recipe::{Format, Input, Job, OutputOptions, Ribbon, Size},
     ribbon::picture::resolution_of_canvas,
 };
 
@@ -65,6 +65,16 @@ impl Track {
         }
         context.job = Job::Ribbon(ribbon);
         Ok(track)
+    }
+
+    /// Refuses, before the work, a picture that could not be drawn after it.
+    pub(crate) fn check_picture(&self, output: &OutputOptions, budget: &Budget) -> Result<()> {
+        match self {
+            Track::Plane { page, .. } if output.format == Some(Format::Png) => {
+                resolution_of_canvas(output, Some(page))?.pixels(page, budget).map(drop)
+            }
+            _ => Ok(()),
+        }
     }
 }
 

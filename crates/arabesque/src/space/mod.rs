@@ -286,11 +286,18 @@ pub(crate) fn scene_understood(input: &Input, bytes: &[u8], resources: &Resource
         let (count, elements) = stacks.count();
         told.push(format!("on a floor {count} stacks of {elements} elements, each placed as one"));
     }
-    Ok(Some((exemplar, told, warnings)))
+    Ok(Some(SceneUnderstood { exemplar, told, warnings, work: files.budget().millions() }))
 }
 
-/// An exemplar, what is told of it, and warnings.
-pub(crate) type SceneUnderstood = (Arc<Exemplar<3>>, Vec<String>, Vec<Warning>);
+/// A scene as an exemplar.
+pub(crate) struct SceneUnderstood {
+    pub(crate) exemplar: Arc<Exemplar<3>>,
+    /// What is to be told of it.
+    pub(crate) told: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
+    /// Millions of units of work that reading it took.
+    pub(crate) work: u64,
+}
 
 /// Lets the elements of a run come to rest that nobody stopped; where it reached a limit, on an account of its own.
 fn settle(

@@ -26,7 +26,13 @@ const STRONGEST: f64 = 10.0;
 
 /// How often a heap that has sunk is filled up again, and by what share at most.
 const REFILLS: usize = 3;
-const MORE: f64 = 0.25;
+const MORE: f64 = 0.09;
+/// How much higher than before, in sizes of an element, what is filled in may fall from where the heap is open above.
+const LIFTS: [f64; 3] = [0.0, 0.5, 1.0];
+/// How far above the box it is filled, in sizes of an element: what lies there comes to lie in the box, or is cut off.
+const ABOVE: f64 = 0.6;
+/// How far beyond the box, in its sizes, an element at rest on a side of it may lie.
+const SLACK: f64 = 0.02;
 /// An element has room where others are no nearer than this share of their mean size.
 const FREE: f64 = 0.95;
 /// Work of a place that is looked at.
@@ -104,11 +110,18 @@ impl Physical {
         let mut half: Vec<f64> = sources.iter().map(|(mesh, pose)| 0.5 * shapes[mesh].size() * pose.scale).collect();
         half.sort_by(f64::total_cmp);
         let gap = (larger - 1.0) * half.get(half.len() / 2).copied().unwrap_or(0.0);
+        let surroundings = surroundings(job, request, (gap, context))?;
+        if surroundings.middles.is_some() && request.ground.is_none() {
+            let message = "physics in a box without a floor: elements at its bottom lie with their middles on it";
+            context
+                .warnings
+                .push(Warning::new(message, "give --floor, so that they lie on a floor as those of the exemplar do"));
+        }
         let substeps = if let Physics::Substeps(count) = physics { count } else { 0 };
         Ok(Some(Arc::new(Self {
             shapes,
             sources,
-            surroundings: surroundings(job, request, (gap, context))?,
+            surroundings,
             larger,
             is_heap,
             gravity: if ground.is_some() { Vector::ZERO } else { gravity.unwrap_or_else(|| down(job)) },
@@ -131,7 +144,8 @@ impl Physical {
     pub(super) fn settle(&self, outcome: &mut Outcome<3>, budget: &Budget) -> Result<PhysicsSummary> {
         let given = outcome.placements.clone();
         let budget = budget.stage("settling");
-        let mut run = self.rest(&mut outcome.placements, &budget)?;
+        let mut run = self.rest(&mut outcome.placements, &self.surroundings, &budget)?;
+        let open = self.open_above();
         for _ in 0..if self.is_heap { REFILLS } else { 0 } {
             let most = (MORE * given.len() as f64) as usize + given.len();
             let room = most.min(budget.limits().output_elements).saturating_sub(outcome.placements.len());
@@ -140,8 +154,13 @@ impl Physical {
                 break;
             }
             outcome.placements.extend(more);
-            let again = self.rest(&mut outcome.placements, &budget)?;
+            let again = self.rest(&mut outcome.placements, open.as_ref().unwrap_or(&self.surroundings), &budget)?;
             run = Run { steps: run.steps + again.steps, before: run.before, ..again };
+        }
+        // A heap that goes on beyond the box: its upper side cuts it, as the others do.
+        if let Some(bounds) = self.surroundings.middles {
+            let stays = |(place, size): (Vector<3>, f64)| bounds.grown(SLACK * size).contains(place);
+            outcome.placements.retain(|p| p.frozen.is_some() || stays(self.middle(p)));
         }
         if let Ok(mut trouble) = self.trouble.lock() {
             outcome.warnings.extend(trouble.take());
@@ -153,15 +172,38 @@ impl Physical {
         Ok(summary(&run))
     }
 
+    /// What is around a heap whose box is open above, so that what is filled in falls onto it from there; `None` where nothing is open.
+    fn open_above(&self) -> Option<Surroundings> {
+        let mut bounds = self.surroundings.middles?;
+        let size = self.sources.iter().map(|(mesh, own)| self.shapes[mesh].size() * own.scale).fold(0.0, f64::max);
+        for (k, down) in self.gravity.0.into_iter().enumerate() {
+            let higher = ABOVE * size * down.abs().min(1.0);
+            if down < 0.0 {
+                bounds.max[k] += higher;
+            } else {
+                bounds.min[k] -= higher;
+            }
+        }
+        Some(Surroundings { middles: Some(bounds), ..self.surroundings.clone() })
+    }
+
+    /// Middle and size of an element.
+    fn middle(&self, placement: &Placement<3>) -> (Vector<3>, f64) {
+        let (mesh, own) = &self.sources[placement.source];
+        let (pose, shape) = (placement.transform.after(own), &self.shapes[mesh]);
+        (pose.apply(shape.centre()), shape.size() * pose.scale * self.larger)
+    }
+
     /// Steps until everything is at rest.
-    fn rest(&self, placements: &mut [Placement<3>], budget: &Budget) -> Result<Run> {
-        let mut world = self.world(placements)?;
+    fn rest(&self, placements: &mut [Placement<3>], around: &Surroundings, budget: &Budget) -> Result<Run> {
+        let mut world = self.world(placements, around)?;
         let run = world.settle(budget)?;
         self.take_over(&world, placements);
         Ok(run)
     }
 
-    /// Elements again that were at places where there is room for them now, since the heap has sunk: at most `room`.
+    /// Elements again that were at places where there is room for them now, since the heap has sunk, or higher where it is open above: at
+    /// most `room`.
     fn sunk(
         &self,
         given: &[Placement<3>],
@@ -169,24 +211,25 @@ impl Physical {
         room: usize,
         budget: &Budget,
     ) -> Result<Vec<Placement<3>>> {
-        let middle = |placement: &Placement<3>| {
-            let (mesh, own) = &self.sources[placement.source];
-            let (pose, shape) = (placement.transform.after(own), &self.shapes[mesh]);
-            (pose.apply(shape.centre()), shape.size() * pose.scale * self.larger)
-        };
-        let mut all: Vec<(Vector<3>, f64)> = placements.iter().map(middle).collect();
+        let mut all: Vec<(Vector<3>, f64)> = placements.iter().map(|p| self.middle(p)).collect();
         let largest = all.iter().map(|(_, size)| *size).fold(0.0, f64::max);
-        let bounds = Bounds::around(all.iter().map(|(p, _)| *p).chain(given.iter().map(|p| middle(p).0)));
+        let bounds = Bounds::around(all.iter().map(|(p, _)| *p).chain(given.iter().map(|p| self.middle(p).0)));
+        let bounds = bounds.grown(LIFTS[LIFTS.len() - 1] * largest);
+        let (up, open) = (self.gravity.unit_or_zero() * -1.0, self.open_above().and_then(|around| around.middles));
+        let lifts = if self.surroundings.middles.is_some() { &LIFTS[..] } else { &LIFTS[..1] };
         let mut near = Buckets::new(&Domain::Box(bounds), largest, largest);
         (0..).zip(&all).for_each(|(k, (p, _))| near.insert(k, *p));
         let mut found = Vec::new();
-        for placement in given.iter().filter(|placement| placement.frozen.is_none()) {
+        let movable = || given.iter().filter(|placement| placement.frozen.is_none());
+        for (placement, lift) in lifts.iter().flat_map(|lift| movable().map(move |placement| (placement, lift))) {
             budget.spend(PER_PLACE)?;
             if found.len() >= room {
                 break;
             }
-            let (place, size) = middle(placement);
-            let mut is_free = true;
+            let (place, size) = self.middle(placement);
+            let lift = up * (lift * size);
+            let place = place + lift;
+            let mut is_free = open.is_none_or(|open| open.contains(place));
             near.near(place, largest, |k| {
                 let (p, other) = all[k as usize];
                 is_free &= (p - place).norm() >= FREE * 0.5 * (size + other);
@@ -194,14 +237,15 @@ impl Physical {
             if is_free {
                 near.insert(all.len() as u32, place);
                 all.push((place, size));
-                found.push(placement.clone());
+                let transform = Similarity::shift(lift).after(&placement.transform);
+                found.push(Placement { transform, ..placement.clone() });
             }
         }
         Ok(found)
     }
 
-    fn world(&self, placements: &[Placement<3>]) -> Result<World> {
-        let mut world = World::new(self.surroundings.clone(), self.gravity, &self.params)?;
+    fn world(&self, placements: &[Placement<3>], around: &Surroundings) -> Result<World> {
+        let mut world = World::new(around.clone(), self.gravity, &self.params)?;
         let body = |placement: &Placement<3>| {
             let (mesh, own) = &self.sources[placement.source];
             let shape = Arc::clone(&self.shapes[mesh]);
@@ -230,7 +274,7 @@ impl Physical {
 
 impl Between<3> for Physical {
     fn step(&self, placements: &mut [Placement<3>], budget: &Budget) -> Result<()> {
-        let mut world = self.world(placements)?;
+        let mut world = self.world(placements, &self.surroundings)?;
         let run = world.substeps(self.substeps, budget)?;
         if run.stopped != StopReason::Finished {
             // The run tells that it ended; the account tells why.

@@ -28,7 +28,7 @@ const SIMILAR: &str = "0.15";
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct Edit {
-    /// A result of arabesque with elements: SVG, JSON, CSV or GLB; - is standard input
+    /// A result of arabesque with elements: SVG, JSON, CSV, GLB or glTF; - is standard input
     result: String,
     /// Where to write, in the format of the result; an SVG result also as PNG
     #[arg(short, long, value_name = "OUT")]
@@ -127,6 +127,8 @@ struct Told<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     changed: Option<&'a [Change]>,
     seconds: f64,
+    /// Millions of units of work.
+    work: u64,
 }
 
 impl Edit {
@@ -215,7 +217,7 @@ impl Edit {
         let items = session.items();
         if self.tell.talk.json {
             let told = Told { items: Some(&items), ..self.head(session, start) };
-            summary::print(&told)?;
+            summary::print_with_memory(&told)?;
             return Ok(ExitCode::SUCCESS);
         }
         let mut out = standard::output()?;
@@ -234,7 +236,8 @@ impl Edit {
     fn told(&self, session: &EditSession, proposal: &Proposal, start: Instant, piped: bool) -> Result<(), Failure> {
         let level = self.tell.talk.level();
         if self.tell.talk.json {
-            return summary::print(&Told { changed: Some(&proposal.changed), ..self.head(session, start) });
+            let told = Told { changed: Some(&proposal.changed), ..self.head(session, start) };
+            return summary::print_with_memory(&told);
         }
         if self.preview && !piped && level > Level::Quiet {
             let mut out = standard::output()?;
@@ -273,6 +276,7 @@ impl Edit {
             items: None,
             changed: None,
             seconds: start.elapsed().as_secs_f64(),
+            work: session.work(),
         }
     }
 }

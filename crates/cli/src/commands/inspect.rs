@@ -48,7 +48,7 @@ impl Inspect {
             self.tell.put(target, &picture)?;
         }
         if self.tell.talk.json {
-            summary::print(&report)?;
+            summary::print_with_memory(&report)?;
         } else if !piped {
             print(&report)?;
         }

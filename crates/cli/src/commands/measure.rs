@@ -106,7 +106,7 @@ impl Measure {
             self.tell.put(target, &picture)?;
         }
         if self.tell.talk.json {
-            summary::print(&told)?;
+            summary::print_with_memory(&told)?;
         } else if !self.is_piped() {
             print(&told, self.tell.talk.level() == Level::Verbose)?;
         }

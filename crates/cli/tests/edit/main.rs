@@ -91,10 +91,12 @@ fn tables_json_and_scenes_are_edited_too() {
     folder.ok("fill points.csv --size 2x2 -o a.csv");
     folder.ok("fill points.csv --size 2x2 -o a.json");
     folder.ok(&format!("fill {scene} --box 6x4x3 -o a.glb"));
+    folder.ok(&format!("fill {scene} --box 6x4x3 -o a.gltf"));
     for (ending, shift, back) in [
         ("csv", "0.01,0.02", "-0.01,-0.02"),
         ("json", "0.01,0.02", "-0.01,-0.02"),
         ("glb", "0.1,0,0.05", "-0.1,0,-0.05"),
+        ("gltf", "0.1,0,0.05", "-0.1,0,-0.05"),
     ] {
         folder.ok(&format!("edit a.{ending} --item 3 --move {shift} --propagate -o b.{ending}"));
         folder.ok(&format!("run b.{ending} -o c.{ending}"));

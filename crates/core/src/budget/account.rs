@@ -112,6 +112,11 @@ impl Budget {
         self.account.work.load(Ordering::Relaxed)
     }
 
+    /// Work done so far, in whole millions of units, which is what [`Limits::work`] counts.
+    pub fn millions(&self) -> u64 {
+        self.work() / MILLION
+    }
+
     /// Checks made so far; counted on accounts of [`Budget::stopping_at`] alone.
     pub fn checks(&self) -> u64 {
         self.account.stopper.checks()

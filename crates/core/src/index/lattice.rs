@@ -10,6 +10,9 @@ pub struct Lattice<const D: usize> {
     cell: Vector<D>,
     counts: [usize; D],
     is_periodic: bool,
+    /// The cells that are numbered: so many from the first one on along each coordinate, around the back where there is a period.
+    first: [usize; D],
+    held: [usize; D],
 }
 
 impl<const D: usize> Lattice<D> {
@@ -17,7 +20,15 @@ impl<const D: usize> Lattice<D> {
     pub fn new(bounds: Bounds<D>, counts: [usize; D], is_periodic: bool) -> Self {
         let size = bounds.size();
         let cell = Vector(std::array::from_fn(|k| (size[k] / counts[k] as f64).max(f64::MIN_POSITIVE)));
-        Self { origin: bounds.min, cell, counts, is_periodic }
+        Self { origin: bounds.min, cell, counts, is_periodic, first: [0; D], held: counts }
+    }
+
+    /// The cells that the box around a ball touches, as a lattice of their own: places are the same, the numbers are those that
+    /// [`Lattice::around`] comes by. What is asked of other cells finds none.
+    pub fn part(&self, p: Vector<D>, radius: f64) -> Self {
+        let (low, held) = self.touched(p, radius);
+        let first = std::array::from_fn(|k| low[k].rem_euclid(self.counts[k] as isize) as usize);
+        Self { first, held, ..self.clone() }
     }
 
     /// A lattice of about `counts[k]` cells along coordinate `k`, of fewer where that would be more than `most` together.
@@ -32,7 +43,7 @@ impl<const D: usize> Lattice<D> {
 
     /// Number of cells.
     pub fn count(&self) -> usize {
-        self.counts.iter().product()
+        self.held.iter().product()
     }
 
     /// Side lengths of a cell.
@@ -42,7 +53,8 @@ impl<const D: usize> Lattice<D> {
 
     /// Centre of the cell with number `index`.
     pub fn centre(&self, index: usize) -> Vector<D> {
-        self.centre_at(cell_place(index, &self.counts).map(|i| i as isize))
+        let place = cell_place(index, &self.held);
+        self.centre_at(std::array::from_fn(|k| ((self.first[k] + place[k]) % self.counts[k]) as isize))
     }
 
     /// Centre of the cell that lies so many cells from the first one along each coordinate, inside the box or beyond it.
@@ -63,23 +75,35 @@ impl<const D: usize> Lattice<D> {
                 }
                 i = i.rem_euclid(n as isize);
             }
-            index += i as usize * stride;
-            stride *= n;
+            let i = self.numbered(k, i as usize);
+            if i >= self.held[k] {
+                return None;
+            }
+            index += i * stride;
+            stride *= self.held[k];
         }
         Some(index)
     }
 
-    /// Number of the cell of the box that is nearest to `p`, whether there is a period or not.
-    pub fn nearest(&self, p: Vector<D>) -> usize {
-        let at = |k: usize| (((p[k] - self.origin[k]) / self.cell[k]).max(0.0) as usize).min(self.counts[k] - 1);
-        cell_index(std::array::from_fn(at), &self.counts)
+    /// The number along coordinate `k` of the cell that is the `i`-th of the box; none that there is for one that is not numbered.
+    #[inline]
+    fn numbered(&self, k: usize, i: usize) -> usize {
+        let first = self.first[k];
+        if i >= first { i - first } else { i + self.counts[k] - first }
     }
 
-    /// Calls `visit(index, place)` for the cells that the box around a ball touches, each once and in a fixed order. Without a period
-    /// these are cells of the lattice alone, the outermost ones for what lies beyond them. With one, a `place` beyond the box is
-    /// where the cell comes to lie around the back.
+    /// Number of the cell of the box that is nearest to `p`, whether there is a period or not.
+    pub fn nearest(&self, p: Vector<D>) -> usize {
+        let at = |k: usize| {
+            let i = (((p[k] - self.origin[k]) / self.cell[k]).max(0.0) as usize).min(self.counts[k] - 1);
+            self.numbered(k, i).min(self.held[k] - 1)
+        };
+        cell_index(std::array::from_fn(at), &self.held)
+    }
+
+    /// The first cell that the box around a ball touches, and how many along each coordinate.
     #[inline]
-    pub fn around(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, [isize; D])) {
+    fn touched(&self, p: Vector<D>, radius: f64) -> ([isize; D], [usize; D]) {
         let mut low = [0_isize; D];
         let mut count = [0_usize; D];
         for k in 0..D {
@@ -92,20 +116,35 @@ impl<const D: usize> Lattice<D> {
             low[k] = a;
             count[k] = (b.saturating_sub(a).max(0) as usize).saturating_add(1).min(self.counts[k]);
         }
-        let row = self.counts[0];
-        let first = low[0].rem_euclid(row as isize) as usize;
-        for step in 0..count.iter().skip(1).product() {
-            let (mut rest, mut start, mut stride) = (step, 0, row);
+        (low, count)
+    }
+
+    /// Calls `visit(index, place)` for the cells that the box around a ball touches, each once and in a fixed order. Without a period
+    /// these are cells of the lattice alone, the outermost ones for what lies beyond them. With one, a `place` beyond the box is
+    /// where the cell comes to lie around the back.
+    #[inline]
+    pub fn around(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, [isize; D])) {
+        let (low, count) = self.touched(p, radius);
+        let (row, held) = (self.counts[0], self.held[0]);
+        let first = self.numbered(0, low[0].rem_euclid(row as isize) as usize);
+        'rows: for step in 0..count.iter().skip(1).product() {
+            let (mut rest, mut start, mut stride) = (step, 0, held);
             let mut place = low;
             for k in 1..D {
                 place[k] = place[k].wrapping_add((rest % count[k]) as isize);
                 rest /= count[k];
-                start += place[k].rem_euclid(self.counts[k] as isize) as usize * stride;
-                stride *= self.counts[k];
+                let at = self.numbered(k, place[k].rem_euclid(self.counts[k] as isize) as usize);
+                if at >= self.held[k] {
+                    continue 'rows;
+                }
+                start += at * stride;
+                stride *= self.held[k];
             }
             let mut x = first;
             for _ in 0..count[0] {
-                visit(start + x, place);
+                if x < held {
+                    visit(start + x, place);
+                }
                 place[0] = place[0].wrapping_add(1);
                 x += 1;
                 // Around the back, where there is a period; else this was the last one.
@@ -151,6 +190,27 @@ mod tests {
                 prop_assert_eq!(lattice.at(lattice.centre_at(place)), Some(index));
                 prop_assert_eq!(met.iter().filter(|m| m.0 == index).count(), 1);
             }
+        }
+
+        #[test]
+        fn a_part_is_walked_like_the_whole(
+            x in -6.0..12.0, y in -3.0..10.0, radius in 0.0..4.0, u in -1.0..1.0, v in -1.0..1.0, inner in 0.0..1.0, is_periodic: bool,
+        ) {
+            let (lattice, p) = (lattice(is_periodic), Vector::xy(x, y));
+            let part = lattice.part(p, radius);
+            let mut numbers = Vec::new();
+            lattice.around(p, radius, |index, _| numbers.push(index));
+            prop_assert_eq!(part.count(), numbers.len());
+            for (k, &index) in numbers.iter().enumerate() {
+                let centre = lattice.centre(index);
+                prop_assert_eq!((part.centre(k), part.at(centre), part.nearest(centre)), (centre, Some(k), k));
+            }
+            // A smaller ball inside: the same cells, in the same order, at the same places.
+            let (far, q) = (radius * inner, p + Vector::xy(u, v) * (radius * (1.0 - inner)));
+            let (mut whole, mut walked) = (Vec::new(), Vec::new());
+            lattice.around(q, far, |index, place| whole.push((index, place)));
+            part.around(q, far, |k, place| walked.push((numbers[k], place)));
+            prop_assert_eq!(walked, whole);
         }
 
         #[test]

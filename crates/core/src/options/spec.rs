@@ -1,5 +1,7 @@
 //! What is known of a parameter, as data.
 
+use crate::text::rounded;
+
 /// What values a parameter may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
@@ -61,8 +63,9 @@ impl Kind {
         match self {
             Self::Choice(_) | Self::Switch => format!("one of {}", self.short()),
             Self::Integer { .. } => format!("a whole number from {}", self.short()),
-            Self::Real { .. } if !self.is_positive() => format!("a number from {}", self.short()),
-            Self::Real { .. } | Self::Text(_) => self.short(),
+            Self::Real { max, .. } if self.is_positive() => format!("{} up to {}", self.short(), rounded(*max)),
+            Self::Real { .. } => format!("a number from {}", self.short()),
+            Self::Text(_) => self.short(),
         }
     }
 }

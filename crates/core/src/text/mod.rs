@@ -2,4 +2,5 @@
 
 mod number;
 
+pub(crate) use number::abridged;
 pub use number::{Decimals, rounded};

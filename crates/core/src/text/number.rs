@@ -60,9 +60,54 @@ pub fn rounded(value: f64) -> String {
     Decimals((3 - magnitude.log10().floor() as i32).clamp(0, 8) as usize).format(value)
 }
 
+/// Longest run of digits that messages show.
+const DIGITS: usize = 20;
+
+/// Longest value that messages show, in characters.
+const LONGEST: usize = 80;
+
+/// A value as messages show it: long numbers in it with an exponent, and the middle of long texts left out.
+pub(crate) fn abridged(value: &str) -> String {
+    let is_digit = |c: char| c.is_ascii_digit() || c == '.';
+    let mut text = String::with_capacity(value.len().min(4 * LONGEST));
+    let mut rest = value;
+    while let Some(start) = rest.find(is_digit) {
+        let (before, from) = rest.split_at(start);
+        let (run, after) = from.split_at(from.find(|c| !is_digit(c)).unwrap_or(from.len()));
+        text.push_str(before);
+        match run.parse::<f64>() {
+            Ok(number) if run.len() > DIGITS && number.is_finite() && !after.starts_with(['e', 'E']) => {
+                text.push_str(&rounded(number));
+            }
+            _ => text.push_str(run),
+        }
+        rest = after;
+    }
+    text.push_str(rest);
+    let count = text.chars().count();
+    if count <= LONGEST {
+        return text;
+    }
+    let head = text.chars().take(LONGEST / 2);
+    let tail = text.chars().skip(count - LONGEST / 4);
+    format!("{}...{} ({count} characters)", head.collect::<String>(), tail.collect::<String>())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_values_are_cut() {
+        assert_eq!(abridged(&1e308_f64.to_string()), "1e308");
+        assert_eq!(abridged(&format!("{},0,{}", -1e300_f64, 1e-300_f64)), "-1e300,0,1e-300");
+        assert_eq!(abridged("0.30000000000000004"), "0.30000000000000004");
+        assert_eq!(abridged("#c0392b"), "#c0392b");
+        let long = abridged(&"a".repeat(5000));
+        assert!(long.starts_with("aaaa") && long.ends_with("a (5000 characters)") && long.len() < 100, "{long}");
+        assert!(abridged(&"9".repeat(5000)).len() < 100);
+        assert_eq!(abridged(&"é".repeat(80)), "é".repeat(80));
+    }
 
     #[test]
     fn people_get_four_digits() {

@@ -17,6 +17,8 @@ pub(crate) struct DistanceMap {
     origin: Vector<2>,
     step: f64,
     per_step: f64,
+    /// How far it reaches beyond the outline at least.
+    margin: f64,
     counts: [usize; 2],
     value: Vec<f32>,
 }
@@ -32,8 +34,14 @@ impl DistanceMap {
     pub(crate) fn new(outline: &Outline<2>, step: f64, margin: f64) -> Self {
         let bounds = outline.bounds().grown(margin);
         let counts = cells(outline, step, margin);
-        let mut map =
-            Self { origin: bounds.min, step, per_step: 1.0 / step, counts, value: vec![0.0; counts[0] * counts[1]] };
+        let mut map = Self {
+            origin: bounds.min,
+            step,
+            per_step: 1.0 / step,
+            margin,
+            counts,
+            value: vec![0.0; counts[0] * counts[1]],
+        };
         let edges: Vec<Segment<2>> = outline.edges().collect();
         let nearest = map.nearest_edges(&edges);
         for (c, &edge) in nearest.iter().enumerate() {
@@ -125,16 +133,41 @@ impl DistanceMap {
     /// Distance of a place from the ink, negative on it. Beyond the map, a little too large.
     #[inline]
     pub(crate) fn at(&self, [x, y]: [f64; 2]) -> f64 {
-        let [width, height] = self.counts;
         let (u, v) = ((x - self.origin.0[0]) * self.per_step, (y - self.origin.0[1]) * self.per_step);
-        let (a, b) = (u.clamp(0.0, (width - 1) as f64), v.clamp(0.0, (height - 1) as f64));
-        let (i, j) = ((a as usize).min(width - 2), (b as usize).min(height - 2));
-        let (s, t) = ((a - i as f64) as f32, (b - j as f64) as f32);
-        let row = j * width + i;
-        let value = &self.value;
-        let low = value[row] + (value[row + 1] - value[row]) * s;
-        let high = value[row + width] + (value[row + width + 1] - value[row + width]) * s;
-        let near = f64::from(low + (high - low) * t);
-        if a == u && b == v { near } else { near + ((u - a) * (u - a) + (v - b) * (v - b)).sqrt() * self.step }
+        let [width, height] = self.counts;
+        // Compared with what is not a number, nothing is inside.
+        let is_inside = u >= 0.0 && v >= 0.0 && u < (width - 1) as f64 && v < (height - 1) as f64;
+        if is_inside { self.between(u, v) } else { self.beyond(u, v) }
+    }
+
+    /// The same, but beyond the map no more than is certain.
+    #[inline]
+    pub(crate) fn at_least(&self, [x, y]: [f64; 2]) -> f64 {
+        let (u, v) = ((x - self.origin.0[0]) * self.per_step, (y - self.origin.0[1]) * self.per_step);
+        let [width, height] = self.counts;
+        let is_inside = u >= 0.0 && v >= 0.0 && u < (width - 1) as f64 && v < (height - 1) as f64;
+        if is_inside { self.between(u, v) } else { self.margin }
+    }
+
+    /// Between the cells around a place inside the map, in cells.
+    #[inline]
+    fn between(&self, u: f64, v: f64) -> f64 {
+        let (i, j) = (u as i32, v as i32);
+        let (s, t) = ((u - f64::from(i)) as f32, (v - f64::from(j)) as f32);
+        let row = j as usize * self.counts[0] + i as usize;
+        let (Some(&[a, b]), Some(&[c, d])) =
+            (self.value[row..].first_chunk(), self.value[row + self.counts[0]..].first_chunk())
+        else {
+            return f64::INFINITY;
+        };
+        let (low, high) = (a + (b - a) * s, c + (d - c) * s);
+        f64::from(low + (high - low) * t)
+    }
+
+    #[cold]
+    fn beyond(&self, u: f64, v: f64) -> f64 {
+        let inner = |x: f64, count: usize| x.clamp(0.0, (count - 1) as f64 * (1.0 - 1e-12) - 1e-9);
+        let (a, b) = (inner(u, self.counts[0]), inner(v, self.counts[1]));
+        self.between(a, b) + ((u - a) * (u - a) + (v - b) * (v - b)).sqrt() * self.step
     }
 }

@@ -33,6 +33,8 @@ struct Ink {
     map: Option<DistanceMap>,
     /// Places along its rim, in pieces; none for a ball.
     rim: Vec<Piece>,
+    /// How far these are apart.
+    step: f64,
     /// Distance from the centre to the farthest ink.
     radius: f64,
 }
@@ -57,6 +59,27 @@ impl Change {
     fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([a, b], [c, d]) = (self.matrix[0], self.matrix[1]);
         [a * x + b * y + self.shift[0], c * x + d * y + self.shift[1]]
+    }
+}
+
+/// An element as it lies, ready to be asked for many distances.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed<'a> {
+    /// `None` for a ball.
+    map: Option<&'a DistanceMap>,
+    /// From directions of the page to its own.
+    matrix: [[f64; 2]; 2],
+    scale: f64,
+    radius: f64,
+}
+
+impl Placed<'_> {
+    /// Distance of the ink from a place at `offset` from the centre, negative on the ink.
+    #[inline]
+    pub(crate) fn distance<const D: usize>(&self, offset: Vector<D>) -> f64 {
+        let Some(map) = self.map else { return offset.norm() - self.radius };
+        let ([a, b], [c, d], x, y) = (self.matrix[0], self.matrix[1], offset.0[0], offset.0[1]);
+        map.at([a * x + b * y, c * x + d * y]) * self.scale
     }
 }
 
@@ -105,11 +128,11 @@ where
         let held = Arc::new(budget.hold("distances around outlines", cells(step) * size_of::<f32>())?);
         let ink = |(e, outline): (usize, &Option<Outline<2>>)| {
             let radius = library.radius[e];
-            let Some(outline) = outline else { return Ok(Ink { map: None, rim: Vec::new(), radius }) };
+            let Some(outline) = outline else { return Ok(Ink { map: None, rim: Vec::new(), step, radius }) };
             let [width, height] = distance_map::cells(outline, step, reach);
             budget.spend(CELL * (width * height + outline.edges().count() * 4) as u64)?;
-            let rim = pieces(rim(outline, step));
-            Ok(Ink { map: Some(DistanceMap::new(outline, step, reach)), rim, radius })
+            let (places, apart) = rim(outline, step);
+            Ok(Ink { map: Some(DistanceMap::new(outline, step, reach)), rim: pieces(places), step: apart, radius })
         };
         let inks: Vec<_> = outlines.par_iter().enumerate().map(ink).collect::<Result<_>>()?;
         Ok(Self { inks: inks.into(), _held: held })
@@ -137,6 +160,14 @@ impl<const D: usize> Inks<D> {
         }
     }
 
+    /// An element in a pose, to be asked for many distances.
+    pub(crate) fn placed(&self, pose: &Pose<D>) -> Placed<'_> {
+        let (ink, scale) = (&self.inks[pose.source], pose.scale);
+        let entry = |r: usize, c: usize| if D == 2 { pose.rotation.0[c][r] / scale } else { 0.0 };
+        let matrix = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
+        Placed { map: ink.map.as_ref(), matrix, scale, radius: ink.radius * scale }
+    }
+
     /// Distance between the inks of two elements, the second with its centre at `offset` from the first's; negative by
     /// about how deep they lie in each other. Beyond `enough`, any number larger than that.
     pub(crate) fn gap(&self, a: &Pose<D>, b: &Pose<D>, offset: Vector<D>, enough: f64) -> f64 {
@@ -144,29 +175,61 @@ impl<const D: usize> Inks<D> {
         if small > large {
             return self.gap(b, a, -offset, enough);
         }
-        let apart = offset.norm() - small - large;
-        if apart > enough {
-            return apart;
+        let least = self.apart(a, b, offset, enough);
+        if least > enough {
+            return least;
         }
         let (from, to) = (&self.inks[a.source], &self.inks[b.source]);
         let Some(map) = &to.map else { return self.distance(a, offset) - large };
-        if from.map.is_none() {
-            return self.distance(b, -offset) - small;
+        let Some(own) = &from.map else { return self.distance(b, -offset) - small };
+        let nearest = nearest_of(&from.rim, a.scale, (map, change(a, b, offset), b.scale), (f64::INFINITY, enough));
+        if nearest > from.step * a.scale {
+            return nearest;
         }
-        let change = change(a, b, offset);
-        let mut nearest = f64::INFINITY;
-        for piece in &from.rim {
-            let least = map.at(change.apply(piece.centre)) * b.scale - piece.radius * a.scale;
-            if least >= nearest || least > enough {
-                nearest = nearest.min(least.max(enough) + piece.radius * a.scale);
-                continue;
-            }
-            for &place in &piece.places {
-                nearest = nearest.min(map.at(change.apply(place)) * b.scale);
-            }
-        }
-        nearest
+        // Where they meet, a tip may lie deep in the other element whose rim sees little of it.
+        nearest_of(&to.rim, b.scale, (own, change(b, a, -offset), a.scale), (nearest, enough))
     }
+
+    /// How far two elements are apart at least, as [`Inks::gap`] would have it: soon said, and no more than needed to be beyond `enough`.
+    pub(crate) fn apart(&self, a: &Pose<D>, b: &Pose<D>, offset: Vector<D>, enough: f64) -> f64 {
+        let radii = [self.radius(a), self.radius(b)];
+        let circles = offset.norm() - radii[0] - radii[1];
+        if circles > enough {
+            return circles;
+        }
+        // The middle of one says much of how far all of it is from the other.
+        let beside = |map: &DistanceMap, place, scale: f64, radius: f64| map.at_least(place) * scale - radius;
+        let (one, two) = (&self.inks[a.source].map, &self.inks[b.source].map);
+        let mut least = circles;
+        if let Some(map) = two {
+            least = least.max(beside(map, own(b, -offset), b.scale, radii[0]));
+        }
+        if let Some(map) = one.as_ref().filter(|_| least <= enough) {
+            least = least.max(beside(map, own(a, offset), a.scale, radii[1]));
+        }
+        least
+    }
+}
+
+/// The least of `nearest` and the distances of a rim from the ink of a map, where they are no larger than `enough`.
+fn nearest_of(
+    rim: &[Piece],
+    scale: f64,
+    (map, change, map_scale): (&DistanceMap, Change, f64),
+    (mut nearest, enough): (f64, f64),
+) -> f64 {
+    for piece in rim {
+        let radius = piece.radius * scale;
+        let least = map.at(change.apply(piece.centre)) * map_scale - radius;
+        if least >= nearest || least > enough {
+            nearest = nearest.min(least.max(enough) + radius);
+            continue;
+        }
+        for &place in &piece.places {
+            nearest = nearest.min(map.at(change.apply(place)) * map_scale);
+        }
+    }
+    nearest
 }
 
 /// An offset from the centre of an element of the plane in the coordinates of the element.
@@ -191,8 +254,8 @@ fn centred(plane: &Exemplar<2>, e: usize) -> Option<Outline<2>> {
     Some(Outline { rings: element.outline.rings.iter().map(about).collect() })
 }
 
-/// Places along the rim of an outline, about `step` apart; farther apart where it is long.
-fn rim(outline: &Outline<2>, step: f64) -> Vec<Vector<2>> {
+/// Places along the rim of an outline, about `step` apart; farther apart where it is long. And how far.
+fn rim(outline: &Outline<2>, step: f64) -> (Vec<Vector<2>>, f64) {
     let length: f64 = outline.edges().map(|(a, b)| (b - a).norm()).sum();
     let step = step.max(length / RIM as f64);
     let mut places = Vec::new();
@@ -207,7 +270,7 @@ fn rim(outline: &Outline<2>, step: f64) -> Vec<Vector<2>> {
             until -= side;
         }
     }
-    places
+    (places, step)
 }
 
 /// Places in groups that lie close together.

@@ -10,6 +10,7 @@
 //! lowers the price of the page, and numbers of elements stay as they should be. What the exemplar itself leaves open costs
 //! nothing: clusters stay clusters.
 
+mod at_once;
 mod distance_map;
 mod ink;
 mod moves;

@@ -8,7 +8,7 @@ use crate::{
     evenness::{
         ink::Pose,
         share::Shares,
-        work::{COUNT, Scene, Work},
+        work::{Scene, Work},
     },
 };
 
@@ -25,8 +25,11 @@ const QUIET: f64 = 8e-3;
 /// it must, and at the end what the long ones leave.
 const STEPS: [f64; 4] = [0.12, 0.3, 0.6, 0.15];
 
+/// Steps longer than this, in what an element may go, are reason to look at everything around it again.
+const FRESH: f64 = 0.2;
+
 /// How far it may go, in tolerated distances.
-const FAR: f64 = 1.0;
+pub(crate) const FAR: f64 = 1.0;
 
 /// Steps of one length.
 const TURNS: usize = 3;
@@ -66,7 +69,7 @@ where
     }
 
     fn admits(&self, pose: &Pose<D>) -> bool {
-        self.extent.admits(pose.source, pose.centre)
+        self.sees(pose) && self.extent.admits(pose.source, pose.centre)
     }
 
     /// Those of some elements that pay enough to look for a better place.
@@ -78,7 +81,7 @@ where
             }
             let mut meter = self.budget.meter();
             let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), &mut meter)?;
-            Ok((self.price_of_space(&scene, Some(&body.pose), QUIET, &mut meter)? >= QUIET).then_some(b))
+            Ok((self.price_of_space(&scene, Some(&body.pose), None, QUIET, &mut meter)? >= QUIET).then_some(b))
         };
         let found = bodies.par_iter().with_min_len(ALONE).map(pays).collect::<Result<Vec<_>>>()?;
         Ok(found.into_iter().flatten().collect())
@@ -145,7 +148,7 @@ where
     /// How an element would lie where the price is lowest nearby, and by how much it would fall.
     fn better_place(&self, b: u32, meter: &mut Meter<'_>) -> Result<Option<(Pose<D>, f64)>> {
         let body = *self.page.body(b);
-        if body.fixed || !body.alive || !self.moves.shift {
+        if body.fixed || !body.alive || !self.moves.shift || !self.sees(&body.pose) {
             return Ok(None);
         }
         let unit = self.unit(body.pose.centre);
@@ -153,7 +156,7 @@ where
         let radius = self.page.inks.radius(&body.pose);
         let scene = self.scene(Some(b), body.pose.centre, (radius, far), meter)?;
         // Shares of ink alone are as they are in many places of the exemplar.
-        if self.price_of_space(&scene, Some(&body.pose), f64::INFINITY, meter)? < QUIET {
+        if self.price_of_space(&scene, Some(&body.pose), None, f64::INFINITY, meter)? < QUIET {
             return Ok(None);
         }
         let start = self.price(&scene, Some(&body.pose), f64::INFINITY, meter)?;
@@ -176,6 +179,7 @@ where
         let turn = self.turn(&pose);
         let (first, start) = (price, pose.centre);
         let mut leading = Vector::ZERO;
+        let mut known = self.known(scene, &pose, far, meter)?;
         for (n, step) in STEPS.into_iter().enumerate() {
             let step = step * far;
             // As much again as was gained so far is not to be expected of what is left.
@@ -193,7 +197,7 @@ where
                         continue;
                     }
                     let moved = self.page.pose(pose.source, centre, &turn);
-                    let there = self.price(scene, Some(&moved), price, meter)?;
+                    let there = self.price_near(scene, Some(&moved), known.as_ref(), price, meter)?;
                     if there < price - WORTH && self.admits(&moved) {
                         better = Some((moved, there, way));
                         break;
@@ -201,6 +205,9 @@ where
                 }
                 let Some((moved, there, way)) = better else { break };
                 (pose, price, leading) = (moved, there, way);
+                if step > FRESH * far {
+                    known = self.known(scene, &pose, far, meter)?;
+                }
                 left -= 1;
                 if left == 0 || price < WORTH {
                     break;
@@ -300,32 +307,35 @@ where
         let largest = largest * self.page.request.fields.frame(p).element_scale;
         let scene = self.scene(None, p, (largest, far), meter)?;
         let before = self.price(&scene, None, f64::INFINITY, meter)?;
-        let is_wanted = |&source: &u32| {
-            let class = self.library.class[source];
-            self.counts[class] + 1.0 <= (1.0 + COUNT) * self.targets[class] + 0.5
-        };
+        let is_wanted = |&source: &u32| self.wants(self.library.class[source]);
         let wanted: Vec<u32> = candidates.into_iter().filter(is_wanted).collect();
-        let sorted = self.priced(&scene, &wanted, p, before + HOPELESS)?;
-        let rate = |(start, pose): &(f64, Pose<D>)| {
-            let mut meter = self.budget.meter();
-            let (pose, price) = self.descend(&scene, (*start, *pose), (far, before + CROWDED), &mut meter)?;
+        let sorted = self.priced(&scene, &wanted, p, before + HOPELESS, meter)?;
+        let mut rate = |(start, pose): &(f64, Pose<D>)| {
+            let (pose, price) = self.descend(&scene, (*start, *pose), (far, before + CROWDED), meter)?;
             if !self.admits(&pose) {
                 return Ok(None);
             }
             let rise = price - before;
-            Ok(Some((rise + AGREEMENT * self.disagreement(&pose, None, &mut meter)?, rise, pose)))
+            Ok(Some((rise + AGREEMENT * self.disagreement(&pose, None, meter)?, rise, pose)))
         };
-        let rated = sorted.par_iter().take(CANDIDATES.1).map(rate).collect::<Result<Vec<_>>>()?;
+        let rated = sorted.iter().take(CANDIDATES.1).map(&mut rate).collect::<Result<Vec<_>>>()?;
         Ok(rated.into_iter().flatten().collect())
     }
 
     /// Elements as they would lie at `p` without being moved, with the price there, the cheapest first; none dearer than `most`.
-    fn priced(&self, scene: &Scene<D>, sources: &[u32], p: Vector<D>, most: f64) -> Result<Vec<(f64, Pose<D>)>> {
+    fn priced(
+        &self,
+        scene: &Scene<D>,
+        sources: &[u32],
+        p: Vector<D>,
+        most: f64,
+        meter: &mut Meter<'_>,
+    ) -> Result<Vec<(f64, Pose<D>)>> {
         let price = |&source: &u32| {
             let pose = self.page.pose(source, p, &Matrix::identity());
-            Ok((self.price(scene, Some(&pose), most, &mut self.budget.meter())?, pose))
+            Ok((self.price(scene, Some(&pose), most, meter)?, pose))
         };
-        let mut priced: Vec<_> = sources.par_iter().with_min_len(ALONE).map(price).collect::<Result<_>>()?;
+        let mut priced: Vec<_> = sources.iter().map(price).collect::<Result<_>>()?;
         priced.retain(|(price, _)| *price <= most);
         priced.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.source.cmp(&b.1.source)));
         Ok(priced)
@@ -380,7 +390,7 @@ where
 
     fn exchange_one(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<bool> {
         let body = *self.page.body(b);
-        if body.fixed || !body.alive || !self.moves.exchange {
+        if body.fixed || !body.alive || !self.moves.exchange || !self.sees(&body.pose) {
             return Ok(false);
         }
         let class = self.library.class[body.pose.source];
@@ -394,38 +404,30 @@ where
         let differs =
             |e: &&u32| self.library.copyable[**e] && self.library.differences.of(**e, body.pose.source) > same;
         let others: Vec<u32> = members.iter().step_by(step).filter(differs).copied().collect();
-        let rated = self.priced(&scene, &others, body.pose.centre, now + HOPELESS)?;
-        let better = |(start, pose): &(f64, Pose<D>)| {
-            let mut meter = self.budget.meter();
-            let (pose, price) = self.descend(&scene, (*start, *pose), (far, now), &mut meter)?;
+        let rated = self.priced(&scene, &others, body.pose.centre, now + HOPELESS, meter)?;
+        for (start, pose) in rated.into_iter().take(CANDIDATES.1) {
+            let (pose, price) = self.descend(&scene, (start, pose), (far, now), meter)?;
             if now - price <= WORTH || !self.admits(&pose) {
-                return Ok(None);
+                continue;
             }
-            let mine = self.disagreement(&body.pose, Some(b), &mut meter)?;
-            let worse = self.disagreement(&pose, Some(b), &mut meter)? - mine;
-            Ok((now - price > WORTH + AGREEMENT * worse.max(0.0)).then_some(pose))
-        };
-        // The cheapest one is mostly it.
-        let Some((first, rest)) = rated.split_first() else { return Ok(false) };
-        let mut found = better(first)?;
-        if found.is_none() {
-            let rest = rest.par_iter().take(CANDIDATES.1 - 1).map(better).collect::<Result<Vec<_>>>()?;
-            found = rest.into_iter().flatten().next();
+            let mine = self.disagreement(&body.pose, Some(b), meter)?;
+            let worse = self.disagreement(&pose, Some(b), meter)? - mine;
+            if now - price > WORTH + AGREEMENT * worse.max(0.0) {
+                self.change(b, pose, meter)?;
+                self.keep();
+                return Ok(true);
+            }
         }
-        let Some(pose) = found else { return Ok(false) };
-        self.change(b, pose, meter)?;
-        self.keep();
-        Ok(true)
+        Ok(false)
     }
 
     /// Takes an element out of a clump, where others may close up.
     pub(crate) fn thin(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<bool> {
         let body = *self.page.body(b);
-        if body.fixed || !body.alive || !self.moves.thin {
+        if body.fixed || !body.alive || !self.moves.thin || !self.sees(&body.pose) {
             return Ok(false);
         }
-        let class = self.library.class[body.pose.source];
-        if self.counts[class] - 1.0 < (1.0 - self.fewer) * self.targets[class] - self.spare {
+        if !self.spares(self.library.class[body.pose.source]) {
             return Ok(false);
         }
         let scene = self.scene(Some(b), body.pose.centre, (self.page.inks.radius(&body.pose), 0.0), meter)?;

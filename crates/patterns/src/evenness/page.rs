@@ -3,6 +3,8 @@
 //! Two, so that it is known at once what a place would be like without the nearest. Distances are cut off at a reach beyond
 //! which a place is empty in any case.
 
+use std::sync::Arc;
+
 use arabesque_core::{Budget, Domain, Held, Lattice, Matrix, Meter, Request, Result, Vector};
 
 use crate::{
@@ -77,7 +79,7 @@ pub(crate) struct Page<'a, const D: usize> {
     pub(crate) request: &'a Request<D>,
     pub(crate) inks: &'a Inks<D>,
     pub(crate) bodies: Vec<Body<D>>,
-    pub(crate) strokes: Strokes<D>,
+    pub(crate) strokes: Arc<Strokes<D>>,
     pub(crate) cells: Vec<Cell>,
     pub(crate) lattice: Lattice<D>,
     /// For each part of the page, the elements that are nearer to a place in it than the reach.
@@ -88,10 +90,11 @@ pub(crate) struct Page<'a, const D: usize> {
     largest: f64,
     parts: Lattice<D>,
     /// Whether the pattern is turned and scaled as in the exemplar everywhere.
-    is_neutral: bool,
+    pub(crate) is_neutral: bool,
     /// Distances from here on are all the same.
     pub(crate) reach: f64,
-    _held: Held,
+    /// `None` for a part, which is soon gone.
+    _held: Option<Held>,
 }
 
 impl<'a, const D: usize> Page<'a, D>
@@ -133,7 +136,7 @@ where
             request,
             inks,
             bodies,
-            strokes,
+            strokes: Arc::new(strokes),
             cells,
             lattice,
             lists,
@@ -142,7 +145,7 @@ where
             parts,
             is_neutral,
             reach,
-            _held: held,
+            _held: Some(held),
         };
         for k in 0..page.strokes.places.len() {
             page.draw(page.strokes.places[k], &mut meter)?;
@@ -215,6 +218,42 @@ impl<const D: usize> Page<'_, D> {
         if self.is_neutral { 1.0 } else { self.request.fields.frame(p).spacing_scale }
     }
 
+    /// The places in the box around a ball and the elements near them, as a page of its own, and the numbers that these have on this one.
+    /// What is changed there and lies inside with all that it touches is as if it were changed here. `here` is [`NOBODY`] for every
+    /// element, and is so again afterwards.
+    pub(crate) fn part_around(&self, p: Vector<D>, radius: f64, here: &mut [u32]) -> (Self, Vec<u32>) {
+        let side = self.parts.cell().0.into_iter().fold(0.0, f64::max);
+        // What is nearer than the reach to a place inside has its centre in one of these parts, or is very large.
+        let around = radius + side + self.largest.min(self.reach) + self.reach;
+        let (lattice, parts) = (self.lattice.part(p, radius), self.parts.part(p, around));
+        let mut numbers = Vec::new();
+        self.parts.around(p, around, |part, _| numbers.extend_from_slice(&self.homes[part]));
+        if self.largest > self.reach {
+            self.parts.around(p, radius + side, |part, _| numbers.extend_from_slice(&self.lists[part]));
+        }
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers.iter().zip(0..).for_each(|(&b, k)| here[b as usize] = k);
+        let number = |b: u32| here.get(b as usize).copied().unwrap_or(NOBODY);
+        let (mut lists, mut homes) = (vec![Vec::new(); parts.count()], Vec::with_capacity(parts.count()));
+        self.parts.around(p, around, |part, _| homes.push(self.homes[part].iter().map(|&b| number(b)).collect()));
+        // Distances are looked up for places inside alone.
+        let mut known = Vec::new();
+        self.parts.around(p, radius + side, |part, _| known.push(part));
+        let mut known = known.into_iter();
+        parts.around(p, radius + side, |part, _| {
+            let list = known.next().map(|whole| self.lists[whole].iter().map(|&b| number(b)));
+            lists[part] = list.into_iter().flatten().filter(|&k| k != NOBODY).collect();
+        });
+        let mut cells = Vec::with_capacity(lattice.count());
+        self.lattice
+            .around(p, radius, |c, _| cells.push(Cell { near: self.cells[c].near.map(number), ..self.cells[c] }));
+        numbers.iter().for_each(|&b| here[b as usize] = NOBODY);
+        let bodies = numbers.iter().map(|&b| *self.body(b)).collect();
+        let strokes = Arc::clone(&self.strokes);
+        (Self { bodies, strokes, cells, lattice, lists, homes, parts, _held: None, ..*self }, numbers)
+    }
+
     /// Makes the ink of a stroke part of what is still.
     fn draw(&mut self, (place, radius): (Vector<D>, f64), meter: &mut Meter<'_>) -> Result<()> {
         let mut looked = 0;
@@ -264,6 +303,11 @@ impl<const D: usize> Page<'_, D> {
         self.parts.around(pose.centre, self.inks.radius(&pose) + self.reach, |part, _| lists[part].retain(|&o| o != b));
         let home = self.part(pose.centre);
         self.homes[home].retain(|&o| o != b);
+    }
+
+    /// Radius of the largest element.
+    pub(crate) fn largest(&self) -> f64 {
+        self.largest
     }
 
     /// Number of parts.

@@ -6,11 +6,12 @@ use rayon::prelude::*;
 
 use crate::{
     dimension::Dimension,
-    evenness::{page::Body, share::Shares, work::Work},
+    evenness::{at_once::Task, page::Body, share::Shares, work::Work},
 };
 
-/// Rounds over the page.
-const ROUNDS: usize = 3;
+/// Rounds over the page; one that helps so many times less than the one that helped most is the last.
+const ROUNDS: u32 = 3;
+const LITTLE: usize = 12;
 
 /// Sweeps over elements that pay.
 const SWEEPS: usize = 4;
@@ -46,13 +47,15 @@ where
 {
     let mut meter = budget.meter();
     let mut rounds = Rounds { work, tell, handled: 0 };
-    for round in 1..=ROUNDS as u32 {
+    let mut most = 0;
+    for round in 1..=ROUNDS {
         rounds.work.now = round + 1;
         // What would draw in the elements around a hole leaves fewer of them than there should be: holes come first.
         let mut moves = rounds.holes(round, &mut meter)?;
         moves += rounds.clumps(round, &mut meter)?;
         moves += rounds.shares(round, &mut meter)?;
-        if moves == 0 {
+        most = moves.max(most);
+        if moves * LITTLE <= most {
             break;
         }
         rounds.relax(&mut meter)?;
@@ -77,13 +80,6 @@ impl<const D: usize> Rounds<'_, '_, D>
 where
     Vector<D>: Dimension<D>,
 {
-    /// A place was worked on.
-    fn handled(&mut self) -> Result<()> {
-        self.work.keep();
-        self.handled += 1;
-        if self.handled.is_multiple_of(TOLD) { (self.tell)(&self.work.page.bodies) } else { Ok(()) }
-    }
-
     /// Lets elements that pay settle, and then those around the ones that did, until nothing moves.
     fn relax(&mut self, meter: &mut Meter<'_>) -> Result<()> {
         let mut open: Vec<u32> = (0..self.work.page.bodies.len() as u32).collect();
@@ -113,25 +109,7 @@ where
         let mut clumps: Vec<(f64, u32)> = open.par_iter().with_min_len(16).map(missing).collect::<Result<_>>()?;
         clumps.retain(|(missing, _)| *missing > NEAR);
         clumps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut moves = 0;
-        for (_, b) in clumps {
-            if self.work.worst(b, meter)? <= NEAR {
-                continue;
-            }
-            let p = self.work.page.body(b).pose.centre;
-            let work = &mut *self.work;
-            let mut helped = work.is_surplus(b) && work.thin(b, meter)?;
-            if !helped {
-                helped = work.give_way(p, meter)? > 0.0;
-                work.keep();
-            }
-            if work.worst(b, meter)? > NEAR {
-                helped |= work.exchange(p, 1, meter)? || work.thin(b, meter)?;
-            }
-            moves += usize::from(helped);
-            self.handled()?;
-        }
-        Ok(moves)
+        self.work_on(clumps.into_iter().map(|(_, b)| Clump(b)).collect(), meter)
     }
 
     /// Works on holes, the widest first.
@@ -142,46 +120,124 @@ where
         let deep = (0..page.cells.len()).filter(|&c| depth(c) > HOLE as f32).filter(is_new);
         let mut holes: Vec<(f32, usize)> = deep.map(|c| (depth(c), c)).collect();
         holes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut done = vec![false; page.cells.len()];
-        let mut moves = 0;
-        for (before, c) in holes {
-            let page = &self.work.page;
-            let cell = &page.cells[c];
-            if done[c] || cell.empty() / cell.tolerated < before * 0.98 {
-                continue;
-            }
-            let p = page.lattice.centre(c);
-            // The hole is looked at once a round.
-            page.lattice.around(p, 0.5 * f64::from(cell.empty()), |c, _| done[c] = true);
-            let work = &mut *self.work;
-            let helped = work.fill(p, meter)? || work.exchange(p, 3, meter)? || work.give_way(p, meter)? > 0.0;
-            moves += usize::from(helped);
-            self.handled()?;
-        }
-        Ok(moves)
+        let hole = |(depth, cell)| Hole { depth, cell, place: page.lattice.centre(cell) };
+        self.work_on(holes.into_iter().map(hole).collect(), meter)
     }
 
     /// Works on places where there is too much or too little ink around, the worst first.
     fn shares(&mut self, round: u32, meter: &mut Meter<'_>) -> Result<usize> {
         let off = self.work.shares.as_ref().map_or_else(Vec::new, Shares::off);
+        let off = off.into_iter().filter(|(excess, _)| excess.abs() > OFF);
+        self.work_on(off.map(|(excess, place)| Share { excess, place, round }).collect(), meter)
+    }
+
+    /// Does tasks; returns how many of them helped.
+    fn work_on<T: Task<D>>(&mut self, tasks: Vec<T>, meter: &mut Meter<'_>) -> Result<usize> {
+        let (handled, tell) = (&mut self.handled, &mut self.tell);
         let mut moves = 0;
-        for (excess, p) in off.into_iter().filter(|(excess, _)| excess.abs() > OFF) {
-            let work = &mut *self.work;
-            if !work.has_changed(p, round) {
-                continue;
-            }
-            let mut helped = work.exchange(p, 5, meter)?;
-            if let (false, true, Some(hole)) = (helped, excess < 0.0, work.emptiest(p)) {
-                helped = work.fill(hole, meter)?;
-            }
-            if !helped && excess > 0.0 {
-                for b in work.group(p, 5) {
-                    helped = helped || (work.is_surplus(b) && work.thin(b, meter)?);
-                }
-            }
+        self.work.at_once(tasks, meter, &mut |work, helped| {
             moves += usize::from(helped);
-            self.handled()?;
-        }
+            *handled += 1;
+            if handled.is_multiple_of(TOLD) { tell(&work.page.bodies) } else { Ok(()) }
+        })?;
         Ok(moves)
+    }
+}
+
+/// An element that is too near another one.
+struct Clump(u32);
+
+impl<const D: usize> Task<D> for Clump
+where
+    Vector<D>: Dimension<D>,
+{
+    fn place(&self, work: &Work<'_, D>) -> Vector<D> {
+        work.page.body(self.0).pose.centre
+    }
+
+    fn is_open(&self, work: &Work<'_, D>, _: &mut Vec<bool>, meter: &mut Meter<'_>) -> Result<bool> {
+        Ok(work.worst(self.0, meter)? > NEAR)
+    }
+
+    fn act(&self, work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<bool> {
+        let Some(b) = work.here(self.0) else { return Ok(false) };
+        let p = work.page.body(b).pose.centre;
+        let mut helped = work.is_surplus(b) && work.thin(b, meter)?;
+        if !helped {
+            helped = work.give_way(p, meter)? > 0.0;
+            work.keep();
+        }
+        if work.worst(b, meter)? > NEAR {
+            helped |= work.exchange(p, 1, meter)? || work.thin(b, meter)?;
+        }
+        Ok(helped)
+    }
+}
+
+/// A place that was farther from ink than is tolerated, by so many tolerated distances.
+struct Hole<const D: usize> {
+    depth: f32,
+    cell: usize,
+    place: Vector<D>,
+}
+
+impl<const D: usize> Task<D> for Hole<D>
+where
+    Vector<D>: Dimension<D>,
+{
+    fn place(&self, _: &Work<'_, D>) -> Vector<D> {
+        self.place
+    }
+
+    /// A hole is looked at once a round.
+    fn is_open(&self, work: &Work<'_, D>, done: &mut Vec<bool>, _: &mut Meter<'_>) -> Result<bool> {
+        let page = &work.page;
+        let cell = &page.cells[self.cell];
+        done.resize(page.cells.len(), false);
+        if done[self.cell] || cell.empty() / cell.tolerated < self.depth * 0.98 {
+            return Ok(false);
+        }
+        let around = 0.5 * f64::from(cell.empty());
+        page.lattice.around(self.place, around, |c, _| done[c] = true);
+        Ok(true)
+    }
+
+    fn act(&self, work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<bool> {
+        let p = self.place;
+        Ok(work.fill(p, meter)? || work.exchange(p, 3, meter)? || work.give_way(p, meter)? > 0.0)
+    }
+}
+
+/// A place with more or less ink around than usual, by so many deviations more than is natural.
+struct Share<const D: usize> {
+    excess: f64,
+    place: Vector<D>,
+    round: u32,
+}
+
+impl<const D: usize> Task<D> for Share<D>
+where
+    Vector<D>: Dimension<D>,
+{
+    fn place(&self, _: &Work<'_, D>) -> Vector<D> {
+        self.place
+    }
+
+    fn is_open(&self, work: &Work<'_, D>, _: &mut Vec<bool>, _: &mut Meter<'_>) -> Result<bool> {
+        Ok(work.has_changed(self.place, self.round))
+    }
+
+    fn act(&self, work: &mut Work<'_, D>, meter: &mut Meter<'_>) -> Result<bool> {
+        let p = self.place;
+        let mut helped = work.exchange(p, 5, meter)?;
+        if let (false, true, Some(hole)) = (helped, self.excess < 0.0, work.emptiest(p)) {
+            helped = work.fill(hole, meter)?;
+        }
+        if !helped && self.excess > 0.0 {
+            for b in work.group(p, 5) {
+                helped = helped || (work.is_surplus(b) && work.thin(b, meter)?);
+            }
+        }
+        Ok(helped)
     }
 }

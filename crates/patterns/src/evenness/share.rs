@@ -175,6 +175,14 @@ impl<const D: usize> Shares<'_, D> {
         if self.domain.contains(centre) { self.spread.mass[source] * scale.powi(D as i32) } else { 0.0 }
     }
 
+    /// The places in the box around a ball.
+    pub(crate) fn part_around(&self, p: Vector<D>, radius: f64) -> Self {
+        let lattice = self.lattice.part(p, radius);
+        let mut places = Vec::with_capacity(lattice.count());
+        self.lattice.around(p, radius, |c, _| places.push(self.places[c]));
+        Self { lattice, places, ..*self }
+    }
+
     /// Adds an element, or takes one away with `sign` -1.
     pub(crate) fn count(&mut self, (source, scale): (u32, f64), centre: Vector<D>, sign: f64) {
         let mass = sign * self.mass((source, scale), centre);

@@ -15,7 +15,8 @@ use crate::{
     dimension::Dimension,
     evenness::{
         Evenness, counts,
-        page::{Body, Measures, Page},
+        ink::{Inks, Pose},
+        page::{Body, Measures, NOBODY, Page},
         strokes::Strokes,
         work::{Moves, Work},
     },
@@ -325,6 +326,95 @@ proptest! {
             prop_assert!((a.distance[0] - b.distance[0]).abs() < 1e-4 && (a.distance[1] - b.distance[1]).abs() < 1e-4);
         }
     }
+}
+
+#[test]
+fn a_part_of_a_page_is_as_it_is_on_the_whole() {
+    let (exemplar, budget) = (squares(), Budget::default());
+    let sampled = sampled(&exemplar);
+    let domain = Bounds::new(Vector::ZERO, Vector::splat(120.0));
+    for domain in [Domain::Box(domain), Domain::Torus(domain)] {
+        let request = Request::new(domain);
+        let extent = Extent::new(&request, &sampled.exemplar, &sampled.library, sampled.level.base).unwrap();
+        let evenness = Evenness::new(&exemplar, &sampled.library, None, 144, &budget).unwrap().unwrap();
+        let measures = Measures { spacing: 10.0, tolerated: 4.0, reach: 9.0 };
+        let none = Strokes::of_exemplar(None, &sampled.library);
+        let mut page = Page::new(&extent, &evenness.inks, Vec::new(), measures, none, &budget).unwrap();
+        let mut meter = budget.meter();
+        for ((x, y), source) in grid(12, 5).into_iter().zip(0..) {
+            page.add(page.pose(source, Vector::xy(x, y), &Matrix::identity()), &mut meter).unwrap();
+        }
+        // Elements that went leave their numbers behind.
+        (0..40).step_by(7).for_each(|b| page.remove(b, &mut meter).unwrap());
+        for p in [Vector::xy(60.0, 60.0), Vector::xy(5.0, 118.0)] {
+            let (part, numbers) = page.part_around(p, 30.0, &mut vec![NOBODY; 200]);
+            let (mut places, mut k) = (Vec::new(), 0);
+            page.lattice.around(p, 30.0, |c, _| {
+                let (cell, here) = (&page.cells[c], &part.cells[k]);
+                let near = here.near.map(|b| numbers.get(b as usize).copied().unwrap_or(b));
+                assert_eq!((near, here.distance, here.still), (cell.near, cell.distance, cell.still));
+                assert_eq!(part.lattice.centre(k), page.lattice.centre(c));
+                places.push(c);
+                k += 1;
+            });
+            let beside =
+                part.neighbours(p, 12.0, u32::MAX).into_iter().map(|b| numbers[b as usize]).collect::<Vec<_>>();
+            assert_eq!(beside, page.neighbours(p, 12.0, u32::MAX));
+            // What is changed in it far from its rim is what would be changed on the whole.
+            let (mut part, (mut whole, all)) = (part, page.part_around(p, 1e4, &mut vec![NOBODY; 200]));
+            let b = part.neighbours(p, 4.0, u32::MAX)[0];
+            let pose = part.pose(7, p + Vector::xy(1.0, -2.0), &Matrix::identity());
+            part.change(b, pose, &mut meter).unwrap();
+            let there = all.binary_search(&numbers[b as usize]).unwrap() as u32;
+            whole.change(there, pose, &mut meter).unwrap();
+            let mut far = Vec::new();
+            whole.lattice.around(p, 30.0, |c, _| far.push(whole.cells[c].distance));
+            assert_eq!(part.cells.iter().map(|cell| cell.distance).collect::<Vec<_>>(), far);
+        }
+    }
+}
+
+#[test]
+fn places_far_apart_come_out_the_same_on_any_number_of_threads() {
+    let mut items = page_of_squares();
+    // Holes and clumps all over the page.
+    for k in (0..10).rev() {
+        let moved = items.remove(37 * k + 8);
+        items.push(Item { position: items[29 * k].position + Vector::xy(1.5, 1.0), ..moved });
+    }
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| evened_squares(&items))
+    };
+    let one = on(1);
+    assert!(closest(&one) > 6.0, "{}", closest(&one));
+    for threads in [2, 5] {
+        assert_eq!(on(threads), one, "{threads} threads");
+    }
+}
+
+/// A square, a bar that is much longer than it is wide, and small squares around.
+fn square_and_bar() -> Arc<Exemplar<2>> {
+    let mut bar = square(1, (40.0, 20.0), 1.0);
+    let corners = [(-6.0, -0.2), (6.0, -0.2), (6.0, 0.2), (-6.0, 0.2)];
+    bar.outline.rings = vec![corners.map(|(x, y)| Vector::xy(40.0 + x, 20.0 + y)).to_vec()];
+    let mut elements = vec![square(0, (20.0, 20.0), 6.0), bar];
+    elements.extend(grid(16, 3).into_iter().map(|(x, y)| square(2, (0.375 * x, 0.375 * y), 1.0)));
+    drawing(elements, 60.0)
+}
+
+#[test]
+fn an_end_that_sticks_in_another_element_is_as_deep_as_it_reaches() {
+    let exemplar = square_and_bar();
+    let inks = Inks::new(&exemplar, &sampled(&exemplar).library, 2, 20.0, &Budget::default()).unwrap();
+    let pose = |source, x: f64| Pose { source, centre: Vector::xy(x, 0.0), rotation: Matrix::identity(), scale: 1.0 };
+    let gap = |x: f64, enough: f64| inks.gap(&pose(0, 0.0), &pose(1, x), Vector::xy(x, 0.0), enough);
+    for (x, depth) in [(11.0, 2.0), (8.0, -1.0), (7.5, -1.5), (6.5, -2.5)] {
+        let found = gap(x, 5.0);
+        assert!((found - depth).abs() < 0.5, "{found} at {x}");
+        assert_eq!(found, inks.gap(&pose(1, x), &pose(0, 0.0), Vector::xy(-x, 0.0), 5.0));
+    }
+    assert!(gap(11.0, 1.0) > 1.0);
 }
 
 /// Large squares anywhere, each with a small one beside it, in any direction.

@@ -24,7 +24,7 @@ use crate::{
 const NARROW: (f64, f64) = (2.0, 20.0);
 
 /// Numbers of elements of a class stay within this share of what they should be.
-pub(crate) const COUNT: f64 = 0.01;
+const COUNT: f64 = 0.01;
 /// Numbers are whole.
 const ROUNDING: f64 = 0.5;
 
@@ -57,9 +57,21 @@ pub(crate) struct Work<'a, const D: usize> {
     /// What is tried at the same time draws on it.
     pub(crate) budget: Budget,
     steps: Vec<Undo<D>>,
+    /// What was kept, where this is a part.
+    pub(crate) part: Option<Part<D>>,
     /// When elements last changed, by the part of the page; and now.
     changed: Vec<u32>,
     pub(crate) now: u32,
+}
+
+/// What a part of a page knows of the whole.
+pub(crate) struct Part<const D: usize> {
+    /// The middle and half the side of the box.
+    pub(crate) around: (Vector<D>, f64),
+    /// Numbers of its first elements on the whole page; the others are new.
+    pub(crate) numbers: Vec<u32>,
+    /// Elements that have changed.
+    pub(crate) kept: Vec<u32>,
 }
 
 /// The moves that are made.
@@ -99,6 +111,17 @@ struct Held<const D: usize> {
     alone: f64,
 }
 
+/// How far an element in one pose is from what its price depends on: farther away by no more than it is moved, so that most of a pose
+/// nearby is known without a look.
+#[derive(Default)]
+pub(crate) struct Known<const D: usize> {
+    centre: Vector<D>,
+    /// Of each place.
+    own: Vec<f64>,
+    /// Of each neighbour, at least.
+    gaps: Vec<f64>,
+}
+
 /// What the price of an element depends on, around where it is or may go.
 pub(crate) struct Scene<const D: usize> {
     held: Vec<Held<D>>,
@@ -132,9 +155,44 @@ impl<'a, const D: usize> Work<'a, D> {
             spare,
             budget,
             steps,
+            part: None,
             changed,
             now,
         }
+    }
+
+    /// A part of the page, to be worked on by itself.
+    pub(crate) fn part_around(&self, p: Vector<D>, radius: f64, here: &mut [u32]) -> Self {
+        let (page, numbers) = self.page.part_around(p, radius, here);
+        let shares = self.shares.as_ref().map(|shares| shares.part_around(p, radius));
+        let changed = vec![self.now; page.parts()];
+        let (counts, targets, budget) = (self.counts.clone(), self.targets.clone(), self.budget.clone());
+        let part = Some(Part { around: (p, radius), numbers, kept: Vec::new() });
+        Self { page, shares, counts, targets, budget, steps: Vec::new(), part, changed, ..*self }
+    }
+
+    /// The number that an element of the whole page has here.
+    pub(crate) fn here(&self, b: u32) -> Option<u32> {
+        self.part.as_ref().map_or(Some(b), |part| part.numbers.binary_search(&b).ok().map(|k| k as u32))
+    }
+
+    /// Whether all that an element in some pose changes, and that its price depends on, is here.
+    pub(crate) fn sees(&self, pose: &Pose<D>) -> bool {
+        let Some(Part { around: (p, radius), .. }) = &self.part else { return true };
+        let near = self.page.reach.max(self.natural.widest * self.page.spacing_scale(pose.centre));
+        let shares = self.shares.as_ref().map_or(0.0, Shares::widest);
+        let far = (self.page.inks.radius(pose) + near).max(shares);
+        self.page.domain().offset(*p, pose.centre).0.iter().all(|d| d.abs() + far <= *radius)
+    }
+
+    /// Whether a class may have one element more.
+    pub(crate) fn wants(&self, class: u32) -> bool {
+        self.counts[class] + 1.0 <= (1.0 + COUNT) * self.targets[class] + ROUNDING
+    }
+
+    /// Whether a class may have one element less.
+    pub(crate) fn spares(&self, class: u32) -> bool {
+        self.counts[class] - 1.0 >= (1.0 - self.fewer) * self.targets[class] - self.spare
     }
 
     /// Whether anything has changed around `p` since some time.
@@ -184,7 +242,14 @@ impl<'a, const D: usize> Work<'a, D> {
         }
         let scale = page.spacing_scale(centre);
         let widest = self.natural.widest.max(0.0) * scale;
-        let neighbours = page.neighbours(centre, radius + step + widest, body);
+        let mut neighbours = page.neighbours(centre, radius + step + widest, body);
+        if step > 0.0 {
+            let far = |o: u32| {
+                let other = &page.body(o).pose;
+                page.domain().offset(centre, other.centre).norm() - page.inks.radius(other)
+            };
+            neighbours.sort_by_cached_key(|&o| (far(o) / page.reach * 1e9) as i64);
+        }
         let mut strokes = Vec::new();
         let clearest = self.natural.clearest * scale;
         page.strokes.near(centre, radius + step + clearest, |offset, radius| strokes.push((centre + offset, radius)));
@@ -205,11 +270,47 @@ impl<'a, const D: usize> Work<'a, D> {
         limit: f64,
         meter: &mut Meter<'_>,
     ) -> Result<f64> {
-        let sum = self.price_of_space(scene, pose, limit, meter)?;
+        self.price_near(scene, pose, None, limit, meter)
+    }
+
+    /// The same near a pose that is known.
+    pub(crate) fn price_near(
+        &self,
+        scene: &Scene<D>,
+        pose: Option<&Pose<D>>,
+        known: Option<&Known<D>>,
+        limit: f64,
+        meter: &mut Meter<'_>,
+    ) -> Result<f64> {
+        let sum = self.price_of_space(scene, pose, known, limit, meter)?;
         Ok(match &self.shares {
             Some(shares) if sum <= limit => sum + shares.price(&scene.shares, pose.map(ink_of)),
             _ => sum,
         })
+    }
+
+    /// Looks at everything around an element once, for poses at most `far` away. `None` where a pose changes with its place.
+    pub(crate) fn known(
+        &self,
+        scene: &Scene<D>,
+        pose: &Pose<D>,
+        far: f64,
+        meter: &mut Meter<'_>,
+    ) -> Result<Option<Known<D>>> {
+        if !self.page.is_neutral {
+            return Ok(None);
+        }
+        meter.spend(PRICE.1 * scene.held.len() as u64 + PAIR * scene.neighbours.len() as u64)?;
+        let placed = self.page.inks.placed(pose);
+        let own = scene.held.iter().map(|held| placed.distance(held.place - pose.centre)).collect();
+        let widest = self.natural.widest;
+        let gap = |&o: &u32| {
+            let (a, b) = in_order(pose, &self.page.body(o).pose);
+            let offset = self.page.domain().offset(a.centre, b.centre);
+            let least = self.page.inks.apart(a, b, offset, widest + far);
+            if least >= widest { least } else { self.page.inks.gap(a, b, offset, widest).min(widest) }
+        };
+        Ok(Some(Known { centre: pose.centre, own, gaps: scene.neighbours.iter().map(gap).collect() }))
     }
 
     /// The same without the shares of ink.
@@ -217,14 +318,21 @@ impl<'a, const D: usize> Work<'a, D> {
         &self,
         scene: &Scene<D>,
         pose: Option<&Pose<D>>,
+        known: Option<&Known<D>>,
         limit: f64,
         meter: &mut Meter<'_>,
     ) -> Result<f64> {
         let mut sum = 0.0;
+        let moved = match (known, pose) {
+            // Distances between places are looked up in maps, which are not quite exact.
+            (Some(known), Some(pose)) => 1.05 * self.page.domain().offset(known.centre, pose.centre).norm(),
+            _ => f64::INFINITY,
+        };
         if let Some(pose) = pose {
             sum += narrow(self.cramped(pose, &scene.strokes, meter)?);
-            for &o in &scene.neighbours {
-                sum += self.narrow(pose, &self.page.body(o).pose, meter)?;
+            for (k, &o) in scene.neighbours.iter().enumerate() {
+                let least = known.map_or(f64::NEG_INFINITY, |known| known.gaps[k] - moved);
+                sum += narrow(self.missing(pose, &self.page.body(o).pose, least, meter)?);
                 if sum > limit {
                     return Ok(sum);
                 }
@@ -233,12 +341,25 @@ impl<'a, const D: usize> Work<'a, D> {
         meter.spend(PRICE.1 * scene.held.len() as u64)?;
         let Some(pose) = pose else { return Ok(sum + scene.held.iter().map(|held| held.alone).sum::<f64>()) };
         let radius = self.page.inks.radius(pose);
-        for held in &scene.held {
+        let placed = self.page.inks.placed(pose);
+        for (k, held) in scene.held.iter().enumerate() {
+            if let Some(own) = known.map(|known| known.own[k]) {
+                if own + moved <= held.tolerated {
+                    continue;
+                }
+                if own - moved >= held.without {
+                    sum += held.alone;
+                    if sum > limit {
+                        break;
+                    }
+                    continue;
+                }
+            }
             let (offset, far) = (held.place - pose.centre, held.without + radius);
             sum += if offset.norm2() >= far * far {
                 held.alone
             } else {
-                let own = self.page.inks.distance(pose, offset);
+                let own = placed.distance(offset);
                 Self::price_at(own.min(held.without), held.tolerated) * held.weight
             };
             if sum > limit {
@@ -246,11 +367,6 @@ impl<'a, const D: usize> Work<'a, D> {
             }
         }
         Ok(sum)
-    }
-
-    /// Price of two elements that come too near each other.
-    fn narrow(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
-        Ok(narrow(self.missing(a, b, meter)?))
     }
 
     /// What is missing of the narrowest gap that the exemplar has between such an element and strokes, in tolerated distances.
@@ -272,15 +388,15 @@ impl<'a, const D: usize> Work<'a, D> {
         Ok((least - gap) / (self.natural.tolerated * scale))
     }
 
-    /// What is missing of the narrowest gap that the exemplar has between two elements, in tolerated distances.
-    pub(crate) fn missing(&self, a: &Pose<D>, b: &Pose<D>, meter: &mut Meter<'_>) -> Result<f64> {
-        // Gaps are measured from the rim of one: of the same one, whoever asks.
-        let (a, b) = if a.centre.0 > b.centre.0 { (b, a) } else { (a, b) };
+    /// What is missing of the narrowest gap that the exemplar has between two elements, of which it is known that they are at least so
+    /// far apart; in tolerated distances.
+    fn missing(&self, a: &Pose<D>, b: &Pose<D>, known: f64, meter: &mut Meter<'_>) -> Result<f64> {
+        let (a, b) = in_order(a, b);
         let (x, y) = (self.library.class[a.source], self.library.class[b.source]);
         let scale = self.page.spacing_scale(a.centre);
         let offset = self.page.domain().offset(a.centre, b.centre);
         let least = self.natural.gap(x, y, self.page.unturned(a.centre, offset)) * scale;
-        if offset.norm() - self.page.inks.radius(a) - self.page.inks.radius(b) >= least {
+        if known >= least || offset.norm() - self.page.inks.radius(a) - self.page.inks.radius(b) >= least {
             return Ok(0.0);
         }
         meter.spend(PAIR)?;
@@ -310,7 +426,7 @@ impl<'a, const D: usize> Work<'a, D> {
         for o in self.page.neighbours(body.pose.centre, reach, b) {
             let other = self.page.body(o);
             if !(body.fixed && other.fixed) {
-                most = most.max(self.missing(&body.pose, &other.pose, meter)?);
+                most = most.max(self.missing(&body.pose, &other.pose, f64::NEG_INFINITY, meter)?);
             }
         }
         Ok(most)
@@ -331,7 +447,7 @@ impl<'a, const D: usize> Work<'a, D> {
             let body = page.body(b);
             let reach = page.inks.radius(&body.pose) + self.natural.widest.max(0.0);
             for o in page.neighbours(body.pose.centre, reach, b).into_iter().filter(|&o| o > b && body.alive) {
-                sum += self.narrow(&body.pose, &page.body(o).pose, meter)?;
+                sum += narrow(self.missing(&body.pose, &page.body(o).pose, f64::NEG_INFINITY, meter)?);
             }
         }
         Ok(sum)
@@ -377,6 +493,9 @@ impl<'a, const D: usize> Work<'a, D> {
         for step in std::mem::take(&mut self.steps) {
             let (Undo::Change(b, _) | Undo::Add(b) | Undo::Remove(b)) = step;
             let pose = self.page.body(b).pose;
+            if let Some(part) = &mut self.part {
+                part.kept.push(b);
+            }
             let (page, changed, now) = (&self.page, &mut self.changed, self.now);
             page.parts_around(&pose, |part| changed[part] = now);
         }
@@ -406,6 +525,11 @@ impl<'a, const D: usize> Work<'a, D> {
         }
         Ok(())
     }
+}
+
+/// Two poses in an order that does not depend on who asks: then a gap between them is the same number to the last digit.
+fn in_order<'p, const D: usize>(a: &'p Pose<D>, b: &'p Pose<D>) -> (&'p Pose<D>, &'p Pose<D>) {
+    if a.centre.0 > b.centre.0 { (b, a) } else { (a, b) }
 }
 
 /// Price of a gap of which so much is missing.

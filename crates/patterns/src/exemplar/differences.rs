@@ -53,6 +53,11 @@ impl Differences {
         Self { feature, column, row, table }
     }
 
+    /// Where an element stands among those of its class, for [`Differing::at`].
+    pub(crate) fn column(&self, e: u32) -> u32 {
+        self.column[e]
+    }
+
     /// An element, ready to be compared with others of its class.
     #[inline]
     pub(crate) fn from(&self, a: u32) -> Differing<'_> {
@@ -84,9 +89,15 @@ impl Differing<'_> {
     /// What [`Differences::of`] says of it and another.
     #[inline]
     pub(crate) fn of(&self, other: u32) -> f32 {
-        match self.row.get(self.differences.column[other] as usize) {
+        self.at(self.differences.column[other], || other)
+    }
+
+    /// The same where it is known in which [column](Differences::column) the other is; without a table, `other` is asked for.
+    #[inline]
+    pub(crate) fn at(&self, column: u32, other: impl FnOnce() -> u32) -> f32 {
+        match self.row.get(column as usize) {
             Some(&known) => known,
-            None => self.differences.of(self.element, other),
+            None => self.differences.of(self.element, other()),
         }
     }
 }

@@ -19,6 +19,8 @@ pub(crate) struct Near<const D: usize> {
     pub(crate) sample: u32,
     /// Its weight by distance; 0 beyond the radius: there only to be matched.
     pub(crate) weight: f32,
+    /// Where its element stands among those that it is compared with.
+    pub(crate) column: u32,
 }
 
 /// Price of an edge without a counterpart, in squared sampling distances. The paper has 1, which makes every sample
@@ -112,7 +114,7 @@ impl<const D: usize> Level<D> {
         budget: &Budget,
     ) -> Result<Self> {
         let mut level = Self::sampled(library, samples, detail, ball.radius, budget)?;
-        level.flatten(&Domain::Box(library.view.window), ball.slack, budget)?;
+        level.flatten(library, ball.slack, budget)?;
         Ok(level)
     }
 
@@ -170,7 +172,8 @@ impl<const D: usize> Level<D> {
         Ok(level)
     }
 
-    fn flatten(&mut self, plane: &Domain<D>, slack: f64, budget: &Budget) -> Result<()> {
+    fn flatten(&mut self, library: &Library<D>, slack: f64, budget: &Budget) -> Result<()> {
+        let plane = &Domain::Box(library.view.window);
         let mut meter = budget.meter();
         let reach = self.radius + slack;
         let index = GridIndex::new(&self.position, reach, plane);
@@ -189,7 +192,8 @@ impl<const D: usize> Level<D> {
                 if j != i {
                     let weight = if offset.norm() <= self.radius { fall_off(offset, self.radius) as f32 } else { 0.0 };
                     let offset = offset.0.map(|v| v as f32);
-                    found.push((self.key[j], Near { offset, sample: j as u32, weight }));
+                    let column = library.differences.column(self.element[j]);
+                    found.push((self.key[j], Near { offset, sample: j as u32, weight, column }));
                 }
             });
             meter.spend(3 * looked + 40 * found.len() as u64)?;

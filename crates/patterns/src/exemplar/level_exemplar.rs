@@ -47,7 +47,7 @@ pub(crate) fn level_exemplars<const D: usize>(
         let library = Arc::new(Library::new(exemplar, None, budget)?);
         let sampled = |number| {
             let counts = (params.coarse_neighbours, params.fine_neighbours);
-            let ball = ball(&library, params, number, counts);
+            let ball = ball(&library, params, number, counts, budget)?;
             let level = Level::new(&library, &samples, detail(params, number), ball, budget)?;
             Ok(LevelExemplar { exemplar: Arc::clone(exemplar), library: library.clone(), level })
         };
@@ -65,7 +65,7 @@ pub(crate) fn level_exemplars<const D: usize>(
         }
         let (_, pseudo, shared, library) = &made[made.len() - 1];
         let samples = samples.with_points(shared.elements.len() - pseudo.base);
-        let ball = ball(library, params, number, NEIGHBOURS);
+        let ball = ball(library, params, number, NEIGHBOURS, budget)?;
         let level = Level::new(library, &samples, detail(params, number), ball, budget)?;
         let level = level.with_net(Arc::clone(&pseudo.net), pseudo.base as u32, params.edges == Switch::On);
         Ok(LevelExemplar { exemplar: Arc::clone(shared), library: Arc::clone(library), level })
@@ -79,15 +79,24 @@ fn detail(params: &Params, number: usize) -> f64 {
 }
 
 /// Radius of the neighbourhoods, and by how much those of the exemplar are larger.
-fn ball<const D: usize>(library: &Library<D>, params: &Params, number: usize, counts: (f64, f64)) -> Ball {
+fn ball<const D: usize>(
+    library: &Library<D>,
+    params: &Params,
+    number: usize,
+    counts: (f64, f64),
+    budget: &Budget,
+) -> Result<Ball> {
     let count = counts.0 * (counts.1 / counts.0).powf(detail(params, number));
-    let radius = params.radius.unwrap_or_else(|| library.radius_for(count).min(library.view.side()));
+    let radius = match params.radius {
+        Some(radius) => radius,
+        None => library.crowded_radius(count, budget)?.min(library.view.side()),
+    };
     let slack = match params.matching {
         // Where junctions lie closer than samples, the slack would take in many times the neighbourhood.
         Matching::Robust => library.outlier.iter().copied().fold(0.0, f64::max).min(radius),
         Matching::Hard => radius,
     };
-    Ball { radius, slack }
+    Ok(Ball { radius, slack })
 }
 
 /// Sampling distance of the finest level where none is given: about that of neighbouring strokes, so that

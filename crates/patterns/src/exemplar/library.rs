@@ -25,6 +25,9 @@ const LOOK: u64 = 4;
 /// How often the reach is doubled, at most, in which the element nearest to a place, and to another element, is looked for.
 const DOUBLINGS: (u32, u32) = (6, 8);
 
+/// Elements that are asked how crowded they stand, and how many times as many as an even exemplar has they may have about them.
+const CROWD: (usize, f64) = (200, 4.0);
+
 /// Nanoseconds for a corner of an outline that is described.
 const CORNER: u64 = 60;
 
@@ -193,6 +196,26 @@ impl<const D: usize> Library<D> {
         self.closest.widest(a)
     }
 
+    /// [`Library::radius_for`], smaller where elements crowd: along a line, or in heaps with empty space between them, the radius of
+    /// `count` elements on average over the window has many times as many about each of them.
+    pub(crate) fn crowded_radius(&self, count: f64, budget: &Budget) -> Result<f64> {
+        let radius = self.radius_for(count);
+        let (asked, most) = (self.len().min(CROWD.0), CROWD.1 * count);
+        let mut distances = Vec::new();
+        let mut meter = budget.meter();
+        for k in 0..asked {
+            let place = self.centre[k * self.len() / asked];
+            meter.spend(self.within(place, radius, |_, offset| distances.push(offset.norm2())))?;
+        }
+        let allowed = (most * asked as f64) as usize;
+        if distances.len() <= allowed {
+            return Ok(radius);
+        }
+        meter.spend(LOOK * distances.len() as u64)?;
+        let (_, farthest, _) = distances.select_nth_unstable_by(allowed, f64::total_cmp);
+        Ok(farthest.sqrt())
+    }
+
     /// Radius of the ball that holds `count` elements on average.
     pub(crate) fn radius_for(&self, count: f64) -> f64 {
         let disc = self.spacing * (count / std::f64::consts::PI).sqrt();
@@ -212,7 +235,16 @@ fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64, b
     let step = if D == 2 { 0.2 * spacing } else { 0.34 * spacing };
     let cells: [usize; D] = std::array::from_fn(|k| ((size[k] / step).ceil() as usize).clamp(1, 2048));
     let mut largest = 0.0_f64;
+    // Along a row distances grow by no more than the way: what cannot come to more than is known, or lies nearer to a side, is not asked.
+    let stride = size[0] / cells[0] as f64;
+    let mut nothing_before = 0;
     for c in 0..cells.iter().product() {
+        if c % cells[0] == 0 {
+            nothing_before = c;
+        }
+        if c < nothing_before {
+            continue;
+        }
         let p = window.cell_centre(c, &cells);
         let side = view.signed_distance(p);
         meter.spend(LOOK)?;
@@ -224,10 +256,14 @@ fn emptiness<const D: usize>(view: &View<D>, all: &GridIndex<D>, spacing: f64, b
             }
             let (found, looked) = all.nearest_counted(p, reach, None);
             meter.spend(LOOK * (4 + looked))?;
-            if let Some((_, distance)) = found.filter(|(_, distance)| *distance <= side) {
+            let distance = found.map_or(reach, |(_, distance)| distance);
+            if found.is_some() && distance <= side {
                 largest = largest.max(distance);
             }
             if found.is_some() || reach >= side {
+                let known = if found.is_some() { largest - distance } else { 0.0 };
+                let steps = known.max(0.5 * (distance - side)) / stride - 1e-6;
+                nothing_before = c + 1 + steps.floor().max(0.0) as usize;
                 break;
             }
             reach *= 2.0;

@@ -88,19 +88,17 @@ impl<'a, const D: usize> Grower<'a, D> {
         let all = rounds.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         let mut done = 0;
         for (round, sites) in rounds.into_iter().enumerate() {
-            let patches: Vec<_> = sites
+            let stream = |n: u64| Stream::new(self.request.seed, streams::INITIALISE, ((round as u64) << 32) | n);
+            let mut patches: Vec<_> = sites
                 .par_iter()
                 .enumerate()
-                .map(|(n, &site)| {
-                    let item = ((round as u64) << 32) | n as u64;
-                    self.best_patch(
-                        site,
-                        canvas,
-                        coverage,
-                        &mut Stream::new(self.request.seed, streams::INITIALISE, item),
-                    )
-                })
+                .map(|(n, &site)| self.best_patch(site, canvas, coverage, &mut stream(n as u64)))
                 .collect::<Result<_>>()?;
+            let is_empty = canvas.items.is_empty() && patches.iter().flatten().all(|patch| patch.elements.is_empty());
+            // Emptiness goes well with emptiness: a page that begins with nothing may stay so.
+            if let (0, true, Some((&site, patch))) = (round, is_empty, sites.iter().zip(&mut patches).next()) {
+                *patch = self.patch_with_something(site, canvas, coverage, &mut stream(0))?;
+            }
             // What the last of them paid is heard here.
             self.budget.spend(0)?;
             patches.into_iter().flatten().try_for_each(|patch| self.paste(&patch, canvas, coverage))?;
@@ -185,6 +183,28 @@ impl<'a, const D: usize> Grower<'a, D> {
             .collect();
         let Some(centre) = self.cheapest(&here, &candidates)? else { return Ok(None) };
         let centre = here.registered(centre, &mut meter)?;
+        Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
+    }
+
+    /// A patch around an element, for a page that is empty.
+    fn patch_with_something(
+        &self,
+        site: Vector<D>,
+        canvas: &Canvas<D>,
+        coverage: &Coverage<D>,
+        random: &mut Stream,
+    ) -> Result<Option<Patch<D>>> {
+        let library = self.source.library;
+        let usable: Vec<u32> = (0..library.len() as u32).filter(|&i| library.copyable[i]).collect();
+        if usable.is_empty() {
+            return Ok(None);
+        }
+        let mut meter = self.budget.meter();
+        meter.spend(library.len() as u64)?;
+        let centre = library.centre[usable[random.below(usable.len())]];
+        let frame = self.request.fields.frame(site);
+        let (here, looked) = PatchSite::new(&self.source, site, frame, canvas, coverage);
+        meter.spend(DISTANCE * looked)?;
         Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
     }
 

@@ -139,7 +139,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             let difference = Difference::new(self, row.source, row.sample);
             let assignment = &mut self.assignment;
             let looked = level.near_offset(i, row.key, offset, most, |column, d2| {
-                let d2 = d2 + difference.of(level, near[column].sample);
+                let d2 = d2 + difference.near_one(level, &near[column]);
                 assignment.pair(column as u32, row.weight * d2);
             });
             meter.spend(PRICE.0 + PRICE.1 * difference.price() * looked as u64)?;
@@ -167,7 +167,7 @@ impl<'a, const D: usize> Matcher<'a, D> {
             for column in columns {
                 let other = &near[column];
                 let d2: f32 = (0..D).map(|k| (offset[k] - other.offset[k]) * (offset[k] - other.offset[k])).sum();
-                let d2 = d2 + difference.of(level, other.sample);
+                let d2 = d2 + difference.near_one(level, other);
                 self.assignment.pair(column as u32, d2);
                 least = least.min(d2);
             }
@@ -260,6 +260,15 @@ impl<'a, const D: usize> Difference<'a, D> {
         match self {
             Self::Edges(star, _) => star.price(),
             Self::Attributes(_) => 1,
+        }
+    }
+
+    /// Difference from a neighbour of a sample of the exemplar, one of the same key.
+    #[inline]
+    fn near_one(&self, level: &Level<D>, near: &Near<D>) -> f32 {
+        match self {
+            Self::Edges(star, single2) => star.distance2(&level.stars[near.sample], *single2),
+            Self::Attributes(differing) => differing.at(near.column, || level.element[near.sample]),
         }
     }
 

@@ -59,6 +59,8 @@ pub(crate) struct Marks {
     pub(crate) window: Bounds<2>,
     /// Mean distance of marks.
     pub(crate) unit: f64,
+    /// Distance of the nearest mark of the same kind, that of half of the marks at most: less than the mean where they crowd.
+    pub(crate) closest: f64,
     pub(crate) unknown: Arc<Unknown>,
     index: GridIndex<2>,
 }
@@ -67,6 +69,22 @@ pub(crate) struct Marks {
 fn is_coarser(shapes: &[u32], looks: Option<&[u32]>) -> bool {
     let count = |numbers: &[u32]| numbers.iter().max().map_or(0, |most| *most as usize + 1);
     count(shapes) > 1 && looks.is_none_or(|looks| count(looks) > count(shapes))
+}
+
+/// Marks that are asked for the nearest of their kind.
+const ASKED: usize = 100;
+
+/// The median over some marks of the distance to the nearest of their kind; infinite where most are alone.
+fn closest(all: &[Mark], budget: &Budget) -> Result<f64> {
+    let asked = all.len().min(ASKED);
+    budget.spend((asked * all.len()) as u64)?;
+    let nearest = |i: usize| {
+        let others = all.iter().enumerate().filter(|(j, other)| *j != i && other.kind == all[i].kind);
+        others.map(|(_, other)| (other.place - all[i].place).norm2()).fold(f64::INFINITY, f64::min).sqrt()
+    };
+    let mut distances: Vec<f64> = (0..asked).map(|k| nearest(k * all.len() / asked)).collect();
+    distances.sort_by(f64::total_cmp);
+    Ok(distances.get(asked / 2).copied().unwrap_or(f64::INFINITY))
 }
 
 /// The place of an element.
@@ -131,7 +149,8 @@ impl Marks {
         let unit = (window.measure() / all.len().max(1) as f64).sqrt();
         let places: Vec<_> = all.iter().map(|mark| mark.place).collect();
         let index = GridIndex::new(&places, 0.25 * unit, &Domain::Box(window));
-        Ok(Some(Self { all, window, unit, unknown: Arc::clone(&lines.unknown), index }))
+        let closest = closest(&all, budget)?;
+        Ok(Some(Self { all, window, unit, closest, unknown: Arc::clone(&lines.unknown), index }))
     }
 
     /// The same marks, of which nothing is known beyond a box.

@@ -173,6 +173,15 @@ fn rows_with_a_margin_go_on_and_two_rows_are_a_frieze() {
 }
 
 /// Places that keep to no lattice.
+#[test]
+fn dots_that_crowd_on_a_line_are_a_frieze_with_their_own_step() {
+    let (step, window) = (0.05, Bounds::new(Vector::ZERO, xy(100.0, 10.0)));
+    let dot = |k: i64| (Outline { rings: vec![polygon(xy((k as f64 + 0.5) * step, 5.0), 0.02, 5, 0.3)] }, 0);
+    let found = repeat(&exemplar(&(0..2000).map(dot).collect::<Vec<_>>(), &[], window));
+    let along = found.lattice.vectors.into_iter().map(|v| v.norm()).fold(f64::INFINITY, f64::min);
+    assert!((along - step).abs() < 1e-3 * step, "{along}");
+}
+
 fn scatter(kind: usize, seed: u64) -> Exemplar<2> {
     let mut numbers = Numbers::new(seed * 977 + kind as u64);
     let window = Bounds::new(Vector::ZERO, xy(100.0, numbers.between(60.0, 110.0)));

@@ -1,6 +1,6 @@
 //! A grid of which only blocks near points are there.
 
-use arabesque_core::{Bounds, Budget, Error, Held, Result, Vector};
+use arabesque_core::{Bounds, Budget, Error, Held, Result, Vector, rounded};
 use rayon::prelude::*;
 
 /// Nodes along the side of a block.
@@ -40,7 +40,16 @@ impl Blocks {
         if along.is_nan() || along >= f64::from(1_u32 << BITS) - 4.0 {
             let most =
                 bounds.size().0.iter().fold(0.0_f64, |a, &b| a.max(b)) / (f64::from(1_u32 << BITS) * SIDE as f64);
-            return Err(Error::parameter("cell", cell, format!("more than {most:.3e} for points as far apart")));
+            let apart = rounded(bounds.size().0.iter().fold(0.0_f64, |a, &b| a.max(b)));
+            return Err(Error::Limit {
+                what: format!("cells of {} over points that lie {apart} apart", rounded(cell)),
+                found: rounded(along * SIDE as f64),
+                limit: rounded(f64::from(1_u32 << BITS) * SIDE as f64),
+                advice: format!(
+                    "remove points that lie far from all others, or set cell to more than {}",
+                    rounded(most)
+                ),
+            });
         }
         let range = |c: Vector<3>, r: f64| {
             let at = |v: f64, k: usize| ((v - origin[k]) / side).floor().max(0.0) as u64;

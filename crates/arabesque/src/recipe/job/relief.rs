@@ -137,7 +137,7 @@ impl Relief {
             return Err(Error::parameter("scale", scale, "a number from 0.000001 to 1000000"));
         }
         if let Some(height) = self.height.filter(|h| !(1e-6..=1e9).contains(h)) {
-            return Err(Error::parameter("height", height, "a positive number of pixels"));
+            return Err(Error::parameter("height", height, "a positive number of pixels up to 1e9"));
         }
         self.proper().map(|_| ())
     }

@@ -3,7 +3,7 @@
 use arabesque_core::{Budget, Error, Result};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Value, json, value::RawValue};
 
 const MAGIC: &[u8; 4] = b"glTF";
 const VERSION: u32 = 2;
@@ -49,11 +49,10 @@ pub(super) fn container(document: &impl Serialize, binary: &[u8], advice: &str) 
 
 /// Whether the bytes are a glTF file, as GLB or as text.
 pub fn is_gltf(bytes: &[u8]) -> bool {
-    const HEAD: usize = 1 << 16;
-    let head = &bytes[..bytes.len().min(HEAD)];
     let is_text = || {
-        let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
-        let names = |word: &[u8]| head.windows(word.len()).any(|part| part == word);
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+        // The head may be of any length: a recipe with all that it needs stands in the asset.
+        let names = |word: &[u8]| bytes.windows(word.len()).any(|part| part == word);
         text.starts_with(b"{") && names(b"\"asset\"") && (names(b"\"nodes\"") || names(b"\"meshes\""))
     };
     is_glb(bytes) || is_text()
@@ -128,6 +127,33 @@ pub fn as_text(glb: &[u8], budget: &Budget) -> Result<Vec<u8>> {
     out += after;
     out.push('\n');
     Ok(out.into_bytes())
+}
+
+/// What [`as_text`] wrote, as the GLB file that it was.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a text whose bytes do not stand in it as [`as_text`] writes them, [`Error::Limit`] when the memory is used up.
+pub(super) fn from_text(name: &str, text: &str, budget: &Budget) -> Result<Vec<u8>> {
+    let _held = budget.hold("a scene as text", text.len().saturating_mul(IN_TEXT))?;
+    budget.spend(PER_BYTE.saturating_mul(text.len() as u64))?;
+    let text = text.trim_end();
+    let foreign = || Error::Unsupported {
+        what: format!("{name}: a glTF file whose bytes lie elsewhere than in one data URI"),
+        advice: "write the scene with arabesque, or as GLB".into(),
+    };
+    let advice = "write the scene again";
+    let raw = |document: String| RawValue::from_string(document).map_err(|e| Error::input(name, e.to_string(), advice));
+    let start = format!("{BUFFER}\"uri\":\"{BYTES}");
+    let Some((before, rest)) = text.rsplit_once(&start) else {
+        return if text.contains("\"buffers\"") {
+            Err(foreign())
+        } else {
+            container(&raw(text.to_owned())?, &[], advice)
+        };
+    };
+    let (encoded, after) = rest.split_once("\",").ok_or_else(foreign)?;
+    let binary = STANDARD.decode(encoded).map_err(|e| Error::input(name, format!("its data URI: {e}"), advice))?;
+    container(&raw([before, BUFFER, after].concat())?, &binary, advice)
 }
 
 /// How the list of buffers begins in a document.

@@ -9,7 +9,7 @@ mod tests;
 mod write;
 
 pub use container::{as_text, is_glb, is_gltf, recipe_of};
-pub use placed::GlbElements;
+pub use placed::{GlbElements, GltfElements};
 pub use read::{read_scene, read_scene_beside};
 pub use strips::write_glb;
 pub use write::{GltfOptions, write_scene, write_scene_with};

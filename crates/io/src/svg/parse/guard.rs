@@ -11,7 +11,7 @@ const EXPANSION: usize = 16 << 20;
 /// Refuses text that is too large, nested too deeply, or blown up by entities.
 pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
     if text.trim().is_empty() {
-        return Err(Error::input(name, "the file is empty, expected SVG", "choose another file"));
+        return Err(Error::input(name, "nothing in it, expected SVG", "give a drawing with something to repeat"));
     }
     if text.len() > limits.file_bytes {
         return Err(too_much(format!("{name}: bytes"), text.len(), limits.file_bytes as u64));

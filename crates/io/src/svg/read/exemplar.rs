@@ -342,8 +342,12 @@ fn is_network(item: &Item, window: &Bounds<2>) -> bool {
 /// What to say when no element is left, with what may explain it.
 fn nothing_found(source: &Source<'_>, found: &Selection) -> Error {
     let seen = source.notes.summary();
-    let background = if found.background.is_empty() { "" } else { "what covers the whole frame is background" };
-    let why: Vec<&str> = [background, seen.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
+    let background = match found.background.len() {
+        0 => String::new(),
+        1 => "what covers the whole frame is background".to_owned(),
+        count => format!("what covers the whole frame is background, which {count} shapes do"),
+    };
+    let why: Vec<&str> = [background.as_str(), seen.as_str()].into_iter().filter(|w| !w.is_empty()).collect();
     let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join(", ")) };
     let advice = "draw a few shapes, groups or strokes that should be repeated";
     Error::input(source.name, format!("no element and no curve found{why}"), advice)

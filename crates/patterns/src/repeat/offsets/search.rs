@@ -74,7 +74,10 @@ pub(crate) struct Search<'a> {
 
 impl Search<'_> {
     fn tolerance(&self) -> f64 {
-        (self.mode.tolerance * self.marks.unit).max(ROUNDING * self.side)
+        let tolerance = (self.mode.tolerance * self.marks.unit).max(ROUNDING * self.side);
+        // Where marks crowd along a line or in heaps, the mean distance would take neighbours for one another.
+        let is_crowded = self.mode.tolerance <= EXACT && self.marks.closest > 0.0;
+        if is_crowded { tolerance.min(NEAR * self.marks.closest) } else { tolerance }
     }
 
     /// The repeat that the marks show.
@@ -208,7 +211,7 @@ impl Search<'_> {
                 }
             }
         }
-        let least = 0.02 * self.marks.unit;
+        let least = (0.02 * self.marks.unit).min(0.5 * self.marks.closest);
         let shared = votes.into_values().filter(|(_, count)| *count >= 2);
         let mut offsets: Vec<_> = shared.map(|(sum, n)| (sum * (1.0 / f64::from(n)), n)).collect();
         offsets.retain(|(offset, _)| offset.norm() > least.max(2.0 * cell));

@@ -2,10 +2,10 @@
 
 use arabesque_core::{Budget, Matrix, Similarity, TriangleMesh, Vector};
 
-use super::GlbElements;
+use super::{GlbElements, GltfElements};
 use crate::{
     mesh::{
-        gltf::{recipe_of, write_scene},
+        gltf::{as_text, is_gltf, recipe_of, write_scene},
         scene::{Scene, SceneMesh, SceneNode, matrix_of},
     },
     placed::{Changes, Paint, PlacedFile, Replaced},
@@ -88,6 +88,25 @@ fn paint_is_a_material_of_a_copy_of_the_mesh() {
     let stroke = Replaced { base: 1, motion: Similarity::identity(), paint: stroke };
     let refused = Changes { replaced: [(1, stroke)].into(), ..Changes::default() };
     assert!(open(&bytes).rewritten(&refused, None, &Budget::default()).unwrap_err().to_string().contains("fill"));
+}
+
+#[test]
+fn a_scene_as_text_is_changed_as_the_same_scene_is() {
+    let (glb, budget) = (result(), Budget::default());
+    let text = |glb: &[u8]| String::from_utf8(as_text(glb, &budget).unwrap()).unwrap();
+    let changes = about(&glb, 1, (matrix_of([0.0, 0.5, 0.1, 0.8]), 1.5, Vector([0.1, -0.7, 3.3])));
+    let opened = GltfElements::open("r.gltf", &text(&glb), &budget).unwrap();
+    assert_eq!(opened.layout().items.len(), 3);
+    assert!(opened.rewritten(&Changes::default(), None, &budget).unwrap() == text(&glb).into_bytes());
+    assert!(opened.rewritten(&changes, None, &budget).unwrap() == text(&changed(&glb, &changes)).into_bytes());
+    let outside = text(&glb).replace("data:application/octet-stream;base64,", "a.bin");
+    let refused = GltfElements::open("r.gltf", &outside, &budget).unwrap_err().to_string();
+    assert!(refused.contains("lie elsewhere"), "{refused}");
+    let spoiled = text(&glb).replace("base64,", "base64,!");
+    assert!(GltfElements::open("r.gltf", &spoiled, &budget).unwrap_err().to_string().contains("data URI"));
+    assert!(GltfElements::open("r.gltf", "{}", &budget).is_err());
+    let long = opened.rewritten(&Changes::default(), Some(&"#".repeat(100_000)), &budget).unwrap();
+    assert!(is_gltf(&long) && !is_gltf(b"{\"page\": [], \"placements\": []}"));
 }
 
 #[test]

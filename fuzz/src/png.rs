@@ -6,7 +6,7 @@ use arabesque_core::{Bounds, Budget, Vector};
 use arabesque_fuzz::limits;
 use arabesque_io::{
     mesh::gltf,
-    raster::{field::Picture, image::read_image, mask::MaskRaster, png, rows::picture_size},
+    raster::{field::Picture, heights::read_heights, image::read_image, mask::MaskRaster, png, rows::picture_size},
 };
 use libfuzzer_sys::fuzz_target;
 
@@ -20,6 +20,10 @@ fuzz_target!(|data: &[u8]| {
     if let Ok((image, _)) = read_image("fuzz.png", &bytes, &budget) {
         assert_eq!(image.pixels.len(), image.width * image.height);
         assert!(size.is_ok_and(|size| size == [image.width, image.height]));
+    }
+    if let Ok(heights) = read_heights("fuzz.png", &bytes, &budget) {
+        assert_eq!(heights.values.len(), heights.width * heights.height);
+        assert!(heights.values.iter().all(|v| (0.0..=1.0).contains(v)));
     }
     let bounds = Bounds::new(Vector::ZERO, Vector([30.0, 20.0]));
     let picture = Picture::new("fuzz.png", &bytes, &budget);

@@ -40,9 +40,11 @@
 //!   summed again, so that both answer alike. Differences below a floor count as none, so that ε has something to be a share of.
 //! - A place that goes on from a neighbour's in the texture is not taken: otherwise the result is the texture itself up to its border, and then a seam.
 //! - Overlaps are narrower (a tenth of the patch, not a third) and patches larger: every blended point is a little off, and half of the
-//!   surface would be blended.
+//!   surface would be blended. Where a patch has few points and no edges they are up to a fifth, so that crests go on; the border is narrower too.
+//! - A height field that is high for a patch is blended along upright rays, in overlaps up to three tenths wide: its parts climb to one another.
+//! - The last patches of a tile are the best of more that are tried, since they meet others on both sides.
 //! - Of the places within ε the one is taken of which least was seen so far, and least nearby; chance has a say. ε is larger for it.
-//! - Of the nodes of an overlap at most some hundred are compared: every second one along both axes, or every fourth.
+//! - Of the nodes of an overlap at most 160 are compared, by turns as on a chessboard and in every second row and column.
 //! - Patches are laid along diagonals of the rows, whose patches do not see one another, so that they are made at once.
 //! - A patch is bent beside the overlap alone, and is as in the texture a third of its side on. Where it has many points, the spline is worked
 //!   out at the nodes of a grid.

@@ -34,9 +34,9 @@ params! {
         /// Side of a patch.
         patch "patch": Option<f64> = None, in 1e-9..=1e9, auto "by what repeats in the texture", unit "units of the texture";
         /// Width of the overlap of neighbouring patches, as a share of the patch.
-        overlap "overlap": f64 = 0.1, in 0.05..=0.5;
+        overlap "overlap": Option<f64> = None, in 0.05..=0.5, auto "a tenth, and up to a fifth where a patch has few points and no edges";
         /// Width of the border that is pasted beyond a patch, as a share of the patch.
-        border "border": f64 = 0.25, in 0.0..=0.5;
+        border "border": Option<f64> = None, in 0.0..=0.5, auto "0.15, and up to a quarter where a patch has few points";
         /// Of patches that are worse than the best by at most this share of its difference the one of which least was seen so far is taken.
         tolerance "tolerance": f64 = 0.25, in 0.0..=10.0;
         /// How far a patch is kept from the one that goes on from its neighbours in the texture, as a share of the patch; 0 allows copies.
@@ -64,7 +64,7 @@ params! {
         /// Distance between the points of a pair at most, as a share of the patch.
         reach "reach": f64 = 0.12, in 0.001..=0.5;
         /// How stiff a patch is: 0 bends it exactly onto its pairs.
-        stiffness "stiffness": f64 = 5.0, in 0.0..=1000.0;
+        stiffness "stiffness": f64 = 20.0, in 0.0..=1000.0;
         /// Patches that are tried where pairs cannot be made well, before one is laid without being bent.
         tries "tries": usize = 6, in 1..=1000;
         /// Rounds in which points along the seams are spread evenly.

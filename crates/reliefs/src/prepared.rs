@@ -70,7 +70,7 @@ impl Prepared {
         let params = ReliefParams {
             tolerance: 0.0,
             apart: 0.0,
-            overlap: params.overlap.max(GAP_OVERLAP),
+            overlap: Some(params.overlap.map_or(GAP_OVERLAP, |o| o.max(GAP_OVERLAP))),
             tries: params.tries.saturating_mul(GAP_TRIES),
             ..params.clone()
         };
@@ -208,7 +208,7 @@ impl Prepared {
         let (period, is_flat, scale) = (canvas.period(), canvas.is_flat(), canvas.scale());
         let mut samples = canvas.into_samples();
         let mut warnings = self.texture.warnings.clone();
-        let (message, advice) = budget.spent();
+        let spent = (stopped == StopReason::Limit).then(|| budget.spent());
         // What is still to be done with the best so far has an account of its own.
         let budget = if stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
         let texture = &*self.texture;
@@ -228,7 +228,7 @@ impl Prepared {
         if samples.is_empty() {
             return Err(Error::no_result("no point lies within the extent", "make it larger"));
         }
-        if stopped == StopReason::Limit {
+        if let Some((message, advice)) = spent {
             warnings.push(Warning::new(message, advice));
         }
         let torn = notes.cracks + notes.unmatched;

@@ -9,6 +9,7 @@ use arabesque_core::{
 };
 use arabesque_reliefs::{Ground, Plane, Prepared, ReliefOutcome, ReliefParams, ReliefRequest};
 use arabesque_surface::{DirectionField, Directions, MeshIndex};
+use proptest::prelude::*;
 
 const UP: Vector<3> = Vector([0.0, 0.0, 1.0]);
 
@@ -103,6 +104,62 @@ fn a_tile_goes_on_at_its_borders() {
         for b in seam.iter().filter(|p| p[0] >= 6.0) {
             let apart = (a[0] - b[0]).hypot(a[1] - b[1]);
             assert!(apart > 0.08 || (a[2] - b[2]).abs() < 0.16, "a step of {} over {apart}", a[2] - b[2]);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn whatever_the_extent_it_is_covered_and_nothing_lies_beyond(
+        size in [1.6_f64..4.0, 1.6_f64..4.0], seed in 0_u64..1000, is_tile in prop::bool::ANY, overlap in 0.05_f64..0.4,
+    ) {
+        let texture = bumps(3.5, |_, _| true);
+        let params = ReliefParams { patch: Some(0.8), overlap: Some(overlap), ..ReliefParams::default() };
+        let engine = Prepared::new(&texture, None, &params, &Budget::default()).unwrap();
+        let ground = if is_tile { Ground::Tile(size) } else { Ground::Plane(size) };
+        let made = engine.run(&ReliefRequest { seed, ..ReliefRequest::new(ground) }, &mut Unobserved).unwrap();
+        let points = &made.points.positions;
+        prop_assert!(points.iter().all(|p| (0..2).all(|k| (0.0..=size[k]).contains(&p[k])) && p[2].abs() < 0.3));
+        prop_assert!(widest_gap(points, [0.0, 0.0], size) < 0.25, "a hole");
+        prop_assert!((points.len() as f64 / (size[0] * size[1]) / 144.0 - 1.0).abs() < 0.12, "{}", points.len());
+        prop_assert!(made.sources.iter().all(|&i| i < texture.len()));
+    }
+}
+
+/// Waves of all directions that are half as high as a patch is wide, over a square of 1.
+fn hills() -> PointSet<3> {
+    let waves: Vec<[f64; 3]> =
+        (0..24).map(f64::from).map(|k: f64| [9.0 * (2.4 * k).cos(), 9.0 * (2.4 * k).sin(), 1.7 * k]).collect();
+    let mut set = PointSet { normals: Some(Vec::new()), ..PointSet::default() };
+    for k in 0..6400_u32 {
+        let (x, y) = (f64::from(k % 80) / 80.0, f64::from(k / 80) / 80.0);
+        let (mut z, mut slope) = (0.0, [0.0; 2]);
+        for [a, b, c] in &waves {
+            let (sin, cos) = (a * x + b * y + c).sin_cos();
+            z += 0.025 * cos;
+            slope = [slope[0] - 0.025 * a * sin, slope[1] - 0.025 * b * sin];
+        }
+        set.positions.push(Vector([x, y, z]));
+        set.normals.as_mut().unwrap().push(Vector([-slope[0], -slope[1], 1.0]).unit());
+    }
+    set
+}
+
+#[test]
+fn high_hills_meet_without_a_step() {
+    let texture = hills();
+    assert!(texture.bounds().size()[2] > 0.25, "{:?}", texture.bounds());
+    let made = run(&texture, Ground::Plane([1.6, 1.6]), 1);
+    let s = made.statistics;
+    assert!(s.patches > 8 && (s.cracks + s.seams) * 50 < s.overlapped, "{s:?}");
+    // No point is far above or below those beside it.
+    let points = &made.points.positions;
+    for a in points.iter().step_by(23) {
+        for b in points {
+            let apart = (a[0] - b[0]).hypot(a[1] - b[1]);
+            assert!(apart > 0.012 || (a[2] - b[2]).abs() < 0.08, "a step of {} over {apart}", a[2] - b[2]);
         }
     }
 }
@@ -215,6 +272,9 @@ fn what_is_no_texture_is_refused_with_what_to_do() {
     assert!(refused(&none, None, &[]).contains("1 of 2304 normals"), "{}", refused(&none, None, &[]));
     let mixed = with(&|p| p.normals.as_mut().unwrap().iter_mut().step_by(2).for_each(|n| *n = -*n));
     assert!(refused(&mixed, None, &[]).contains("opposite ways"));
+    let halves = with(&|p| p.normals.as_mut().unwrap().iter_mut().take(1152).for_each(|n| *n = -*n));
+    let told = |points: &PointSet<3>| prepared(points).warnings().iter().any(|w| w.message.contains("opposite ways"));
+    assert!(told(&halves) && !told(&good));
     let nan = with(&|p| p.positions[3][1] = f64::NAN);
     assert!(refused(&nan, None, &[]).contains("point 4"));
     assert!(refused(&good.selected(&[0, 1, 2, 3]), None, &[]).contains("4 points"));

@@ -68,16 +68,8 @@ fn any_number_of_threads_writes_the_same() {
 fn heights_go_in_and_come_out_with_16_bits() {
     let folder = folder();
     folder.ok("relief bumps.csv --extent 5x4 --height-field -o heights.png");
-    let bytes = folder.read("heights.png");
-    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
-    assert_eq!(
-        (reader.info().bit_depth, reader.info().color_type),
-        (png::BitDepth::Sixteen, png::ColorType::Grayscale)
-    );
-    let mut values = vec![0; reader.output_buffer_size().unwrap()];
-    reader.next_frame(&mut values).unwrap();
-    let levels: std::collections::BTreeSet<_> =
-        values.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();
+    let (_, values) = heights(&folder.read("heights.png"));
+    let levels: std::collections::BTreeSet<_> = values.into_iter().collect();
     assert!(levels.len() > 500, "{} heights", levels.len());
     folder.ok("relief heights.png --extent 140x120 --height 8 --height-field -o more.png");
     let more = folder.read("more.png");
@@ -110,6 +102,96 @@ fn scans_without_normals_and_meshes_are_textures_too() {
     folder.ok("relief bumps.csv --extent 4x4 --mesh -o mesh.obj");
     folder.ok("relief mesh.obj --extent 5x4 -o of-mesh.ply");
     folder.ok(&format!("relief {} --extent 1.2x1 -o wall.ply", example("relief-wall.ply")));
+}
+
+#[test]
+fn what_is_odd_is_told() {
+    let folder = folder();
+    let raw: String =
+        bumps(|_, _| true).lines().skip(1).map(|l| l.split(',').take(3).collect::<Vec<_>>().join(" ") + "\n").collect();
+    folder.write("strays.xyz", raw + "1 1 1.5\n2 3 1.1\n3 1 -1.4\n");
+    folder.write(
+        "halves.csv",
+        bumps(|_, _| true)
+            .lines()
+            .enumerate()
+            .map(|(k, line)| match line.rsplit_once(',') {
+                // The second half of the sheet faces down.
+                Some((rest, z)) if k > 1152 => {
+                    let turned: Vec<String> = rest
+                        .split(',')
+                        .enumerate()
+                        .map(|(c, v)| if c > 2 { (-v.parse::<f64>().unwrap()).to_string() } else { v.to_owned() })
+                        .collect();
+                    format!("{},-{z}\n", turned.join(","))
+                }
+                _ => format!("{line}\n"),
+            })
+            .collect::<String>(),
+    );
+    let wide = |k: u32| (f64::from(k % 48) / 12.0, f64::from(k / 48) / 12.0);
+    let slope: String =
+        (0..2304).map(wide).map(|(x, y)| format!("{x} {y} {}\n", 0.1 * (x * y * 0.2).exp().ln_1p())).collect();
+    folder.write("slope.xyz", slope);
+    for (name, word) in [
+        ("strays.xyz", "3 of 2307 points lie alone"),
+        ("halves.csv", "normals face opposite ways"),
+        ("slope.xyz", "does not repeat"),
+    ] {
+        let told = common::stderr(&folder.run(&format!("relief {name} --extent 4x3 -o {name}.ply")));
+        assert!(told.contains(word), "{name}: {told}");
+    }
+}
+
+#[test]
+fn what_was_counted_is_told_as_json() {
+    let folder = folder();
+    let made = json(&folder, "relief bumps.csv --extent 6x6 -o all.ply --json");
+    let reliefs = made["outputs"][0]["reliefs"].as_object().unwrap();
+    for name in
+        ["patches", "folds", "passed", "unbent", "overlapped", "by_ray", "by_projection", "seams", "cracks", "merged"]
+    {
+        assert!(reliefs[name].is_u64(), "{name}: {made}");
+    }
+    let n = |name: &str| reliefs[name].as_u64().unwrap();
+    assert!(n("by_ray") + n("by_projection") > 0 && n("overlapped") > n("cracks") + n("seams"), "{made}");
+}
+
+/// Width, height and numbers of a gray picture with 16 bits.
+fn heights(bytes: &[u8]) -> ([u32; 2], Vec<u16>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut values = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut values).unwrap();
+    assert_eq!((info.bit_depth, info.color_type), (png::BitDepth::Sixteen, png::ColorType::Grayscale));
+    ([info.width, info.height], values.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect())
+}
+
+/// Height fields of whole runs beside those under `reference`. `ARABESQUE_BLESS=1` replaces them.
+#[test]
+fn reliefs_look_as_they_did() {
+    for (name, line) in [
+        ("relief-dunes", "--extent 1.2x0.8 --seed 1"),
+        ("relief-scales", "--extent 0.9x0.9 --tile --seed 1"),
+        ("relief-bark", "--extent 1.1x0.8 --seed 2"),
+    ] {
+        let folder = folder();
+        let texture = example(&format!("{name}.ply"));
+        folder.ok(&format!("relief {texture} {line} --height-field --no-recipe -o out.png"));
+        let made = folder.read("out.png");
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(format!("{name}.png"));
+        if std::env::var_os("ARABESQUE_BLESS").is_some() {
+            std::fs::write(&path, &made).unwrap();
+            continue;
+        }
+        let ((size, made), (known_size, known)) = (heights(&made), heights(&std::fs::read(&path).unwrap()));
+        assert_eq!(size, known_size, "{name}");
+        let off = made.iter().zip(&known).filter(|(a, b)| a.abs_diff(**b) > 2000).count();
+        assert!(
+            off * 100 <= made.len(),
+            "{name}: {off} of {} heights differ; bless them if they are right",
+            made.len()
+        );
+    }
 }
 
 #[test]

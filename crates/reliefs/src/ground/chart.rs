@@ -1,12 +1,10 @@
 //! Charts of a mesh around a place: where points of the shell lie in the plane, by geodesics from sample to sample [Schmidt 2006].
 
-use std::{
-    cmp::Reverse,
-    collections::{BTreeMap, BinaryHeap},
-};
+use std::{cmp::Reverse, collections::BinaryHeap};
 
 use arabesque_core::{Bounds, Budget, Error, Result, Vector};
 use arabesque_surface::{Closest, MeshIndex, OrientedPoints, SurfaceFrame, scatter};
+use rayon::prelude::*;
 
 /// Samples at most.
 const MOST: f64 = 400_000.0;
@@ -45,7 +43,7 @@ impl Samples {
             near.sort_unstable();
             near
         };
-        let beside = feet.iter().map(of).collect();
+        let beside = feet.par_iter().map(of).collect();
         Ok(Self { beside, points, feet, spacing })
     }
 }
@@ -62,9 +60,32 @@ struct Station {
 pub(crate) struct Chart<'a> {
     samples: &'a Samples,
     mesh: &'a MeshIndex,
-    stations: BTreeMap<u32, Station>,
-    /// Samples by the cell of the plane they lie in.
-    cells: BTreeMap<[i32; 2], Vec<u32>>,
+    stations: Stations,
+    /// Samples by the cell of the plane they lie in, row by row; the first cell of a row lies so far to the left and below, in cells.
+    cells: Vec<Vec<u32>>,
+    across: usize,
+    corner: [i32; 2],
+}
+
+/// Samples that are laid out.
+struct Stations {
+    /// For each sample of the mesh its place in the list, or [`NONE`].
+    places: Vec<u32>,
+    list: Vec<(u32, Station)>,
+}
+
+/// No place.
+const NONE: u32 = u32::MAX;
+
+impl Stations {
+    fn get(&self, sample: u32) -> Option<&Station> {
+        self.list.get(self.places[sample as usize] as usize).map(|(_, station)| station)
+    }
+
+    fn insert(&mut self, sample: u32, station: Station) {
+        self.places[sample as usize] = self.list.len() as u32;
+        self.list.push((sample, station));
+    }
 }
 
 impl<'a> Chart<'a> {
@@ -77,13 +98,14 @@ impl<'a> Chart<'a> {
         budget: &Budget,
     ) -> Result<Self> {
         let (tangent, bitangent) = (frame.tangent, frame.bitangent());
-        let mut stations: BTreeMap<u32, Station> = BTreeMap::new();
-        let mut offered: BTreeMap<u32, (f64, u32)> = BTreeMap::from([(start, (0.0, start))]);
+        budget.spend(samples.feet.len() as u64 * 4)?;
+        let mut stations = Stations { places: vec![NONE; samples.feet.len()], list: Vec::new() };
+        let mut offered = vec![f64::INFINITY; samples.feet.len()];
         let mut heap = BinaryHeap::from([(Reverse(0_u64), start)]);
         let mut meter = budget.meter();
         while let Some((Reverse(bits), i)) = heap.pop() {
             meter.spend(1500)?;
-            if stations.contains_key(&i) {
+            if stations.get(i).is_some() {
                 continue;
             }
             let far = f64::from_bits(bits);
@@ -100,19 +122,41 @@ impl<'a> Chart<'a> {
             let here = samples.feet[i as usize].point;
             for &j in &samples.beside[i as usize] {
                 let next = far + (samples.feet[j as usize].point - here).norm();
-                if !stations.contains_key(&j) && offered.get(&j).is_none_or(|(d, _)| next < *d) {
-                    offered.insert(j, (next, i));
+                if stations.get(j).is_none() && next < offered[j as usize] {
+                    offered[j as usize] = next;
                     // Distances are not negative, so that their bits are in their order.
                     heap.push((Reverse(next.to_bits()), j));
                 }
             }
         }
-        let mut chart = Self { samples, mesh, stations, cells: BTreeMap::new() };
-        let places: Vec<_> = chart.stations.iter().map(|(i, s)| (*i, chart.cell(s.at))).collect();
-        for (i, cell) in places {
-            chart.cells.entry(cell).or_default().push(i);
+        Ok(Self::sorted(samples, mesh, stations))
+    }
+
+    /// With its samples in cells.
+    fn sorted(samples: &'a Samples, mesh: &'a MeshIndex, stations: Stations) -> Self {
+        let mut chart = Self { samples, mesh, stations, cells: Vec::new(), across: 0, corner: [0; 2] };
+        let mut places: Vec<(u32, [i32; 2])> = chart.laid().map(|(i, at)| (i, chart.cell(at))).collect();
+        places.sort_unstable_by_key(|(i, _)| *i);
+        let [mut low, mut high] = [[0; 2]; 2];
+        for (_, cell) in &places {
+            (low, high) = ([0, 1].map(|k| cell[k].min(low[k])), [0, 1].map(|k| cell[k].max(high[k])));
         }
-        Ok(chart)
+        chart.corner = low;
+        chart.across = (high[0] - low[0]) as usize + 1;
+        chart.cells.resize(chart.across * ((high[1] - low[1]) as usize + 1), Vec::new());
+        for (i, [x, y]) in places {
+            let k = (y - low[1]) as usize * chart.across + (x - low[0]) as usize;
+            chart.cells[k].push(i);
+        }
+        chart
+    }
+
+    /// The samples in a cell.
+    fn in_cell(&self, x: i32, y: i32) -> &[u32] {
+        let column = usize::try_from(x.saturating_sub(self.corner[0])).ok().filter(|column| *column < self.across);
+        let row = usize::try_from(y.saturating_sub(self.corner[1])).ok();
+        let cell = column.zip(row).and_then(|(column, row)| self.cells.get(row.checked_mul(self.across)? + column));
+        cell.map_or(&[], Vec::as_slice)
     }
 
     fn cell(&self, at: [f64; 2]) -> [i32; 2] {
@@ -121,7 +165,7 @@ impl<'a> Chart<'a> {
 
     /// The samples of the chart with where they lie.
     pub(crate) fn laid(&self) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
-        self.stations.iter().map(|(i, s)| (*i, s.at))
+        self.stations.list.iter().map(|(i, s)| (*i, s.at))
     }
 
     /// The sample that is nearest to a place of the plane, if there is one within reach.
@@ -136,9 +180,9 @@ impl<'a> Chart<'a> {
         let mut found = Vec::new();
         for j in y.saturating_sub(1)..=y.saturating_add(1) {
             for i in x.saturating_sub(1)..=x.saturating_add(1) {
-                for &k in self.cells.get(&[i, j]).map_or(&[][..], Vec::as_slice) {
-                    let s = self.stations.get(&k)?;
-                    let d = (s.at[0] - at[0]).hypot(s.at[1] - at[1]);
+                for &k in self.in_cell(i, j) {
+                    let s = self.stations.get(k)?;
+                    let d = ((s.at[0] - at[0]).powi(2) + (s.at[1] - at[1]).powi(2)).sqrt();
                     if d < reach {
                         found.push((d, k));
                     }
@@ -160,7 +204,7 @@ impl<'a> Chart<'a> {
         self.samples.points.around(foot.point, reach, |i, d2| around.push((d2.sqrt(), i as u32)));
         around.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (d, i) in around {
-            let Some(s) = self.stations.get(&i) else { continue };
+            let Some(s) = self.stations.get(i) else { continue };
             let own = &self.samples.feet[i as usize];
             if own.normal.dot(foot.normal) < 0.0 {
                 continue;
@@ -197,7 +241,7 @@ impl<'a> Chart<'a> {
         }
         let (mut at, mut along, mut across, mut sum) = (Vector::ZERO, Vector::ZERO, Vector::ZERO, 0.0);
         for (d, i) in near {
-            let s = self.stations.get(&i)?;
+            let s = self.stations.get(i)?;
             let own = &self.samples.feet[i as usize];
             if (own.point - main.point).norm() > 2.0 * reach {
                 continue;
@@ -219,7 +263,7 @@ impl<'a> Chart<'a> {
 
     /// The smallest box around the samples of the chart.
     pub(crate) fn bounds(&self) -> Bounds<3> {
-        Bounds::around(self.stations.keys().map(|&i| self.samples.feet[i as usize].point))
+        Bounds::around(self.stations.list.iter().map(|(i, _)| self.samples.feet[*i as usize].point))
     }
 }
 
@@ -233,12 +277,12 @@ fn framed(along: Vector<3>, across: Vector<3>, normal: Vector<3>) -> Option<(Vec
 }
 
 /// Where a sample lies in a chart, by the samples around it that are laid out already.
-fn reached(samples: &Samples, stations: &BTreeMap<u32, Station>, i: u32) -> Option<Station> {
+fn reached(samples: &Samples, stations: &Stations, i: u32) -> Option<Station> {
     let own = &samples.feet[i as usize];
     let (mut at, mut along, mut across, mut sum) = ([0.0; 2], Vector::ZERO, Vector::ZERO, 0.0);
     let mut first: Option<[f64; 2]> = None;
     for &j in &samples.beside[i as usize] {
-        let Some(s) = stations.get(&j) else { continue };
+        let Some(s) = stations.get(j) else { continue };
         let other = &samples.feet[j as usize];
         let step = own.point - other.point;
         let length = step.norm();

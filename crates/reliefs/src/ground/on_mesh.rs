@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use arabesque_core::{Budget, Error, Result, Stage, Stream, Vector};
 use arabesque_surface::{DirectionField, MeshIndex};
+use rayon::prelude::*;
 
 use crate::{
     ground::canvas::Canvas,
@@ -77,7 +78,7 @@ impl<'a> MeshCanvas<'a> {
     /// The sample around which the next patch lies: so far from what is covered that the patch overlaps it, and near the first one.
     fn next(&self) -> Option<u32> {
         let side = self.texture.patch_side() * self.scale;
-        let wanted = (0.5 - self.params.overlap) * side;
+        let wanted = 0.5 * side - self.texture.overlap as f64 * self.texture.lattice.cell * self.scale;
         if self.laid.is_empty() {
             return Some(0);
         }
@@ -159,7 +160,8 @@ impl Canvas for MeshCanvas<'_> {
         self.store.within(&bounds, |s| found.push(*s));
         self.budget.spend(found.len() as u64 * 6000)?;
         let is_near = |p: Vector<3>| (0..2).all(|k| p[k] > -more && p[k] < side + more);
-        samples.extend(found.iter().filter_map(local).filter(|s| is_near(s.at)));
+        let flat: Vec<Option<Sample>> = found.par_iter().with_min_len(64).map(local).collect();
+        samples.extend(flat.iter().flatten().filter(|s| is_near(s.at)).copied());
         let (shunned, usage, budget) = (Vec::new(), &self.usage, &self.budget);
         let near = |(at, _): &&(Vector<3>, [u32; 2])| (*at - foot.point).norm() < NEARBY * side * scale;
         let nearby = self.laid.iter().filter(near).map(|(_, place)| *place).collect();
@@ -168,17 +170,20 @@ impl Canvas for MeshCanvas<'_> {
             return Ok(None);
         };
         let seam = 1.6 * texture.spacing;
+        // They come in the order in which they were found.
+        let mut flat = flat.iter();
         self.store.remove(&bounds, |s| {
-            let Some(flat) = local(s) else { return false };
+            let Some(Some(flat)) = flat.next() else { return false };
             s.is_at_seam |= site.mask.has_overlap() && site.mask.is_at_seam(flat.at, seam);
-            site.mask.replaces(&flat)
+            site.mask.replaces(flat)
         });
         self.budget.spend(laid.samples.len() as u64 * 6000)?;
-        for s in &laid.samples {
-            if let Some((at, normal)) = chart.raised((s.at - corner) * scale, s.normal) {
-                self.store.insert(Sample { at, normal, ..*s });
-            }
-        }
+        let raised = |s: &Sample| {
+            let (at, normal) = chart.raised((s.at - corner) * scale, s.normal)?;
+            Some(Sample { at, normal, ..*s })
+        };
+        let raised: Vec<Option<Sample>> = laid.samples.par_iter().with_min_len(64).map(raised).collect();
+        raised.into_iter().flatten().for_each(|s| self.store.insert(s));
         let inside = |at: [f64; 2]| at.iter().all(|v| v.abs() <= half * scale);
         let mut covered: Vec<u32> = chart.laid().filter(|(_, at)| inside(*at)).map(|(i, _)| i).collect();
         // Every patch covers something, so that there is an end.

@@ -17,6 +17,8 @@ const PATCHES: Stage = Stage::new(501);
 /// Patches that are made at once at most: it must not depend on the number of threads.
 const BATCH: usize = 16;
 
+/// How many more patches are tried where a tile closes.
+const CLOSING: usize = 4;
 /// Patches at most.
 const MOST: f64 = 4e6;
 
@@ -32,6 +34,8 @@ struct Row {
 pub(crate) struct PlaneCanvas<'a> {
     texture: &'a Texture,
     params: &'a ReliefParams,
+    /// Those for the last patches of a tile, which have to meet the first.
+    closing: ReliefParams,
     size: [f64; 2],
     is_tile: bool,
     rows: [Row; 2],
@@ -90,6 +94,7 @@ impl<'a> PlaneCanvas<'a> {
         Ok(Self {
             texture,
             params,
+            closing: ReliefParams { tolerance: 0.0, tries: params.tries.saturating_mul(CLOSING), ..params.clone() },
             size,
             is_tile,
             rows,
@@ -162,12 +167,15 @@ impl PlaneCanvas<'_> {
         let texture = self.texture;
         let border = texture.border as f64 * texture.lattice.cell;
         let far = texture.lattice.reach.max(self.params.reach * texture.patch_side());
-        border.max(far) + texture.radius + 2.0 * texture.pieces.reach
+        border.max(far) + texture.radius + texture.pieces.reach + 4.0 * texture.spacing
     }
 
     /// The patches that are laid next: some of one diagonal that neither see nor touch one another, wherever the plane repeats.
     fn batch(&self) -> Vec<usize> {
-        let reach = self.texture.patch_side() + 2.0 * self.seen();
+        // One sees what the other changes, its border and the pieces that reach beyond it.
+        let texture = self.texture;
+        let changed = texture.border as f64 * texture.lattice.cell + texture.pieces.reach;
+        let reach = texture.patch_side() + self.seen().max(changed) + changed;
         let diagonal = |k: usize| k % self.rows[0].count + 2 * (k / self.rows[0].count);
         let mut batch: Vec<usize> = Vec::new();
         for &k in self.order[self.next..].iter().take(BATCH) {
@@ -220,7 +228,10 @@ impl PlaneCanvas<'_> {
         self.budget.spend(samples.len() as u64 * 40)?;
         let nearby = around.iter().map(|(_, place)| *place).collect();
         let (usage, budget) = (&self.usage, &self.budget);
-        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
+        let is_last =
+            k % self.rows[0].count + 1 == self.rows[0].count || k / self.rows[0].count + 1 == self.rows[1].count;
+        let params = if self.is_tile && is_last { &self.closing } else { self.params };
+        let site = Site { texture, params, mask, samples, shunned, usage, nearby, budget };
         let laid = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))?;
         Ok(laid.map(|laid| Made { k, bounds, mask: site.mask, laid }))
     }

@@ -1,6 +1,6 @@
 //! The place of a patch, and how a bent patch is blended with what is there [Duranleau 2008 §5.3].
 
-use arabesque_core::{Budget, Result};
+use arabesque_core::{Budget, Result, Vector};
 use arabesque_surface::OrientedPoints;
 use rayon::prelude::*;
 
@@ -13,6 +13,9 @@ use crate::{
 
 /// Surfaces that are farther apart, in spacings, do not have the same edges.
 const ALIKE: f64 = 1.5;
+/// How far the points of a pair of a high sheet may be apart, as a share of its height.
+const RISE: f64 = 0.35;
+const UP: Vector<3> = Vector([0.0, 0.0, 1.0]);
 /// Share of a loose piece that may lie within others.
 const PASSING: f64 = 0.02;
 
@@ -44,6 +47,12 @@ impl Site<'_> {
     /// How far points may move.
     pub(super) fn reach(&self) -> f64 {
         self.params.reach * self.texture.patch_side()
+    }
+
+    /// The same for the points of a pair: high sheets go up and down to meet.
+    pub(super) fn reach_of_pairs(&self) -> f64 {
+        let height = self.texture.bounds.max[2] - self.texture.bounds.min[2];
+        if self.texture.is_high { self.reach().max(RISE * height) } else { self.reach() }
     }
 
     /// Moves points in the overlap towards what is there, along their normals if that leads to it, and keeps those that are pasted.
@@ -90,10 +99,13 @@ impl Site<'_> {
     fn moved(&self, mut sample: Sample, share: f64, (around, own): (&Around, &OrientedPoints)) -> (Sample, u8) {
         let reach = (0.6 * self.reach()).max(3.0 * self.texture.spacing);
         let (at, normal) = (sample.at, sample.normal);
-        let hit = around.points.hit(at, normal, reach);
+        let height = self.texture.bounds.max[2] - self.texture.bounds.min[2];
+        // Of a high sheet there is one surface only, above or below.
+        let (way, reach) = if self.texture.is_high { (UP, reach.max(height)) } else { (normal, reach) };
+        let hit = around.points.hit(at, way, reach);
         let how = if hit.is_some() { 1 } else { 2 };
         let Some(foot) = hit.or_else(|| around.points.project(at, reach, Some(normal))) else { return (sample, 3) };
-        let (mut from, mut facing) = own.beside(at, normal).unwrap_or((at, normal));
+        let (mut from, mut facing) = own.beside(at, way).unwrap_or((at, normal));
         // Where the surfaces are far apart, they are not alike: the point goes all the way.
         let alike = (1.0 - (foot.point - from).norm() / (ALIKE * self.texture.spacing)).max(0.0);
         (from, facing) = (at + (from - at) * alike, normal + (facing - normal) * alike);

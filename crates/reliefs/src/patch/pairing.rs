@@ -5,6 +5,7 @@
 
 use arabesque_core::{Budget, Result, Vector};
 use arabesque_surface::OrientedPoints;
+use rayon::prelude::*;
 
 use crate::{params::ReliefParams, sample::Sample};
 
@@ -58,8 +59,12 @@ impl Pairing<'_> {
                 params.distance * length + 0.5 * params.normals * (1.0 - facing) + params.variation * differs * differs;
             choices.push(Choice { source, way, length, cost });
         });
-        choices.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.source.cmp(&b.source)));
-        choices.truncate(SOURCES);
+        let cheaper = |a: &Choice, b: &Choice| a.cost.total_cmp(&b.cost).then(a.source.cmp(&b.source));
+        if choices.len() > SOURCES {
+            choices.select_nth_unstable_by(SOURCES, cheaper);
+            choices.truncate(SOURCES);
+        }
+        choices.sort_unstable_by(cheaper);
         choices
     }
 
@@ -71,14 +76,20 @@ impl Pairing<'_> {
         variations: &[f32],
         budget: &Budget,
     ) -> Result<Vec<Pair>> {
-        let all: Vec<Vec<Choice>> = targets.iter().map(|q| self.choices(q, sources, variations)).collect();
+        let all: Vec<Vec<Choice>> =
+            targets.par_iter().with_min_len(8).map(|q| self.choices(q, sources, variations)).collect();
         let looks: usize = all.iter().map(Vec::len).sum();
         budget.spend((looks * (20 + self.params.rounds * 6) + targets.len() * targets.len() * 8) as u64)?;
         let near = self.listeners(targets);
-        let mut chosen = choose(&all, |_, choice| choice.cost);
+        let mut chosen = choose(&all, sources.len(), |_, _| 0.0);
         for _ in 0..self.params.rounds {
             let told: Vec<_> = near.iter().map(|near| told(near, &all, &chosen)).collect();
-            chosen = choose(&all, |q, choice| choice.cost + self.coherence(choice, told[q]));
+            let next = choose(&all, sources.len(), |q, choice| self.coherence(choice, told[q]));
+            // What stays once stays for good.
+            if next == chosen {
+                break;
+            }
+            chosen = next;
         }
         let pair = |(q, choice): (usize, &Option<(usize, f64)>)| {
             let (k, cost) = (*choice)?;
@@ -124,19 +135,26 @@ fn told(near: &[(usize, f64)], all: &[Vec<Choice>], chosen: &[Option<(usize, f64
     (if sum > 0.0 { length / sum } else { 0.0 }, way.unit_or_zero())
 }
 
-/// For each target in turn the choice of least cost whose source is not taken.
-fn choose(all: &[Vec<Choice>], cost: impl Fn(usize, &Choice) -> f64) -> Vec<Option<(usize, f64)>> {
-    let mut taken = std::collections::BTreeSet::new();
+/// For each target in turn the choice whose source is not taken and that costs least, with `more` on top of its own cost.
+fn choose(all: &[Vec<Choice>], sources: usize, more: impl Fn(usize, &Choice) -> f64) -> Vec<Option<(usize, f64)>> {
+    let mut taken = vec![false; sources];
     let mut of = |(q, choices): (usize, &Vec<Choice>)| {
         let mut best: Option<(usize, f64)> = None;
         for (k, choice) in choices.iter().enumerate() {
-            let cost = cost(q, choice);
-            if best.is_none_or(|(_, least)| cost < least) && !taken.contains(&choice.source) {
+            // Those that follow cost as much or more, and nothing makes them cheaper.
+            if best.is_some_and(|(_, least)| choice.cost >= least) {
+                break;
+            }
+            if taken[choice.source] {
+                continue;
+            }
+            let cost = choice.cost + more(q, choice).max(0.0);
+            if best.is_none_or(|(_, least)| cost < least) {
                 best = Some((k, cost));
             }
         }
         if let Some((k, _)) = best {
-            taken.insert(choices[k].source);
+            taken[choices[k].source] = true;
         }
         best
     };
@@ -177,6 +195,29 @@ mod tests {
         sources.sort_unstable();
         sources.dedup();
         assert_eq!(sources.len(), 60, "a source is taken twice");
+    }
+
+    #[test]
+    fn looking_no_farther_than_costs_allow_chooses_as_looking_at_all() {
+        let choice = |q: usize, k: usize| Choice {
+            source: (q * 7 + k * 5) % 40,
+            way: Vector::ZERO,
+            length: ((q * 13 + k * 29) % 17) as f64 / 17.0,
+            cost: k as f64 * 0.1 + (q % 3) as f64 * 0.01,
+        };
+        let all: Vec<Vec<Choice>> = (0..30).map(|q| (0..20).map(|k| choice(q, k)).collect()).collect();
+        let more = |_: usize, choice: &Choice| choice.length;
+        let mut taken = std::collections::BTreeSet::new();
+        let naive: Vec<Option<(usize, f64)>> = all
+            .iter()
+            .map(|choices| {
+                let free = choices.iter().enumerate().filter(|(_, c)| !taken.contains(&c.source));
+                let best = free.map(|(k, c)| (k, c.cost + c.length)).min_by(|a, b| a.1.total_cmp(&b.1));
+                taken.extend(best.map(|(k, _)| choices[k].source));
+                best
+            })
+            .collect();
+        assert_eq!(choose(&all, 40, more), naive);
     }
 
     #[test]

@@ -35,7 +35,7 @@ const FLOOR: f64 = 2e-3;
 /// Share of a target's surface that bends at most, from which its cluster is split.
 const FLAT: f64 = 0.06;
 /// Columns of nodes that are compared at most.
-const ENOUGH: usize = 400;
+const ENOUGH: usize = 160;
 /// Places that are looked at for each that is tried: many of them lie side by side.
 const LEAST: usize = 16;
 /// Places, apart from one another, that are chosen from at most.
@@ -45,12 +45,15 @@ const SEEN: f64 = 0.05;
 /// How far pairs listen to one another, as a share of the patch.
 const LISTENING: f64 = 0.15;
 
-/// Every second node along both axes, again and again, while there are more than enough.
+/// Every second node, again and again, while there are more than enough: by turns as on a chessboard, and in every second row and column.
 fn thinned(mut nodes: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
-    let mut step = 2;
+    let mut step = 1;
     while nodes.len() > ENOUGH {
-        nodes.retain(|[x, y]| x % step == 0 && y % step == 0);
-        step *= 2;
+        nodes.retain(|[x, y]| (x / step + y / step) % 2 == 0);
+        if nodes.len() > ENOUGH {
+            step *= 2;
+            nodes.retain(|[x, y]| x % step == 0 && y % step == 0);
+        }
     }
     nodes
 }
@@ -208,14 +211,18 @@ impl Site<'_> {
         let middle = |[x, y]: [f64; 2]| Vector([x, y, 0.5 * (low + high)]);
         let whole = texture.pieces.members.iter().filter(|p| !p.is_cut && bounds.contains(middle(p.middle)));
         whole.for_each(|p| numbers.extend(p.points.iter().map(|&i| i as usize)));
-        numbers.sort_unstable();
-        let moved = |i: usize| {
+        let reach = self.reach();
+        let is_wanted = |i: &usize| {
+            let is_piece = texture.pieces.of.get(*i).is_some_and(|p| *p > 0);
+            is_piece || self.mask.may_be_pasted(texture.points.positions()[*i] - corner, reach)
+        };
+        // They come as they lie together, which is what all that follows is fastest with.
+        numbers.retain(is_wanted);
+        let moved = |&i: &usize| {
             let sample = texture.sample(i);
             Sample { at: sample.at - corner, ..sample }
         };
-        let reach = self.reach();
-        let may_be_pasted = |s: &Sample| s.piece > 0 || self.mask.may_be_pasted(s.at, reach);
-        numbers.into_iter().map(moved).filter(may_be_pasted).collect()
+        numbers.par_iter().with_min_len(1024).map(moved).collect()
     }
 
     /// The patch of a place, bent and blended.
@@ -240,7 +247,7 @@ impl Site<'_> {
         let variations: Vec<f32> = source.iter().map(|s| s.variation).collect();
         let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         let listening = LISTENING * self.texture.patch_side();
-        let pairing = Pairing { params: self.params, reach: self.reach(), listening };
+        let pairing = Pairing { params: self.params, reach: self.reach_of_pairs(), listening };
         let mut pairs = pairing.pairs(&around.targets, &points, &variations, self.budget)?;
         if pairs.len() * 2 < around.targets.len() || pairs.len() < 4 {
             return Ok(None);
@@ -323,5 +330,20 @@ impl Site<'_> {
             }
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_are_thinned_evenly_and_some_are_left() {
+        let nodes: Vec<[u32; 2]> = (0..60 * 60).map(|k| [k % 60, k / 60]).filter(|[x, y]| *x < 8 || *y < 8).collect();
+        let thin = thinned(nodes.clone());
+        assert!(thin.len() <= ENOUGH && 3 * thin.len() > ENOUGH, "{}", thin.len());
+        let far = |n: &[u32; 2]| thin.iter().map(|t| n[0].abs_diff(t[0]) + n[1].abs_diff(t[1])).min().unwrap();
+        assert!(nodes.iter().all(|n| far(n) <= 4), "{:?}", nodes.iter().map(far).max());
+        assert_eq!(thinned(nodes[..ENOUGH].to_vec()), nodes[..ENOUGH]);
     }
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::patch::spline::Spline;
 
 /// Nodes along the side of a patch, and along as much of its height.
-const NODES: [f64; 3] = [16.0, 16.0, 10.0];
+const NODES: [f64; 3] = [12.0, 12.0, 8.0];
 /// A grid pays where there are so many times as many points as nodes.
 const PAYS: usize = 2;
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::{
     params::Search,
     search::fft::{Complex, Fft},
-    search::field::{Field, Overlap},
+    search::field::{ABREAST, Field, Overlap},
 };
 
 /// Differences by transforms or in 32 bits are off by less than this share of what is summed.
@@ -106,29 +106,39 @@ impl Searcher {
 fn in_rows(field: &Field, overlap: &Overlap, places: &[[u32; 2]], budget: &Budget) -> Result<Vec<f64>> {
     budget.spend((places.len() * overlap.nodes.len() * field.planes.len()) as u64 / 6)?;
     let rows: Vec<&[[u32; 2]]> = places.chunk_by(|a, b| a[1] == b[1]).collect();
+    let steps = steps(field, overlap);
     let of = |row: &&[[u32; 2]]| -> Vec<f64> {
         let (first, last) = (row[0][0] as usize, row[row.len() - 1][0] as usize);
-        let mut sums = vec![0.0_f32; last - first + 1];
-        for (plane, numbers) in field.planes.iter().zip(&overlap.planes) {
-            for ([x, y], number) in overlap.nodes.iter().zip(numbers) {
-                let start = (*y + row[0][1]) as usize * field.width + *x as usize + first;
-                for (sum, value) in sums.iter_mut().zip(&plane[start..start + last - first + 1]) {
-                    *sum += (value - number) * (value - number);
+        let mut sums = vec![0.0_f32; (last - first + 1).next_multiple_of(ABREAST)];
+        for (k, sums) in sums.chunks_exact_mut(ABREAST).enumerate() {
+            let start = row[0][1] as usize * field.width + first + k * ABREAST;
+            let mut some = [0.0_f32; ABREAST];
+            for (plane, numbers) in field.planes.iter().zip(&overlap.planes) {
+                for (step, number) in steps.iter().zip(numbers) {
+                    // The last ones of a row may look beyond it: they are no places.
+                    let Some(values) = plane[start + step..].first_chunk::<ABREAST>() else { continue };
+                    some = std::array::from_fn(|k| some[k] + (values[k] - number) * (values[k] - number));
                 }
             }
+            sums.copy_from_slice(&some);
         }
         row.iter().map(|[x, _]| f64::from(sums[*x as usize - first])).collect()
     };
-    Ok(rows.par_iter().map(of).collect::<Vec<_>>().concat())
+    Ok(rows.par_iter().flat_map_iter(of).collect())
+}
+
+/// How far the nodes of an overlap are from a place, in numbers of a plane.
+fn steps(field: &Field, overlap: &Overlap) -> Vec<usize> {
+    overlap.nodes.iter().map(|[x, y]| *y as usize * field.width + *x as usize).collect()
 }
 
 /// The difference at one place.
-fn exact(field: &Field, overlap: &Overlap, [x, y]: [u32; 2]) -> f64 {
-    let squares = field.planes.iter().zip(&overlap.planes).flat_map(|(plane, numbers)| {
-        overlap.nodes.iter().zip(numbers).map(move |([i, j], number)| {
-            let d = f64::from(plane[(j + y) as usize * field.width + (i + x) as usize]) - f64::from(*number);
-            d * d
-        })
+fn exact(field: &Field, overlap: &Overlap, steps: &[usize], [x, y]: [u32; 2]) -> f64 {
+    let start = y as usize * field.width + x as usize;
+    let squares = field.planes.iter().zip(&overlap.planes).map(|(plane, numbers)| {
+        let from = &plane[start..];
+        let square = |(step, number): (&usize, &f32)| (f64::from(from[*step]) - f64::from(*number)).powi(2);
+        steps.iter().zip(numbers).map(square).sum::<f64>()
     });
     squares.sum()
 }
@@ -162,7 +172,8 @@ pub(crate) fn best(
     let bound = ((1.0 + tolerance) * (least_about + slack).max(floor)).max(of_rank) + 2.0 * slack;
     let near: Vec<_> = places.iter().zip(&about).filter(|(_, d)| **d <= bound).map(|(place, _)| *place).collect();
     budget.spend((near.len() * overlap.nodes.len() * field.planes.len()) as u64)?;
-    let exact = |&place: &[u32; 2]| Candidate { place, difference: exact(field, overlap, place) };
+    let steps = steps(field, overlap);
+    let exact = |&place: &[u32; 2]| Candidate { place, difference: exact(field, overlap, &steps, place) };
     let mut candidates: Vec<Candidate> = near.par_iter().map(exact).collect();
     candidates.sort_by(|a, b| a.difference.total_cmp(&b.difference).then(a.place.cmp(&b.place)));
     let most = (1.0 + tolerance) * candidates[0].difference.max(floor);
@@ -214,8 +225,10 @@ mod tests {
             };
             let by_transforms = how(Search::Fft, Some(&searcher));
             assert_eq!(by_transforms, how(Search::Exhaustive, None));
-            let mut all: Vec<_> =
-                places.iter().map(|&place| Candidate { place, difference: exact(&field, &overlap, place) }).collect();
+            let mut all: Vec<_> = places
+                .iter()
+                .map(|&place| Candidate { place, difference: exact(&field, &overlap, &steps(&field, &overlap), place) })
+                .collect();
             all.sort_by(|a, b| a.difference.total_cmp(&b.difference).then(a.place.cmp(&b.place)));
             assert_eq!(by_transforms[..], all[..by_transforms.len()]);
             let most = (1.0 + tolerance) * all[0].difference.max(floor);
@@ -230,7 +243,7 @@ mod tests {
         let about = Searcher::new(&field, &budget).unwrap().differences(&overlap, &places, &budget).unwrap();
         let rows = in_rows(&field, &overlap, &places, &budget).unwrap();
         for ((place, d), r) in places.iter().zip(about).zip(rows) {
-            let own = exact(&field, &overlap, *place);
+            let own = exact(&field, &overlap, &steps(&field, &overlap), *place);
             assert!(
                 (d - own).abs() < 1e-8 * (1.0 + own) && (r - own).abs() < 1e-3 * (1.0 + own),
                 "{place:?}: {d} {r} {own}"

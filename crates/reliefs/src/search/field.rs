@@ -8,6 +8,8 @@ use rayon::prelude::*;
 
 /// Numbers at a node: distance and gradient.
 pub(crate) const CHANNELS: usize = 4;
+/// Places of a row that are compared at once; behind each plane stand so many numbers that mean nothing.
+pub(crate) const ABREAST: usize = 16;
 /// Work units of a projection.
 pub(crate) const PROJECTION: u64 = 3000;
 
@@ -80,7 +82,10 @@ impl Field {
             .collect();
         let rows = rows?;
         let planes = lattice.planes();
-        let plane = |p: usize| rows.iter().flat_map(|row| row.iter().skip(p).step_by(planes).copied()).collect();
+        let plane = |p: usize| {
+            let numbers = rows.iter().flat_map(|row| row.iter().skip(p).step_by(planes).copied());
+            numbers.chain([0.0; ABREAST]).collect()
+        };
         Ok(Self { width, height, planes: (0..planes).map(plane).collect(), _held: held })
     }
 }

@@ -10,6 +10,10 @@ const LEAST: usize = 60;
 /// A plane that is narrower than this share of the height is none.
 const COLLAPSED: f64 = 1e-9;
 
+/// Share of neighbouring normals that may face opposite ways, and from which on it is told.
+const REFUSED: f64 = 0.1;
+const TOLD: f64 = 0.01;
+
 /// A fault of the texture, whose name the caller knows.
 pub(super) fn fail(problem: impl Into<String>, advice: impl Into<String>) -> Error {
     Error::input("the texture", problem.into(), advice.into())
@@ -59,6 +63,17 @@ pub(super) fn contradictions(points: &OrientedPoints, radius: f64, budget: &Budg
         });
     }
     Ok(against as f64 / all.max(1) as f64)
+}
+
+/// Refuses normals of which too large a share contradicts itself, and tells of fewer.
+pub(super) fn told(share: f64) -> Result<Option<Warning>> {
+    let advice =
+        "leave the normals out, so that they are estimated, or turn them to one side; lower the heights of a picture";
+    if share > REFUSED {
+        return Err(fail("neighbouring normals face opposite ways", advice));
+    }
+    let message = || format!("{:.1} % of neighbouring normals face opposite ways", 100.0 * share);
+    Ok((share > TOLD).then(|| Warning::new(message(), advice)))
 }
 
 /// The axis across the plane.

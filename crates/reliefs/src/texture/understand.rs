@@ -2,7 +2,6 @@
 
 use arabesque_core::{Bounds, Budget, Error, Held, PointSet, Result, Vector, Warning};
 use arabesque_surface::{OrientedPoints, spacing_of};
-use rayon::prelude::*;
 
 use crate::{
     params::{ReliefParams, Search},
@@ -13,7 +12,7 @@ use crate::{
         axes::Axes,
         gap::Gap,
         pieces::Pieces,
-        reading::{axes, checked, contradictions, fail, oriented},
+        reading::{axes, checked, contradictions, fail, oriented, told},
         repetition::{Repetition, repetition},
     },
 };
@@ -30,6 +29,24 @@ const ROWS: f64 = 10.0;
 const NODES: usize = 4_000_000;
 /// Places that are enough to choose from beside a gap.
 const ENOUGH: usize = 12;
+/// Share of a patch that overlaps the next: least, and most.
+const OVERLAP: (f64, f64) = (0.1, 0.2);
+/// The same at most of a sheet that is high.
+const OVERLAP_OF_SHEETS: f64 = 0.3;
+/// Width of the overlap of a sheet at least, as a share of its height beyond what is low for a patch of side 1.
+const CLIMB: f64 = 0.6;
+const LOW: f64 = 0.35;
+/// Normals of a sheet rise by more than this, and so many of them do.
+const UPRIGHT: f64 = 0.02;
+const SHEET: f64 = 0.99;
+/// Mean surface variation of what has no edges.
+const SMOOTH: f64 = 0.03;
+/// Cells across an overlap that tell which way things go on there.
+const OVERLAPPED: f64 = 4.0;
+/// Share of a patch that its border is wide: least, and most.
+const BORDER: (f64, f64) = (0.15, 0.25);
+/// Cells across a border that tell where the surface goes on.
+const PASTED: f64 = 6.0;
 /// How far distances are told, in cells.
 const REACH: f64 = 5.0;
 
@@ -44,6 +61,9 @@ pub(crate) struct Texture {
     pub(crate) groups: Option<Vec<i32>>,
     pub(crate) spacing: f64,
     pub(crate) radius: f64,
+    /// Whether it lies over its plane as one sheet, as a height field does; and whether that is high for a patch.
+    pub(crate) is_sheet: bool,
+    pub(crate) is_high: bool,
     /// The box of the texture proper.
     pub(crate) bounds: Bounds<3>,
     pub(crate) lattice: Lattice,
@@ -87,12 +107,7 @@ impl Texture {
         let radius = RADIUS * spacing;
         let all = Bounds::around(positions.iter().copied());
         let points = OrientedPoints::new(positions, normals, radius, budget)?;
-        if contradictions(&points, radius, budget)? > 0.1 {
-            return Err(fail(
-                "neighbouring normals face opposite ways",
-                "leave the normals out, so that they are estimated, or turn them to one side; lower the heights of a picture",
-            ));
-        }
+        warnings.extend(told(contradictions(&points, radius, budget)?)?);
         let lattice = lattice(&all, spacing, params);
         let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
         if nodes.iter().fold(lattice.heights.len(), |all, n| all.saturating_mul(*n)) > NODES {
@@ -107,8 +122,11 @@ impl Texture {
         let field = Field::new(&points, &lattice, origin, (nodes[0], nodes[1]), budget)?;
         let repetition = repetition(&field, budget)?;
         budget.spend(points.len() as u64 * 900)?;
-        let variations: Vec<f32> = (0..points.len()).into_par_iter().map(|i| points.variation(i) as f32).collect();
+        let variations: Vec<f32> = points.variations();
+        let upright = points.normals().iter().filter(|n| n[2] > UPRIGHT).count();
         let mut texture = Self {
+            is_sheet: upright as f64 >= SHEET * points.len() as f64,
+            is_high: false,
             axes,
             points,
             variations,
@@ -203,7 +221,6 @@ impl Texture {
                 format!("at most {:.4}, a good part of the box of the texture, which is {room:.4} wide", 0.6 * room),
             ));
         }
-        let border = (params.border * patch).ceil();
         // What is missing of a border at the edge of the texture is hardly missed, but there have to be points that may be moved in.
         let margin = match given {
             Some(_) => 0.0,
@@ -217,9 +234,7 @@ impl Texture {
             Vector([inner.min[0], inner.min[1], all.min[2]]),
             Vector([inner.max[0], inner.max[1], all.max[2]]),
         );
-        self.patch = patch as usize;
-        self.overlap = ((params.overlap * patch).round() as usize).clamp(2, self.patch / 2);
-        self.border = border as usize;
+        self.surround(patch, all.size()[2], params);
         let limits = |k: usize| {
             let low = ((self.bounds.min[k] - self.origin[k]) / cell - 1e-6).ceil().max(0.0);
             let high = ((self.bounds.max[k] - self.origin[k]) / cell + 1e-6)
@@ -235,7 +250,7 @@ impl Texture {
                 let problem = format!("no room for a patch in its box, which is {:.4} by {:.4}", side[0], side[1]);
                 return Err(fail(
                     problem,
-                    "leave out points that lie far from all others, or say with --patch how large patches are",
+                    "give more points, leave out those that lie far from all others, or say with --patch how large patches are",
                 ));
             }
             return Err(Error::parameter(
@@ -258,6 +273,23 @@ impl Texture {
         let (x0, x1, y0, y1) = (x0 as u32, x1 as u32, y0 as u32, y1 as u32);
         self.places = (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| [x, y])).collect();
         Ok(())
+    }
+
+    /// Settles a patch of so many cells a side, and what of it lies over others.
+    fn surround(&mut self, patch: f64, height: f64, params: &ReliefParams) {
+        self.patch = patch as usize;
+        let mean = self.variations.iter().map(|v| f64::from(*v)).sum::<f64>() / self.variations.len() as f64;
+        // Where there are edges, blending does more harm than steps do.
+        let widest = if mean < SMOOTH { OVERLAP.1 } else { OVERLAP.0 };
+        let usual = (OVERLAPPED / patch).clamp(OVERLAP.0, widest);
+        // High sheets climb to one another over a wider part.
+        let more = height / (patch * self.lattice.cell) - LOW;
+        self.is_high = self.is_sheet && more > 0.0;
+        let climb = if self.is_high { (CLIMB * more).min(OVERLAP_OF_SHEETS) } else { 0.0 };
+        let overlap = params.overlap.unwrap_or(usual.max(climb));
+        self.overlap = ((overlap * patch).round() as usize).clamp(2, self.patch / 2);
+        let border = params.border.unwrap_or_else(|| (PASTED / patch).clamp(BORDER.0, BORDER.1));
+        self.border = (border * patch).ceil() as usize;
     }
 
     /// Leaves out the places whose patches meet the gap; whether enough are left.

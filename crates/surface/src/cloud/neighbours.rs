@@ -7,6 +7,9 @@ use rayon::prelude::*;
 
 use crate::tree::Tree;
 
+/// Points whose neighbours say how densely all of them lie.
+const ASKED: usize = 4000;
+
 /// The nearest points of each point.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours {
@@ -49,6 +52,25 @@ impl Neighbours {
         Ok(Self { all, each, spacing })
     }
 
+    /// The spacing that half of the points have at least, by `each` neighbours of some thousand of them.
+    pub(crate) fn usual_spacing(points: &[Vector<3>], each: usize, budget: &Budget) -> Result<f64> {
+        let each = each.min(points.len().saturating_sub(1)).max(1);
+        let boxes: Vec<_> = points.iter().map(|&p| Bounds::new(p, p)).collect();
+        let tree = Tree::new(&boxes, budget)?;
+        let asked: Vec<usize> = (0..points.len()).step_by(points.len().div_ceil(ASKED).max(1)).collect();
+        budget.spend(asked.len() as u64 * 800)?;
+        let spacing = |&own: &usize| {
+            let mut found = Vec::new();
+            tree.nearest_many(points[own], each, &mut found, |i| {
+                (i as usize != own).then(|| (points[i as usize] - points[own]).norm2())
+            });
+            (PI * found.last().map_or(0.0, |f| f.0) / (each as f64 + 0.5)).sqrt()
+        };
+        let mut spacings: Vec<f64> = asked.par_iter().with_min_len(64).map(spacing).collect();
+        let half = spacings.len() / 2;
+        Ok(*spacings.select_nth_unstable_by(half, f64::total_cmp).1)
+    }
+
     /// The neighbours of point `i`, nearest first.
     pub(crate) fn of(&self, i: usize) -> &[u32] {
         &self.all[i * self.each..(i + 1) * self.each]
@@ -70,5 +92,25 @@ impl Neighbours {
             (sum + of(i)) / (self.each + 1) as f64
         };
         (0..self.spacing.len()).map(even).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_points_tell_the_spacing_of_all() {
+        let jitter = |k: usize| ((k * 7919) % 101) as f64 / 101.0 * 0.3;
+        let points: Vec<_> = (0..20_000)
+            .map(|k| Vector([(k % 200) as f64 + jitter(k), (k / 200) as f64 + jitter(k + 5), jitter(k + 9)]))
+            .collect();
+        let budget = Budget::default();
+        let all = Neighbours::new(&points, 6, &budget).unwrap().median_spacing();
+        let some = Neighbours::usual_spacing(&points, 6, &budget).unwrap();
+        assert!((some / all - 1.0).abs() < 0.02, "{some} {all}");
+        let few = &points[..900];
+        let all = Neighbours::new(few, 6, &budget).unwrap().median_spacing();
+        assert_eq!(Neighbours::usual_spacing(few, 6, &budget).unwrap(), all);
     }
 }

@@ -31,10 +31,11 @@ pub fn estimated_normals(points: &[Vector<3>], budget: &Budget) -> Result<Estima
     Ok(EstimatedNormals { normals: found.normals, outliers: found.outliers, parts: found.parts })
 }
 
-/// Mean distance of a point to its neighbours on a surface: the side of the square that it stands for, of the point in the middle.
+/// Mean distance of a point to its neighbours on a surface: the side of the square that it stands for, of the point in the middle of some thousand
+/// that are spread over the list. There is at least one point.
 ///
 /// # Errors
 /// [`Error::Limit`] when the work is used up.
 pub fn spacing_of(points: &[Vector<3>], budget: &Budget) -> Result<f64> {
-    Ok(Neighbours::new(points, 6, budget)?.median_spacing())
+    Neighbours::usual_spacing(points, 6, budget)
 }

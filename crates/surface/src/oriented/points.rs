@@ -5,6 +5,7 @@
 //! surfaces of their own.
 
 use arabesque_core::{Bounds, Budget, Held, Result, Vector};
+use rayon::prelude::*;
 
 use super::{grid::Grid, variation};
 
@@ -206,6 +207,16 @@ impl OrientedPoints {
             }
         });
         best.map(|(_, i)| i as usize)
+    }
+
+    /// How far the surface around each point is from a plane, as [`Self::variation`] has it.
+    pub fn variations(&self) -> Vec<f32> {
+        let order = self.grid.order();
+        // What lies together is worked out together.
+        let found: Vec<f32> = order.par_iter().with_min_len(256).map(|&i| self.variation(i as usize) as f32).collect();
+        let mut variations = vec![0.0; order.len()];
+        order.iter().zip(found).for_each(|(&i, v)| variations[i as usize] = v);
+        variations
     }
 
     /// How far the surface around a point is from a plane: 0 on planes, a third at most [Pauly 2002].

@@ -51,6 +51,10 @@ impl LoadedExemplar {
                 "fill a part of space: --box, --inside or --on, or use --method structures",
             ));
         }
+        if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
+            let problem = "points or a mesh as PLY where a drawing, points as CSV or curves as OBJ were expected";
+            return Err(Error::input(name, problem, "fill with --method structures, or use relief or surface"));
+        }
         let text = file::decode_text(name, bytes, budget)?;
         if looks_like_curves(name, &text) {
             let net = obj::read_curves(name, &text, budget)?;

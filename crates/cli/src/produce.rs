@@ -267,7 +267,13 @@ impl Run<'_> {
         sentinel::enter(Phase::Encoding);
         watch.finish();
         let path = Some(plan.path.clone()).filter(|_| plan.beside.is_some());
-        let mut encoded = artwork.encode(&OutputOptions { path, ..self.output.clone() })?;
+        let output = OutputOptions { path, ..self.output.clone() };
+        let mut encoded = match artwork.encode(&output) {
+            // The time was up, or somebody asked to stop, while what there is was encoded: it is wanted all the same. What was heard once
+            // is not heard again.
+            Err(Error::Stopped { .. }) => artwork.encode(&output)?,
+            encoded => encoded?,
+        };
         encoded.warnings.splice(0..0, artwork.warnings().iter().cloned());
         Ok((artwork, encoded))
     }

@@ -212,6 +212,9 @@ impl Prepared {
         for (name, path) in curves {
             let cage = cut(path, &plan(name))?;
             pieces += cage.len();
+            if self.objects.is_none() {
+                budget.allow_elements(ELEMENTS * cage.len() as f64);
+            }
             budget.within("pieces along all curves", pieces, ("output-elements", limit))?;
             if self.params.stitch && self.objects.is_none() {
                 let (work, bytes) = stitch::demand(cage.forms.iter().map(|form| form.rows()).max().unwrap_or(0));
@@ -271,7 +274,7 @@ impl Prepared {
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
         let mut outcome = RibbonOutcome::new();
         let total = cages.iter().map(Cage::len).sum();
-        budget.allow_elements(ELEMENTS * total as f64);
+        let prepared = budget.work();
         let mut done = 0;
         for (k, (cage, free)) in cages.iter().zip(&free.cages).enumerate() {
             let name = &request.curves[k].0;
@@ -281,7 +284,8 @@ impl Prepared {
             let solved = self.solve(&curve, &mut |rows, energy, path| {
                 if done + rows == TYPICAL {
                     // By now a row has cost what rows cost.
-                    let work = budget.work() as f64 * (total - TYPICAL) as f64 / TYPICAL as f64;
+                    let each = (budget.work() - prepared) as f64 / TYPICAL as f64;
+                    let work = each * (total - TYPICAL) as f64;
                     watch.foreseen(&Forecast { count: total as f64, work, allowed: budget.allowed() as f64 });
                 }
                 let progress = progress(done + rows, total, energy);

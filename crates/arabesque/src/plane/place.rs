@@ -126,6 +126,9 @@ pub(crate) fn check_cell(repeat: Option<&Repeat>, domain: &Domain<2>) -> Result<
     ))
 }
 
+/// A domain narrower than this many mean distances of elements holds none of them for sure.
+const CROWDED: f64 = 0.25;
+
 /// A tile that is smaller than this share of the cell along a side is not stretched to fit.
 const SMALLER: f64 = 0.92;
 
@@ -150,7 +153,9 @@ pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, fits: bool,
         return Ok(());
     }
     let smallest = exemplar.elements.iter().map(|e| e.outline.area()).fold(f64::INFINITY, f64::min);
-    if (smallest.is_finite() && domain.measure() < smallest) || expected < 0.5 {
+    // Where elements crowd in a part of the frame, each takes less than its share of the frame.
+    let longer = domain.bounds().size().0.into_iter().fold(0.0, f64::max);
+    if (smallest.is_finite() && domain.measure() < smallest) || (expected < 0.5 && longer < CROWDED * spacing) {
         return Err(Error::no_result(
             format!(
                 "the domain ({} square units) is smaller than one element takes ({})",

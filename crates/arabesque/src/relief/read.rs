@@ -37,6 +37,9 @@ pub(super) fn texture(name: &str, bytes: &[u8], height: Option<f64>, budget: &Bu
         let mesh = found.into_mesh(name)?;
         let index = MeshIndex::new(&mesh, name, budget)?;
         let spacing = (index.area() / SAMPLES).sqrt();
+        if !(spacing.is_finite() && spacing > 0.0) {
+            return Err(Error::input(name, "a mesh whose triangles have no area", "give a mesh with a surface"));
+        }
         let feet = scatter(&index, spacing, 0, budget)?;
         let colours = mesh.colours.as_ref().map(|colours| {
             let of = |at: &arabesque_surface::Closest| {

@@ -97,6 +97,7 @@ impl Bodies {
             scene.frame = frame;
             warnings.append(&mut scene.warnings);
         }
+        budget.within("elements of the exemplar", scene.nodes.len(), ("elements", budget.limits().elements))?;
         let scene = shared(scene, budget)?;
         let found = scene.classes();
         if let Some(bending) = bending((name, &scene), &found, (deform, samples), budget)? {

@@ -1,7 +1,7 @@
 //! Filling a domain from an exemplar that repeats.
 
 use arabesque_core::{
-    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
+    Border, Bounds, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
     Snapshot, Vector, Warning, Watch,
 };
 
@@ -20,7 +20,7 @@ use crate::{
         strokes::Strokes,
     },
     repeat::{
-        Explains, Repeat,
+        Explains, Extent, Repeat,
         find::find_for,
         orbits::{Instance, Orbit, orbits},
     },
@@ -105,6 +105,31 @@ impl Regular {
         Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants }))
     }
 
+    /// A strip that would run past the domain runs through its middle.
+    fn move_strip_into(&self, grid: &mut Grid, exemplar: &Exemplar<2>, request: &Request<2>) {
+        if self.repeat.extent != Extent::Frieze {
+            return;
+        }
+        let bounds = request.domain.bounds();
+        let lines = exemplar.curves.iter().map(|curve| curve.path.bounds().centre());
+        let places: Vec<_> = self.orbits.iter().map(|orbit| orbit.base).chain(lines).collect();
+        let places: Vec<_> = places.into_iter().map(|p| grid.place(p, [0, 0])).collect();
+        for axis in 0..2 {
+            let (low, high) = (bounds.min[axis], bounds.max[axis]);
+            let size = exemplar.window.size()[axis] * grid.scale();
+            // The next strip lies as far away as the frame is wide.
+            let is_across = grid.lattice.vectors.iter().any(|v| (v[axis].abs() - size).abs() < 1e-6 * size);
+            let is_in = |p: &Vector<2>| low + (p[axis] - low).rem_euclid(size) <= high;
+            if !is_across || places.is_empty() || places.iter().any(is_in) {
+                continue;
+            }
+            let middle = places.iter().map(|p| p[axis]).sum::<f64>() / places.len() as f64;
+            let mut by = Vector::ZERO;
+            by[axis] = 0.5 * (low + high) - middle;
+            grid.move_by(by);
+        }
+    }
+
     /// Fills a domain.
     ///
     /// # Errors
@@ -126,6 +151,9 @@ impl Regular {
             Err(Unfit::Fields) => return self.bend(exemplar, request, watch),
             Err(Unfit::Tile) => return Ok(Filled::Unfit(vec![self.unfit_tile(request)])),
         };
+        if request.frozen.is_empty() && request.known.is_none() {
+            self.move_strip_into(&mut grid, exemplar, request);
+        }
         self.foresee(&grid, request, watch)?;
         let obstacles = obstacles(request)?;
         let elements = Elements { exemplar, anchor: self.repeat.anchor, orbits: &self.orbits, cells: &self.cells };

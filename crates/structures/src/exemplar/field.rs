@@ -1,6 +1,6 @@
 //! The field of the exemplar on a grid: the sum of its Gaussians and the slopes of that sum.
 
-use arabesque_core::{Bounds, Budget, Error, Result, Vector};
+use arabesque_core::{Bounds, Budget, Error, Result, Vector, rounded};
 use rayon::prelude::*;
 
 use super::channels::{BLOCK, LANES, Weights};
@@ -48,10 +48,12 @@ impl<const D: usize> Field<D> {
             step *= 1.1;
         }
         if step > kernel.sigma {
-            return Err(Error::no_result(
-                "the exemplar is so thinly filled with points that its field takes too much memory",
-                "leave out points far from all others",
-            ));
+            return Err(Error::Limit {
+                what: "bytes of the field of the exemplar, with a node for each spacing of its points".into(),
+                found: rounded(count(kernel.sigma).iter().product::<f64>() * node_bytes),
+                limit: rounded(MOST),
+                advice: "give a smaller piece of the structure, or leave out points far from all others".into(),
+            });
         }
         let counts = count(step).map(|n| n as usize);
         let mut strides = [1; D];

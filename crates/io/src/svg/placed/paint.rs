@@ -38,7 +38,7 @@ pub fn check_paint(paint: &Paint) -> Result<()> {
     let number = paint.value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
     let (fits, expected) = match takes {
         Takes::Colour => (is_colour(&paint.value), "a colour such as #c0392b, or none"),
-        Takes::Length => (number.is_some_and(|v| (0.0..1e9).contains(&v)), "a number that is not negative"),
+        Takes::Length => (number.is_some_and(|v| (0.0..1e9).contains(&v)), "a number from 0 to below 1e9"),
         Takes::Share => (number.is_some_and(|v| (0.0..=1.0).contains(&v)), "a number from 0 to 1"),
     };
     if fits { Ok(()) } else { Err(Error::parameter(&*paint.property, &paint.value, expected)) }

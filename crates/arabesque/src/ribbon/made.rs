@@ -261,6 +261,7 @@ fn patches<const D: usize>(ribbons: &[Ribbon<D>]) -> Vec<Patch<D>> {
 impl Made for RibbonMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
         let (recipe, budget) = (sheet.recipe, sheet.budget);
+        budget.allow_elements(self.pieces() as f64);
         self.check_resolution(sheet)?;
         let bytes = match (sheet.format, &self.laid, &*self.track) {
             (Format::Json, ..) => self.json(recipe, budget)?.into_bytes(),

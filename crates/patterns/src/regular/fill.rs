@@ -1,7 +1,7 @@
 //! Filling a domain from an exemplar that repeats.
 
 use arabesque_core::{
-    Border, Bounds, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
+    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
     Snapshot, Vector, Warning, Watch,
 };
 

@@ -12,6 +12,8 @@ const FINENESS: f64 = 2.5;
 const END: f64 = 2.3;
 /// Most bytes of one grid; a coarser one beyond.
 const MOST: f64 = 260e6;
+/// Most bytes of a field that is as coarse as it may be.
+const LARGEST: f64 = 600e6;
 
 /// Values and slopes at the nodes of a grid, read with an error of the third order of its step.
 #[derive(Clone, Debug)]
@@ -47,11 +49,12 @@ impl<const D: usize> Field<D> {
         while count(step).iter().product::<f64>() * node_bytes > MOST {
             step *= 1.1;
         }
-        if step > kernel.sigma {
+        step = step.min(kernel.sigma);
+        if count(step).iter().product::<f64>() * node_bytes > LARGEST {
             return Err(Error::Limit {
                 what: "bytes of the field of the exemplar, with a node for each spacing of its points".into(),
                 found: rounded(count(kernel.sigma).iter().product::<f64>() * node_bytes),
-                limit: rounded(MOST),
+                limit: rounded(LARGEST),
                 advice: "give a smaller piece of the structure, or leave out points far from all others".into(),
             });
         }

@@ -8,7 +8,7 @@ use crate::svg::shape::{
 };
 
 /// Work for each pair of edges.
-const PAIR: u64 = 10;
+const PAIR: u64 = 40;
 
 /// A link between two things, by their numbers, with the gap that it spans.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub(crate) fn links(outlines: &[&Outline<2>], most: f64, budget: &Budget) -> Res
     // What is near is linked first, so that few of the many pairs that are far apart are left to look at.
     while reach > 0.0 && found.len() + 1 < outlines.len() {
         let mut pairs = Vec::new();
-        let mut looked = 0;
+        let (mut looked, mut paid) = (0, Ok(()));
         meeting(
             &boxes,
             |_| 0.5 * reach,
@@ -43,12 +43,20 @@ pub(crate) fn links(outlines: &[&Outline<2>], most: f64, budget: &Budget) -> Res
                         |a: usize, b: usize| outlines[b].points().next().is_some_and(|p| outlines[a].contains(p));
                     let gap = if apart > 0.0 && (holds(i, j) || holds(j, i)) { 0.0 } else { apart };
                     looked += cost;
-                    pairs.extend((gap <= reach).then_some(Link { gap, ends: (i.min(j), i.max(j)) }));
+                    paid = budget.spend(PAIR * cost);
+                    let link = Link { gap, ends: (i.min(j), i.max(j)) };
+                    if gap == 0.0 {
+                        // Nothing is shorter: of what lies in one heap few pairs are left to look at.
+                        sets.join(i, j);
+                        found.push(link);
+                    } else if gap <= reach {
+                        pairs.push(link);
+                    }
                 }
-                looked < budget_of_a_round(outlines.len())
+                paid.is_ok() && looked < budget_of_a_round(outlines.len())
             },
         )?;
-        budget.spend(PAIR * looked)?;
+        paid?;
         pairs.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.ends.cmp(&b.ends)));
         for link in pairs {
             if sets.of(link.ends.0) != sets.of(link.ends.1) {
@@ -76,8 +84,16 @@ fn gap(a: &[Edge], b: &[Edge], most: f64) -> (f64, u64) {
         edges.iter().filter(|e| Bounds::around([e.0, e.1]).intersects(other)).copied().collect()
     };
     let (a, b) = (near(a, &around(b)), near(b, &around(a)));
-    let cost = 1 + (a.len() * b.len()) as u64;
-    let least = a.iter().flat_map(|&p| b.iter().map(move |&q| edge_distance(p, q))).fold(f64::INFINITY, f64::min);
+    let (mut least, mut cost) = (f64::INFINITY, 1);
+    for &p in &a {
+        for &q in &b {
+            cost += 1;
+            least = edge_distance(p, q).min(least);
+            if least == 0.0 {
+                return (0.0, cost);
+            }
+        }
+    }
     (least, cost)
 }
 

@@ -56,6 +56,12 @@ impl LoadedExemplar {
             return Err(Error::input(name, problem, "fill with --method structures, or use relief or surface"));
         }
         let text = file::decode_text(name, bytes, budget)?;
+        let start = text.trim_start();
+        let foreign = [("{", "JSON"), ("#usda", "a scene as USD")];
+        if let Some((_, what)) = foreign.into_iter().find(|(mark, _)| start.starts_with(mark)) {
+            let problem = format!("{what} where a drawing, points as CSV or curves as OBJ were expected");
+            return Err(Error::input(name, problem, "give the result as SVG or CSV, or the exemplar itself"));
+        }
         if looks_like_curves(name, &text) {
             let net = obj::read_curves(name, &text, budget)?;
             return Ok(Self::Space(net.exemplar, net.warnings));

@@ -4,7 +4,7 @@ mod repeat;
 
 pub use repeat::RepeatReport;
 
-use std::fmt;
+use std::{fmt, sync::Arc};
 
 use arabesque_core::{Budget, Error, Exemplar, Result, Role, Warning};
 use arabesque_io::{
@@ -18,9 +18,18 @@ use crate::{
     exemplar::{LoadedExemplar, points_as_drawing},
     recipe::{Format, Input, NO_RECIPE, Reading},
     resources::Resources,
-    space::SceneUnderstood,
     spacing::{length, spacing},
 };
+
+/// A scene as an exemplar.
+pub(crate) struct SceneUnderstood {
+    pub(crate) exemplar: Arc<Exemplar<3>>,
+    /// What is to be told of it.
+    pub(crate) told: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
+    /// Millions of units of work that reading it took.
+    pub(crate) work: u64,
+}
 
 /// What was understood of an exemplar.
 #[derive(Clone, Debug, Serialize)]

@@ -110,8 +110,26 @@ impl Failure {
 /// Longest message, in characters.
 const LONGEST: usize = 600;
 
+/// Digits in a row beyond which a number tells no more.
+const DIGITS: usize = 24;
+
+/// The same without the rest of numbers that are longer than anybody reads.
+fn without_long_numbers(message: &str) -> String {
+    let (mut out, mut run) = (String::with_capacity(message.len()), 0);
+    for c in message.chars() {
+        run = if c.is_ascii_digit() { run + 1 } else { 0 };
+        match run {
+            n if n <= DIGITS => out.push(c),
+            n if n == DIGITS + 1 => out.push_str("..."),
+            _ => {}
+        }
+    }
+    out
+}
+
 /// A message that fits a few lines: names and numbers come from outside, and may be of any length.
 fn shortened(message: String) -> String {
+    let message = without_long_numbers(&message);
     let count = message.chars().count();
     if count <= LONGEST {
         return message;
@@ -171,5 +189,8 @@ mod tests {
     fn messages_of_any_length_fit_a_few_lines() {
         let message = Failure::usage("é".repeat(100_000)).message();
         assert!(message.chars().count() <= LONGEST + 5, "{}", message.chars().count());
+        let number = format!("border = 1{}.5 and so on", "0".repeat(308));
+        let message = Failure::usage(number).message();
+        assert_eq!(message, format!("border = 1{}....5 and so on", "0".repeat(DIGITS - 1)));
     }
 }

@@ -294,7 +294,7 @@ fn regions_that_touch_nothing_are_named() {
         (3, "--redo 200,20,80,60", "net.svg: region 200,20,80,60: nothing of the drawing lies in or around the region"),
         (3, "--redo #void", "net.svg: region #void: nothing of the drawing lies in or around the region"),
         (3, "--redo #other", "nothing visible has the id \"other\"; use one of its ids, such as void"),
-        (4, "--redo 12,12,6,6 --set repeat=off", "net.svg: region 12,12,6,6: the domain"),
+        (4, "--redo 12,12,2,2 --set repeat=off", "net.svg: region 12,12,2,2: the domain"),
         (3, "--redo 0,0,100,100", "leaves too little of the drawing to be the example"),
         (3, "--from 0,0,50,50 --to 500,0,50,50", "net.svg: region 500,0,50,50: the region lies off the page"),
         (3, "--from 500,0,50,50 --to 0,0,50,50", "net.svg: region 500,0,50,50: the region to copy from lies off"),

@@ -546,7 +546,7 @@ fn kept_elements_are_matched_back() {
 #[test]
 fn bad_input_says_what_and_where() {
     let cases = [
-        ("", "empty"),
+        ("", "nothing in it"),
         ("hello", "t.svg:1:1: not well-formed"),
         ("<html/>", "expected <svg>"),
         ("<svg xmlns='http://www.w3.org/2000/svg'><g>", "not well-formed"),

@@ -212,9 +212,6 @@ impl Prepared {
         for (name, path) in curves {
             let cage = cut(path, &plan(name))?;
             pieces += cage.len();
-            if self.objects.is_none() {
-                budget.allow_elements(ELEMENTS * cage.len() as f64);
-            }
             budget.within("pieces along all curves", pieces, ("output-elements", limit))?;
             if self.params.stitch && self.objects.is_none() {
                 let (work, bytes) = stitch::demand(cage.forms.iter().map(|form| form.rows()).max().unwrap_or(0));
@@ -274,6 +271,7 @@ impl Prepared {
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
         let mut outcome = RibbonOutcome::new();
         let total = cages.iter().map(Cage::len).sum();
+        budget.allow_elements(ELEMENTS * total as f64);
         let prepared = budget.work();
         let mut done = 0;
         for (k, (cage, free)) in cages.iter().zip(&free.cages).enumerate() {

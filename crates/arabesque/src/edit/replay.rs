@@ -53,7 +53,7 @@ impl Replayed {
 
 /// The format in which edits are made where they do not say.
 fn usual(recipe: &Recipe) -> Format {
-    let can_be_edited = |f: &Format| matches!(f, Format::Svg | Format::Json | Format::Csv | Format::Glb | Format::Gltf);
+    let can_be_edited = |f: &Format| matches!(f, Format::Svg | Format::Json | Format::Csv | Format::Glb);
     recipe.output.format.filter(can_be_edited).unwrap_or_else(|| recipe.usual_format())
 }
 

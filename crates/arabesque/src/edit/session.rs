@@ -221,7 +221,9 @@ impl EditSession {
     pub fn propose(&self, edit: &Edit) -> Result<Proposal> {
         let budget = self.budget.fresh();
         let of = self.elements.fingerprint();
-        let edit = Edit { on: Some(self.format), of: Some(of.clone()), ..edit.clone() };
+        // As text a scene is the same document.
+        let on = if self.format == Format::Gltf { Format::Glb } else { self.format };
+        let edit = Edit { on: Some(on), of: Some(of.clone()), ..edit.clone() };
         let (changed, changes) = match &self.elements {
             Elements::Plane(file) => told(resolve(&edit, file.layout(), &budget)?, AnyChanges::Plane),
             Elements::Space(file) => told(resolve(&edit, file.layout(), &budget)?, AnyChanges::Space),

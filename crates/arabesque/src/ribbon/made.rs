@@ -25,6 +25,9 @@ use crate::{
 /// Pixels per metre of an embedded picture.
 const PER_METRE: f64 = PIXELS_PER_INCH / 0.0254;
 
+/// Elements that a piece counts as, for the work of drawing it.
+const DRAWN: f64 = 0.25;
+
 /// Bytes and work of one cell of a strip: four corners with their places in the picture, and two triangles.
 const CELL: usize = 4 * 40 + 2 * 12;
 const CELL_WORK: u64 = 300;
@@ -261,7 +264,7 @@ fn patches<const D: usize>(ribbons: &[Ribbon<D>]) -> Vec<Patch<D>> {
 impl Made for RibbonMade {
     fn encode(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
         let (recipe, budget) = (sheet.recipe, sheet.budget);
-        budget.allow_elements(self.pieces() as f64);
+        budget.allow_elements(DRAWN * self.pieces() as f64);
         self.check_resolution(sheet)?;
         let bytes = match (sheet.format, &self.laid, &*self.track) {
             (Format::Json, ..) => self.json(recipe, budget)?.into_bytes(),

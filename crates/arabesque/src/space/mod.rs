@@ -34,6 +34,7 @@ use arabesque_patterns::Prepared as Engine;
 use crate::{
     artwork::{Artwork, PhysicsSummary},
     exemplar::{LoadedExemplar, understood},
+    inspect::SceneUnderstood,
     method::{Preparation, Ready, RunContext, Show},
     plane::{in_exemplar, snapshot},
     recipe::{Input, Job, Recipe, Space},
@@ -287,16 +288,6 @@ pub(crate) fn scene_understood(input: &Input, bytes: &[u8], resources: &Resource
         told.push(format!("on a floor {count} stacks of {elements} elements, each placed as one"));
     }
     Ok(Some(SceneUnderstood { exemplar, told, warnings, work: files.budget().millions() }))
-}
-
-/// A scene as an exemplar.
-pub(crate) struct SceneUnderstood {
-    pub(crate) exemplar: Arc<Exemplar<3>>,
-    /// What is to be told of it.
-    pub(crate) told: Vec<String>,
-    pub(crate) warnings: Vec<Warning>,
-    /// Millions of units of work that reading it took.
-    pub(crate) work: u64,
 }
 
 /// Lets the elements of a run come to rest that nobody stopped; where it reached a limit, on an account of its own.

@@ -130,13 +130,18 @@ fn what_is_odd_is_told() {
             .collect::<String>(),
     );
     let wide = |k: u32| (f64::from(k % 48) / 12.0, f64::from(k / 48) / 12.0);
-    let slope: String =
-        (0..2304).map(wide).map(|(x, y)| format!("{x} {y} {}\n", 0.1 * (x * y * 0.2).exp().ln_1p())).collect();
-    folder.write("slope.xyz", slope);
+    let chance = |k: u32| ((f64::from(k) * 12.9898).sin() * 43_758.545).rem_euclid(1.0);
+    let hill = |k: u32, (x, y): (f64, f64)| {
+        let (a, b, width) = (4.0 * chance(4 * k), 4.0 * chance(4 * k + 1), 0.15 + 0.45 * chance(4 * k + 2));
+        0.4 * (chance(4 * k + 3) - 0.5) * (-((x - a).powi(2) + (y - b).powi(2)) / (width * width)).exp()
+    };
+    let height = |at: (f64, f64)| (0..25).map(|k| hill(k, at)).sum::<f64>();
+    let hills: String = (0..2304).map(wide).map(|(x, y)| format!("{x} {y} {}\n", height((x, y)))).collect();
+    folder.write("hills.xyz", hills);
     for (name, word) in [
         ("strays.xyz", "3 of 2307 points lie alone"),
         ("halves.csv", "normals face opposite ways"),
-        ("slope.xyz", "does not repeat"),
+        ("hills.xyz", "does not repeat"),
     ] {
         let told = common::stderr(&folder.run(&format!("relief {name} --extent 4x3 -o {name}.ply")));
         assert!(told.contains(word), "{name}: {told}");

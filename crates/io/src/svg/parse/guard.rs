@@ -375,6 +375,6 @@ mod tests {
 
     #[test]
     fn nothing_is_not_an_svg() {
-        assert!(message(" \n").contains("empty"));
+        assert!(message(" \n").contains("nothing in it"));
     }
 }

@@ -151,7 +151,7 @@ mod tests {
             ("fill", "\"/><script>", "a colour"),
             ("opacity", "nan", "from 0 to 1"),
             ("opacity", "1.5", "from 0 to 1"),
-            ("stroke-width", "-1", "not negative"),
+            ("stroke-width", "-1", "from 0 to below 1e9"),
         ] {
             let message = check_paint(&paint(property, value)).unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");

@@ -169,9 +169,9 @@ const LINE: usize = 110;
 const SUGGESTED_NEIGHBOURS: f64 = 12.0;
 
 /// What was understood of a scene of meshes, and what is to be told of it.
-pub(crate) fn of_scene(input: &Input, scene: &SceneUnderstood) -> Report {
-    let (told, warnings) = (scene.told.clone(), scene.warnings.clone());
-    Report { told, warnings, work: scene.work, ..describe(input, "scene of meshes", &scene.exemplar) }
+pub(crate) fn of_scene(input: &Input, scene: SceneUnderstood) -> Report {
+    let SceneUnderstood { exemplar, told, warnings, work } = scene;
+    Report { told, warnings, work, ..describe(input, "scene of meshes", &exemplar) }
 }
 
 /// What was understood of an exemplar that is no scene of meshes.

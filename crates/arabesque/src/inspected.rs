@@ -16,7 +16,7 @@ use crate::{
 pub fn inspect(input: &Input, reading: impl Into<Reading>, resources: &Resources) -> Result<Report> {
     let bytes = resources.read(input)?;
     match scene_understood(input, &bytes, resources)? {
-        Some(scene) => Ok(of_scene(input, &scene)),
+        Some(scene) => Ok(of_scene(input, scene)),
         None => of_other(input, &bytes, reading, resources),
     }
 }

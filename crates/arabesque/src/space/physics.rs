@@ -145,7 +145,7 @@ impl Physical {
         let given = outcome.placements.clone();
         let budget = budget.stage("settling");
         let mut run = self.rest(&mut outcome.placements, &self.surroundings, &budget)?;
-        let open = self.open_above();
+        let (open, before) = (self.open_above(), outcome.placements.len());
         for _ in 0..if self.is_heap { REFILLS } else { 0 } {
             let most = (MORE * given.len() as f64) as usize + given.len();
             let room = most.min(budget.limits().output_elements).saturating_sub(outcome.placements.len());
@@ -158,7 +158,7 @@ impl Physical {
             run = Run { steps: run.steps + again.steps, before: run.before, ..again };
         }
         // A heap that goes on beyond the box: its upper side cuts it, as the others do.
-        if let Some(bounds) = self.surroundings.middles {
+        if let Some(bounds) = self.surroundings.middles.filter(|_| outcome.placements.len() > before) {
             let stays = |(place, size): (Vector<3>, f64)| bounds.grown(SLACK * size).contains(place);
             outcome.placements.retain(|p| p.frozen.is_some() || stays(self.middle(p)));
         }

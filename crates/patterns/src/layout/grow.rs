@@ -9,7 +9,7 @@
 //! Sites that do not see one another are worked on at the same time; the result does not depend on how many threads do
 //! it.
 
-use arabesque_core::{Buckets, Budget, Numbered, Request, Result, Stream, Vector};
+use arabesque_core::{Buckets, Budget, Meter, Numbered, Request, Result, Stream, Vector};
 use rayon::prelude::*;
 
 use crate::{
@@ -174,8 +174,7 @@ impl<'a, const D: usize> Grower<'a, D> {
         if !coverage.is_open_within(site, self.source.params.patch * frame.spacing_scale, &mut meter)? {
             return Ok(None);
         }
-        let (here, looked) = PatchSite::new(&self.source, site, frame, canvas, coverage);
-        meter.spend(DISTANCE * looked)?;
+        let here = self.here(site, canvas, coverage, &mut meter)?;
         let candidates: Vec<_> = here
             .candidates(self.source.params.anchors, random)
             .into_iter()
@@ -202,10 +201,22 @@ impl<'a, const D: usize> Grower<'a, D> {
         let mut meter = self.budget.meter();
         meter.spend(library.len() as u64)?;
         let centre = library.centre[usable[random.below(usable.len())]];
+        let here = self.here(site, canvas, coverage, &mut meter)?;
+        Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
+    }
+
+    /// A site with what is around it.
+    fn here<'s>(
+        &'s self,
+        site: Vector<D>,
+        canvas: &Canvas<D>,
+        coverage: &'s Coverage<D>,
+        meter: &mut Meter<'_>,
+    ) -> Result<PatchSite<'s, D>> {
         let frame = self.request.fields.frame(site);
         let (here, looked) = PatchSite::new(&self.source, site, frame, canvas, coverage);
         meter.spend(DISTANCE * looked)?;
-        Ok(Some(Patch { site, centre, elements: here.additions(centre, &mut meter)? }))
+        Ok(here)
     }
 
     /// The first of the candidates that cost least, noise included. All are rated by the elements nearest to them, and then priced the

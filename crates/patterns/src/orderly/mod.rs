@@ -1,16 +1,18 @@
 //! Drawings that do not repeat and still keep to lines of their own: walls, traces and tiles of lines on squared paper
-//! (`ruled`), boards in rows (`boards`); and straight lines of others, made straight again (`straight`).
+//! (`ruled`), boards in rows (`boards`), lines that run side by side (`abreast`); and straight lines of others, made straight again (`straight`).
 //!
 //! Neighbourhoods of samples would bend what is straight there, since nothing tells them that it is. Such drawings are
-//! continued on their own terms, node by node or board by board, so that what is straight stays straight and what lies in line stays
+//! continued on their own terms, node by node, board by board or line by line, so that what is straight stays straight and what lies in line stays
 //! in line.
 
+pub(crate) mod abreast;
 pub(crate) mod boards;
 pub(crate) mod ruled;
 pub(crate) mod straight;
 
 use arabesque_core::{Budget, Exemplar, Outcome, Request, Result, Snapshot, Watch};
 
+use abreast::Abreast;
 use boards::Boards;
 use ruled::Ruled;
 
@@ -24,6 +26,8 @@ enum Kind {
     Ruled(Ruled),
     /// Boards in rows.
     Boards(Boards),
+    /// Lines side by side.
+    Abreast(Abreast),
 }
 
 impl Orderly {
@@ -35,7 +39,10 @@ impl Orderly {
         if let Some(ruled) = Ruled::new(exemplar, budget)? {
             return Ok(Some(Self(Kind::Ruled(ruled))));
         }
-        Ok(Boards::new(exemplar, budget)?.map(|boards| Self(Kind::Boards(boards))))
+        if let Some(boards) = Boards::new(exemplar, budget)? {
+            return Ok(Some(Self(Kind::Boards(boards))));
+        }
+        Ok(Abreast::new(exemplar, budget)?.map(|lines| Self(Kind::Abreast(lines))))
     }
 
     /// Fills a domain; `None` where the request asks for what only the engine for irregular patterns does.
@@ -53,6 +60,7 @@ impl Orderly {
         match &self.0 {
             Kind::Ruled(ruled) => ruled.fill(exemplar, request, watch),
             Kind::Boards(boards) => boards.fill(exemplar, request, watch),
+            Kind::Abreast(lines) => lines.fill(exemplar, request, watch),
         }
     }
 }

@@ -26,8 +26,8 @@ const CUT: f64 = 0.15;
 /// How far from the frame a cut may be, as a share of the diagonal of the element.
 const NEAR: f64 = 0.002;
 /// The same two for edges that lie on the frame as exactly as numbers are written: no whole element has such edges by
-/// chance.
-const EXACT_CUT: f64 = 0.03;
+/// chance. A ring at the end of a long line has two short ones, where the frame has cut it.
+const EXACT_CUT: f64 = 0.008;
 const EXACTLY_NEAR: f64 = 1e-5;
 
 /// How near to a side of the frame a stroke ends that is cut there, as a share of the frame.
@@ -249,6 +249,10 @@ mod tests {
         assert!(is_cut(&[(2.0, 0.0), (3.0, 0.0), (5.0, 9.0), (1.0, 9.0)]), "only the tip is cut off");
         let over: Vec<_> = arc(0.0, 2.0 * half);
         assert!(!is_cut(&over));
+        // A fork whose tips lie on the frame: half of a ring at the end of a long line.
+        let fork = [(0.0, 5.0), (0.2, 5.1), (9.0, 5.1), (9.0, 5.2), (0.2, 5.2), (0.0, 5.3), (0.0, 5.25), (0.2, 5.15)];
+        let fork = [&fork[..], &[(0.0, 5.05)]].concat();
+        assert!(is_cut(&fork), "two tips of a twentieth each");
     }
 
     #[test]

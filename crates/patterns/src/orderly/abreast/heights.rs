@@ -11,7 +11,7 @@ const HELD: f64 = 1.5;
 /// Rounds in which lines that come too near are pushed apart, and the factor by which this counts more in each.
 const ROUNDS: (usize, f64) = (2, 12.0);
 /// Precision of the heights at first, that of what is corrected, and steps to it at most.
-const SOLVED: (f64, f64, usize) = (1e-4, 1e-2, 2000);
+const SOLVED: (f64, f64, usize) = (5e-4, 1e-2, 2000);
 /// Work of a round for each place.
 const WORK: u64 = 30;
 
@@ -35,7 +35,9 @@ struct Heights<'a> {
     /// For each place, to the next of its line and to the line above: the difference that is wanted, and its weight.
     along: Vec<(f64, f64)>,
     across: Vec<(f64, f64)>,
-    /// The places before and below.
+    /// The places after and above, and those before and below; at the edge the place itself, and none.
+    ahead: Vec<usize>,
+    above: Vec<usize>,
     before: Vec<Option<usize>>,
     below: Vec<Option<usize>>,
     held: f64,
@@ -69,17 +71,18 @@ impl<'a> Heights<'a> {
         let count = sheet.rows * sheet.columns;
         let (mut before, mut below) = (vec![None; count], vec![None; count]);
         let (mut along, mut across) = (vec![(0.0, 0.0); count], vec![(0.0, 0.0); count]);
+        let (mut ahead, mut above): (Vec<usize>, Vec<usize>) = ((0..count).collect(), (0..count).collect());
         let square = [measures.step.powi(-2), measures.gap.powi(-2)];
         for row in 0..sheet.rows {
             for column in 0..sheet.columns {
                 let n = row * sheet.columns + column;
                 if let Some(next) = sheet.number(row, column + 1).filter(|next| *next != n) {
-                    before[next] = Some(n);
+                    (ahead[n], before[next]) = (next, Some(n));
                     let (rise, weight) = wanted.rises[n];
                     along[n] = if weight > 0.0 { (rise, square[0]) } else { (0.0, UNKNOWN * square[0]) };
                 }
                 if let Some(next) = sheet.number(row + 1, column).filter(|next| *next != n) {
-                    below[next] = Some(n);
+                    (above[n], below[next]) = (next, Some(n));
                     let (gap, weight) = wanted.gaps[n];
                     let known = (gap - measures.gap, square[1]);
                     across[n] = if weight > 0.0 { known } else { (0.0, UNKNOWN * square[1]) };
@@ -88,19 +91,14 @@ impl<'a> Heights<'a> {
         }
         let held = (HELD / measures.length).powi(2);
         let so_far = vec![Vector::ZERO; count];
-        Self { sheet, measures, along, across, before, below, held, so_far }
-    }
-
-    fn next(&self, n: usize, way: [usize; 2]) -> usize {
-        let (row, column) = (n / self.sheet.columns, n % self.sheet.columns);
-        self.sheet.number(row + way[0], column + way[1]).unwrap_or(n)
+        Self { sheet, measures, along, across, ahead, above, before, below, held, so_far }
     }
 
     /// Asks for more room where lines come too near; whether there are such places.
     fn push_apart(&mut self) -> bool {
         let mut is_any = false;
         for n in 0..self.so_far.len() {
-            let above = self.next(n, [1, 0]);
+            let above = self.above[n];
             if above == n || self.across[n].1 == 0.0 {
                 continue;
             }
@@ -145,7 +143,7 @@ impl<'a> Heights<'a> {
 
 impl Equations<1> for Heights<'_> {
     fn row(&self, i: usize, x: &[Vector<1>]) -> Vector<1> {
-        let (ahead, above) = (self.next(i, [0, 1]), self.next(i, [1, 0]));
+        let (ahead, above) = (self.ahead[i], self.above[i]);
         let mut sum = x[i] * self.held + (x[i] - x[ahead]) * self.along[i].1 + (x[i] - x[above]) * self.across[i].1;
         if let Some(k) = self.before[i] {
             sum += (x[i] - x[k]) * self.along[k].1;

@@ -26,7 +26,7 @@ const NARROW: f64 = 0.35;
 /// what is thin would cancel out.
 const THINNER: [f64; 6] = [1.0, 0.85, 0.72, 0.6, 0.52, 0.45];
 /// How alike normals under one Gaussian are at least, in the mean.
-const ALIKE: f64 = 0.72;
+const ALIKE: f64 = 0.8;
 /// From this strength on an exemplar repeats regularly.
 const REGULAR: f64 = 0.5;
 /// Smallest window, in spacings.

@@ -271,6 +271,15 @@ mod tests {
     }
 
     #[test]
+    fn classes_are_numbers_and_words_are_passed_over() {
+        let Cloud::Plane(points) = read("x,y,class\n0,0,2\n1,0,-1\n").unwrap().points else { panic!("no z was given") };
+        assert_eq!(points.classes, Some(vec![2, -1]));
+        let words = read("x,y,class\n0,0,leaf\n1,0,stem\n").unwrap();
+        assert_eq!(words.warnings[0].message, "a.csv: columns passed over: class");
+        assert!(read("x,y,class\n0,0,1\n1,0,stem\n").unwrap_err().to_string().contains("is not a number"));
+    }
+
+    #[test]
     fn two_columns_need_no_header_and_z_makes_space() {
         assert!(matches!(read("0 0\n1 0\n").unwrap().points, Cloud::Plane(p) if p.len() == 2));
         assert!(matches!(read("x\ty\tz\n0\t0\t1\n").unwrap().points, Cloud::Space(p) if p.len() == 1));
@@ -317,7 +326,7 @@ mod tests {
         #[test]
         fn what_is_written_is_read_again(
             list in prop::collection::vec((0..4096_i32, 0..4096_i32, any::<[u8; 3]>(), any::<i32>()), 1..20),
-            has: [bool; 5],
+            has: [bool; 6],
         ) {
             // The first two corners make the extent the same each time.
             let corners = [(0, 0, [0; 3], 0), (4096, 0, [255; 3], 1)];
@@ -329,6 +338,7 @@ mod tests {
                 radii: has[2].then(|| list.iter().map(|p| f64::from(p.0 + 1) * 0.125).collect()),
                 groups: has[3].then(|| list.iter().map(|p| p.3).collect()),
                 elements: has[4].then(|| list.iter().map(|p| p.1).collect()),
+                classes: has[5].then(|| list.iter().map(|p| p.0).collect()),
             };
             let text = write_table(&points, Some("seed = 1\n"), &Budget::default()).unwrap();
             prop_assert_eq!(recipe_of(&text), Some("seed = 1\n".to_owned()));

@@ -224,3 +224,35 @@ pub(crate) fn inner(a: &Weights, b: &Weights) -> f32 {
     }
     lanes[0] + lanes[1] + (lanes[2] + lanes[3])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_two_classes_are_equally_unlike() {
+        for count in 2..=8 {
+            let points = PointSet {
+                classes: Some((0..count).map(|k| 7 * k - 3).collect()),
+                ..PointSet::at(vec![Vector([0.0, 1.0]); count as usize])
+            };
+            let channels = Channels::new(&points, &StructureParams::default());
+            let weights: Vec<Weights> = (0..count as usize).map(|i| channels.of(&points, i)).collect();
+            for (i, a) in weights.iter().enumerate() {
+                assert_eq!(channels.class(a), Some(7 * i as i32 - 3));
+                assert!((inner(a, a) - (1.0 + 0.7 * (count - 1) as f32)).abs() < 1e-5);
+                assert!(weights[..i].iter().all(|b| (inner(a, b) - 0.3).abs() < 1e-5));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_between_classes_becomes_the_nearest() {
+        let points = PointSet { classes: Some(vec![1, 2, 3]), ..PointSet::at(vec![Vector([0.0, 1.0]); 3]) };
+        let channels = Channels::new(&points, &StructureParams::default());
+        let [a, b] = [0, 1].map(|i| channels.of(&points, i));
+        let between: Weights = std::array::from_fn(|c| 0.6 * a[c] + 0.4 * b[c]);
+        assert_eq!(channels.classed(between)[1..], a[1..]);
+        assert!(!Channels::new(&PointSet { classes: None, ..points }, &StructureParams::default()).has_classes());
+    }
+}

@@ -1,5 +1,4 @@
 //! The output while it is made, and what comes of it.
 
 pub(crate) mod finish;
-mod parts;
 pub(crate) mod state;

@@ -162,7 +162,8 @@ fn remove<const D: usize>(
         heads.into_iter().map(|i| (worth(&change, i), i)).filter(|c| c.0 < -WORTH).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut gone = vec![0.0; n];
-    let own = own_share(level);
+    // Of mixtures, the continuous part says how many there are.
+    let own = if level.pattern.gaps.usual().is_some() { own_share(level) } else { 0.0 };
     for (_, i) in order {
         if removed[i] {
             continue;

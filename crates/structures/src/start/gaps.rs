@@ -4,7 +4,7 @@
 use arabesque_core::{Budget, Matrix, Result, Similarity, Stage, Stream, Vector};
 
 use super::cells::Cells;
-use crate::{energy::level::Level, exemplar::bodies::LOOSE, output::state::Output};
+use crate::{energy::level::Level, output::state::Output};
 
 /// Elements and places that are tried.
 const TRIES: Stage = Stage::new(48);
@@ -25,7 +25,7 @@ pub(crate) fn fill<const D: usize>(
     budget: &Budget,
 ) -> Result<()> {
     let pattern = level.pattern;
-    let Some(gap) = pattern.gaps.usual().filter(|_| !pattern.body_of.contains(&LOOSE)) else { return Ok(()) };
+    let Some(gap) = pattern.gaps.usual() else { return Ok(()) };
     let usual = pattern.bodies.len() as f64 / pattern.measure() * level.tables.kernel.volume(pattern.repeats());
     let mut points = Cells::new(gap.max(pattern.spacing), level.domain);
     output.places.iter().for_each(|&p| points.add(p));

@@ -113,18 +113,28 @@ const LONGEST: usize = 600;
 /// Digits in a row beyond which a number tells no more.
 const DIGITS: usize = 24;
 
-/// The same without the rest of numbers that are longer than anybody reads.
+/// The same without the rest of numbers that are longer than anybody reads. Names of files stay whole.
 fn without_long_numbers(message: &str) -> String {
-    let (mut out, mut run) = (String::with_capacity(message.len()), 0);
-    for c in message.chars() {
-        run = if c.is_ascii_digit() { run + 1 } else { 0 };
-        match run {
-            n if n <= DIGITS => out.push(c),
-            n if n == DIGITS + 1 => out.push_str("..."),
-            _ => {}
+    let mut out = String::with_capacity(message.len());
+    for word in message.split_inclusive(char::is_whitespace) {
+        let mut run = 0;
+        for c in word.chars() {
+            run = if c.is_ascii_digit() && !is_name(word) { run + 1 } else { 0 };
+            match run {
+                n if n <= DIGITS => out.push(c),
+                n if n == DIGITS + 1 => out.push_str("..."),
+                _ => {}
+            }
         }
     }
     out
+}
+
+/// Whether a word looks like the name of a file: a path, or one with an extension.
+fn is_name(word: &str) -> bool {
+    let bare = word.trim_end_matches(|c: char| !c.is_alphanumeric());
+    let extension = |(_, end): (&str, &str)| !end.is_empty() && end.len() <= 4 && end.chars().all(char::is_alphabetic);
+    word.contains(['/', '\\']) || bare.rsplit_once('.').is_some_and(extension)
 }
 
 /// A message that fits a few lines: names and numbers come from outside, and may be of any length.
@@ -192,5 +202,8 @@ mod tests {
         let number = format!("border = 1{}.5 and so on", "0".repeat(308));
         let message = Failure::usage(number).message();
         assert_eq!(message, format!("border = 1{}....5 and so on", "0".repeat(DIGITS - 1)));
+        for name in [format!("{}.svg: no element", "7".repeat(40)), format!("a/{}: not there", "7".repeat(40))] {
+            assert_eq!(Failure::usage(name.clone()).message(), name);
+        }
     }
 }

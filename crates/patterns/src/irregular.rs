@@ -157,7 +157,10 @@ where
         }
         if cut_short.is_none() && self.params.clearance == Clearance::Repaired {
             let (sampled, targets) = (&self.levels[used[used.len() - 1]], &targets[targets.len() - 1]);
-            cut_short = solids::mend(&mut found.placements, &self.exemplar, &sampled.library, last, targets).err();
+            cut_short = {
+                let wanted = (targets, self.params.even == Switch::On);
+                solids::mend(&mut found.placements, &self.exemplar, &sampled.library, last, wanted).err()
+            };
         }
         if found.placements.is_empty() && found.curves.is_empty() {
             if let Some(error) = cut_short {

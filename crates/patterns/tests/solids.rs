@@ -8,7 +8,7 @@ use arabesque_core::{
     Border, Bounds, Budget, Class, Domain, Element, Exemplar, Grid, Outcome, Outline, Request, Role, Similarity, Solid,
     Stage, Stream, Unobserved, Vector,
 };
-use arabesque_patterns::{Params, Prepared};
+use arabesque_patterns::{Params, Prepared, Switch};
 
 const RADIUS: f64 = 0.45;
 
@@ -96,6 +96,58 @@ fn whole_balls_lie_inside_where_the_border_wants_it() {
         let c = placement.transform.apply(centre(placement.source));
         let room = (0..3).map(|k| c[k].min([7.3, 6.1, 6.6][k] - c[k])).fold(f64::INFINITY, f64::min);
         assert!(room > 0.95 * RADIUS, "{room}");
+    }
+}
+
+/// Balls at random that hardly touch, as many as found a place in 3000 tries.
+fn strewn() -> Exemplar<3> {
+    let mut exemplar = exemplar();
+    let (solid, example) = (exemplar.solids[0].clone(), exemplar.elements[0].clone());
+    let mut stream = Stream::new(9, Stage::TEST, 0);
+    let mut centres: Vec<Vector<3>> = Vec::new();
+    for _ in 0..3000 {
+        let p = Vector(std::array::from_fn(|_| stream.range(0.0, 5.0)));
+        if centres.iter().all(|c| (*c - p).norm() > 1.98 * RADIUS) {
+            centres.push(p);
+        }
+    }
+    let element = |p: &Vector<3>| {
+        let pose = Similarity::shift(*p);
+        let outline = Outline { rings: vec![solid.points.iter().map(|q| pose.apply(*q)).collect()] };
+        Element { centre: *p, pose, outline, ..example.clone() }
+    };
+    exemplar.elements = centres.iter().map(element).collect();
+    exemplar.solids = vec![solid.clone(); exemplar.elements.len()];
+    exemplar
+}
+
+/// The largest empty balls at random places of the inner part of a box: the radius that one in a hundred exceeds.
+fn emptiness(centres: &[Vector<3>], size: f64) -> f64 {
+    let mut stream = Stream::new(3, Stage::TEST, 0);
+    let room = |p: Vector<3>| centres.iter().map(|c| (*c - p).norm() - RADIUS).fold(f64::INFINITY, f64::min);
+    let mut all: Vec<f64> =
+        (0..20_000).map(|_| room(Vector(std::array::from_fn(|_| stream.range(1.0, size - 1.0))))).collect();
+    all.sort_by(f64::total_cmp);
+    all[all.len() * 99 / 100]
+}
+
+#[test]
+fn voids_that_the_exemplar_does_not_have_are_closed() {
+    let exemplar = strewn();
+    let own: Vec<_> = exemplar.elements.iter().map(|e| e.centre).collect();
+    let made = |even: Switch, seed: u64| {
+        let params = Params { even, ..Params::default() };
+        let prepared = Prepared::new(exemplar.clone(), &params, &Budget::default()).unwrap();
+        let mut request = Request::new(Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(6.5))));
+        request.seed = seed;
+        let outcome = prepared.run(&request, &mut Unobserved).unwrap();
+        let centres: Vec<_> = outcome.placements.iter().map(|p| p.transform.apply(own[p.source])).collect();
+        emptiness(&centres, 6.5)
+    };
+    let natural = emptiness(&own, 5.0);
+    for seed in 0..2 {
+        let (without, with) = (made(Switch::Off, seed), made(Switch::On, seed));
+        assert!(with < without && with < 1.15 * natural, "seed {seed}: {without} without, {with} with, {natural}");
     }
 }
 

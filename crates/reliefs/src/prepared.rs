@@ -21,6 +21,8 @@ use crate::{
 const EACH: f64 = 60_000.0;
 /// The same as they usually are.
 const WORK: f64 = 10_000.0;
+/// Questions to a mesh for each point of the result.
+const QUESTIONS: f64 = 20.0;
 /// Overlap of the patches in a gap at least, as a share of the patch.
 const GAP_OVERLAP: f64 = 0.2;
 /// How many more patches are tried in a gap.
@@ -128,15 +130,16 @@ impl Prepared {
         let canvas: Box<dyn Canvas + '_> = match &request.ground {
             Ground::Plane(size) | Ground::Tile(size) => {
                 let is_tile = matches!(request.ground, Ground::Tile(_));
-                self.allow(self.expected(size[0] * size[1]), &budget, watch)?;
+                self.allow((self.expected(size[0] * size[1]), 0.0), &budget, watch)?;
                 Box::new(PlaneCanvas::new(both, *size, is_tile, request.seed, &budget)?)
             }
             Ground::Hole => {
-                self.allow(2.0 * self.points() as f64, &budget, watch)?;
+                self.allow((2.0 * self.points() as f64, 0.0), &budget, watch)?;
                 Box::new(HoleCanvas::new(both, request.seed, &budget)?)
             }
             Ground::Mesh(mesh, directions, scale) => {
-                self.allow(self.expected(mesh.area() / (scale * scale)), &budget, watch)?;
+                let expected = self.expected(mesh.area() / (scale * scale));
+                self.allow((expected, QUESTIONS * mesh.dearness()), &budget, watch)?;
                 Box::new(MeshCanvas::new(both, (mesh, directions, *scale), request.seed, &budget)?)
             }
         };
@@ -150,12 +153,13 @@ impl Prepared {
         size * area / (all[0] * all[1])
     }
 
-    /// Allows the work of as many points, and tells how much that will be.
-    fn allow(&self, expected: f64, budget: &Budget, watch: &mut dyn Watch<PointSet<3>>) -> Result<()> {
+    /// Allows the work of as many points, and tells how much that will be, with what each takes beyond the usual.
+    fn allow(&self, (expected, beyond): (f64, f64), budget: &Budget, watch: &mut dyn Watch<PointSet<3>>) -> Result<()> {
         let limits = budget.limits();
-        budget.within("points of the result", expected as usize, ("output-elements", limits.output_elements))?;
+        budget.within_expected("points of the result", expected, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected * EACH / 1e6);
-        watch.foreseen(&Forecast { count: expected, work: expected * WORK, allowed: budget.allowed() as f64 });
+        let work = expected * (WORK + beyond);
+        watch.foreseen(&Forecast { count: expected, work, allowed: budget.allowed() as f64 });
         Ok(())
     }
 

@@ -153,7 +153,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let layout = Layout::new(prepared, &*request.territory, &budget)?;
         let expected = layout.expected(prepared);
         let limits = budget.limits();
-        budget.within("points of the result", expected as usize, ("output-elements", limits.output_elements))?;
+        budget.within_expected("points of the result", expected, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected);
         let (mut scales, mut layouts) = (Vec::new(), vec![layout]);
         let layout = &layouts[0];

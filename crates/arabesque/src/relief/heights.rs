@@ -64,7 +64,7 @@ pub(super) fn encode(points: &PointSet<3>, grid: &Grid, recipe: Option<&str>, bu
     };
     let pixels = size.map(|s| (s / grid.pixel).round().max(1.0));
     let limit = budget.limits().pixels;
-    budget.within("pixels of the height field", (pixels[0] * pixels[1]) as usize, ("pixels", limit))?;
+    budget.within_expected("pixels of the height field", pixels[0] * pixels[1], ("pixels", limit))?;
     if grid.is_tile {
         let margin = 4.0 * grid.spacing;
         for i in 0..positions.len() {

@@ -6,7 +6,10 @@ use std::sync::{
 };
 
 use super::{Limits, Stopper};
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    text::rounded,
+};
 
 /// Work units in one unit of [`Limits::work`].
 const MILLION: u64 = 1_000_000;
@@ -169,6 +172,11 @@ impl Budget {
         self.check()
     }
 
+    /// Counts work of what cannot fail, such as the answer to a question; whoever draws next is told. The loop around it has to draw too.
+    pub fn owe(&self, units: u64) {
+        self.account.work.fetch_add(units, Ordering::Relaxed);
+    }
+
     /// Whether `units` more of work would still be within the limit; nothing is drawn.
     ///
     /// # Errors
@@ -228,6 +236,17 @@ impl Budget {
             return Ok(());
         }
         Err(self.over(what, found.to_string(), limit, found as u64))
+    }
+
+    /// Refuses what was worked out, and may be beyond any whole number, where it is over one of the limits.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when `expected` is larger, or is not a number.
+    pub fn within_expected(&self, what: &str, expected: f64, limit: (&'static str, usize)) -> Result<()> {
+        if expected <= limit.1 as f64 {
+            return Ok(());
+        }
+        Err(self.over(what, rounded(expected.ceil()), limit, expected.ceil() as u64))
     }
 
     fn over(&self, what: &str, found: String, (name, limit): (&str, usize), enough: u64) -> Error {

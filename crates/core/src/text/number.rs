@@ -1,8 +1,13 @@
 //! Numbers as text: few digits, and the same bytes everywhere.
 
+use std::fmt::Write as _;
+
 /// How many decimals are worth writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decimals(usize);
+
+/// Powers of ten, by their exponents.
+const POWERS: [u64; 10] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
 
 impl Decimals {
     /// Six significant digits of a length `extent`: 3 decimals for a page of 720 units, 6 for one of 1 unit.
@@ -31,11 +36,56 @@ impl Decimals {
 
     /// `value` rounded to these decimals, without trailing zeros and without `-0`.
     pub fn format(self, value: f64) -> String {
-        let mut text = format!("{value:.*}", self.0);
-        if text.contains('.') {
+        let mut text = String::new();
+        self.push(&mut text, value);
+        text
+    }
+
+    /// Appends `value` to a text as [`Decimals::format`] writes it.
+    pub fn push(self, text: &mut String, value: f64) {
+        match self.counted(value) {
+            Some((count, is_negative)) => self.push_count(text, count, is_negative),
+            None => self.push_exactly(text, value),
+        }
+    }
+
+    /// How often the last decimal goes into `value`, and whether it is below 0; nothing where a float does not tell for sure.
+    fn counted(self, value: f64) -> Option<(u64, bool)> {
+        let scaled = value.abs() * *POWERS.get(self.0)? as f64;
+        let down = scaled.floor();
+        let rest = scaled - down;
+        // The product is off by less than 1e-7 below 1e9, and a half is rounded by the last bit of the value itself.
+        let is_sure = scaled < 1e9 && (rest - 0.5).abs() > 1e-6;
+        is_sure.then(|| (down as u64 + u64::from(rest > 0.5), value < 0.0))
+    }
+
+    fn push_count(self, text: &mut String, count: u64, is_negative: bool) {
+        if is_negative && count > 0 {
+            text.push('-');
+        }
+        let unit = POWERS[self.0];
+        let (whole, mut rest) = (count / unit, count % unit);
+        // Writing to a string never fails.
+        let _ = write!(text, "{whole}");
+        if rest > 0 {
+            let mut width = self.0;
+            while rest.is_multiple_of(10) {
+                rest /= 10;
+                width -= 1;
+            }
+            let _ = write!(text, ".{rest:0width$}");
+        }
+    }
+
+    fn push_exactly(self, text: &mut String, value: f64) {
+        let start = text.len();
+        let _ = write!(text, "{value:.*}", self.0);
+        if text[start..].contains('.') {
             text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
         }
-        if text == "-0" { "0".to_owned() } else { text }
+        if &text[start..] == "-0" {
+            text.replace_range(start.., "0");
+        }
     }
 
     /// `value` rounded to these decimals.
@@ -125,6 +175,31 @@ mod tests {
         ];
         for (value, text) in cases {
             assert_eq!(rounded(value), text);
+        }
+    }
+
+    #[test]
+    fn short_cuts_write_what_exact_rounding_writes() {
+        let exactly = |d: Decimals, value: f64| {
+            let mut text = String::from("L");
+            d.push_exactly(&mut text, value);
+            text
+        };
+        let mut value = 0.379_128_4_f64;
+        for n in 0..20_000 {
+            // The logistic map visits everything in between 0 and 1.
+            value = 3.999 * value * (1.0 - value);
+            let size = 10_f64.powi(n % 16 - 5);
+            for d in (0..=10).map(Decimals) {
+                for v in [value * size, -value * size, (value * size).round() * 0.5] {
+                    assert_eq!(format!("L{}", d.format(v)), exactly(d, v), "{v} with {d:?}");
+                }
+            }
+        }
+        for v in [0.0, -0.0, 0.5, -0.5, 1.5, 2.5, 1e300, f64::NAN, f64::INFINITY, 0.0005, 0.9995, 999.9995, -1e-9] {
+            for d in (0..=12).map(Decimals) {
+                assert_eq!(format!("L{}", d.format(v)), exactly(d, v), "{v} with {d:?}");
+            }
         }
     }
 

@@ -78,11 +78,11 @@ pub(crate) fn is_straight<const D: usize>(c: &Cubic<D>, tolerance: f64) -> bool 
 
 fn push<const D: usize>(data: &mut String, points: &[Vector<D>], decimals: Decimals) {
     for (k, value) in points.iter().flat_map(|p| p.0).enumerate() {
-        let text = decimals.format(value);
-        if k > 0 && !text.starts_with('-') {
-            data.push(' ');
+        let start = data.len();
+        decimals.push(data, value);
+        if k > 0 && !data[start..].starts_with('-') {
+            data.insert(start, ' ');
         }
-        data.push_str(&text);
     }
 }
 

@@ -179,7 +179,7 @@ impl Grid {
         };
         let count = (rows.end() - rows.start() + 3) as f64 * (columns.end() - columns.start() + 3) as f64;
         budget.spend((ASK * count) as u64)?;
-        budget.within("cells of the repeat", count as usize, ("output-elements", budget.limits().output_elements))?;
+        budget.within_expected("cells of the repeat", count, ("output-elements", budget.limits().output_elements))?;
         let rows = rows.start() - 1..=rows.end() + 1;
         let all = (columns.start() - 1..=columns.end() + 1).flat_map(|j| rows.clone().map(move |i| [i, j]));
         Ok(all.filter(near).collect())

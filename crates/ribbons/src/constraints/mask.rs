@@ -197,6 +197,8 @@ fn overlaps(cages: &[Cage<2>], id: PieceId, rivals: &[PieceId], offsets: &mut Of
     let bounds = form.bounds();
     let budget = offsets.budget;
     let mut meter = budget.meter();
+    // Whoever took a pixel takes its neighbour as a rule, and is asked first.
+    let mut last = 0;
     for y in bounds.min[1].floor() as i32..=bounds.max[1].ceil() as i32 {
         for x in bounds.min[0].floor() as i32..=bounds.max[0].ceil() as i32 {
             meter.spend(PIXEL)?;
@@ -206,12 +208,16 @@ fn overlaps(cages: &[Cage<2>], id: PieceId, rivals: &[PieceId], offsets: &mut Of
             }
             let p = cage.canvas(k, q);
             let own = (cage.distance(k, p), id);
-            meter.spend(RIVAL * rivals.len() as u64)?;
-            let taken = rivals.iter().any(|&(d, j)| {
+            let takes = |&n: &usize| {
+                let (d, j) = rivals[n];
                 let rival = &cages[d];
-                rival.forms[j].depth(rival.local(j, p)) > INSIDE && nearer((rival.distance(j, p), (d, j)), own)
-            });
-            if taken {
+                nearer((rival.distance(j, p), (d, j)), own) && rival.forms[j].depth(rival.local(j, p)) > INSIDE
+            };
+            let mut asked = 0;
+            let taker = (last..rivals.len()).chain(0..last).inspect(|_| asked += 1).find(takes);
+            meter.spend(RIVAL * asked)?;
+            if let Some(taker) = taker {
+                last = taker;
                 offsets.push((x, y))?;
             }
         }

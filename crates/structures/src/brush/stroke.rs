@@ -106,7 +106,7 @@ impl<const D: usize> Area<D> {
             if plan.base[k] { ((bounds.max[k] / step).floor() - low[k] + 1.0).max(0.0) } else { 1.0 }
         });
         let all = count.iter().product::<f64>();
-        budget.within("quadrature points", all as usize, ("output-elements", budget.limits().output_elements))?;
+        budget.within_expected("quadrature points", all, ("output-elements", budget.limits().output_elements))?;
         budget.spend((all as u64).saturating_mul(20 + 10 * self.stroke.path.len() as u64))?;
         let rotation = turned(Matrix::identity(), plan.base, self.stroke.direction);
         let mut sites = Vec::new();

@@ -42,7 +42,7 @@ impl<const D: usize> Territory<D> for Flat<D> {
         let size = bounds.size();
         let steps = |k: usize| (size[k] / (plan.step * smallest)).round().max(1.0);
         let count: f64 = (0..D).filter(|&k| plan.base[k]).map(steps).product();
-        budget.within("quadrature points", count as usize, ("output-elements", budget.limits().output_elements))?;
+        budget.within_expected("quadrature points", count, ("output-elements", budget.limits().output_elements))?;
         let counts = std::array::from_fn(|k| if plan.base[k] { steps(k) as usize } else { 1 });
         let lattice = Lattice::new(bounds, counts, false);
         let mut sites = Vec::new();

@@ -1,5 +1,7 @@
 //! Along curves: ropes, vines, chains.
 
+use std::ops::Range;
+
 use arabesque_core::{Bounds, Budget, Domain, Error, Matrix, Result, Vector, arc_lengths, carried};
 
 use super::{
@@ -74,6 +76,16 @@ struct Traced<const D: usize> {
     lengths: Vec<f64>,
     /// Frame at each corner: the tangent, and the directions across.
     frames: Vec<[Vector<D>; D]>,
+    /// The segments in runs, so that those that are far away need not be looked at one by one.
+    runs: Vec<Run<D>>,
+}
+
+/// Segments that follow one another, and a ball around them.
+#[derive(Clone, Debug)]
+struct Run<const D: usize> {
+    segments: Range<usize>,
+    middle: Vector<D>,
+    radius: f64,
 }
 
 impl<const D: usize> Tube<D> {
@@ -145,7 +157,8 @@ impl<const D: usize> Traced<D> {
             return Err(Error::input("the curve", problem, "give a line with at least two different points"));
         }
         let frames = frames(&thread);
-        Ok(Self { thread, lengths, frames })
+        let runs = runs(&thread.corners);
+        Ok(Self { thread, lengths, frames, runs })
     }
 
     fn length(&self) -> f64 {
@@ -200,18 +213,56 @@ impl<const D: usize> Traced<D> {
 
     /// The nearest point of the line to `p`: distance along it, and offset from there.
     fn nearest(&self, p: Vector<D>) -> (f64, Vector<D>) {
-        let corners = &self.thread.corners;
-        let mut best = (f64::INFINITY, 0.0, Vector::ZERO);
-        for (n, w) in corners.windows(2).enumerate() {
-            let d = w[1] - w[0];
-            let t = ((p - w[0]).dot(d) / d.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            let offset = p - (w[0] + d * t);
-            if offset.norm2() < best.0 {
-                best = (offset.norm2(), self.lengths[n] + t * (self.lengths[n + 1] - self.lengths[n]), offset);
+        let gap = |run: &Run<D>| ((p - run.middle).norm() - run.radius).max(0.0);
+        let mut best = Near { d2: f64::INFINITY, segment: 0, share: 0.0, offset: Vector::ZERO };
+        // The run that seems nearest rules out most of the others.
+        let first =
+            (0..self.runs.len()).min_by(|&a, &b| gap(&self.runs[a]).total_cmp(&gap(&self.runs[b]))).unwrap_or(0);
+        for n in std::iter::once(first).chain((0..self.runs.len()).filter(|&n| n != first)) {
+            // A run whose ball just touches may hold the nearest point, whatever rounding makes of it.
+            if gap(&self.runs[n]).powi(2) <= best.d2 * (1.0 + 1e-9) {
+                self.look(&self.runs[n], p, &mut best);
             }
         }
-        (best.1, best.2)
+        let Near { segment: n, share, offset, .. } = best;
+        (self.lengths[n] + share * (self.lengths[n + 1] - self.lengths[n]), offset)
     }
+
+    /// The nearest point of some segments, if it is nearer than `best`; of equally near ones the first along the line.
+    fn look(&self, run: &Run<D>, p: Vector<D>, best: &mut Near<D>) {
+        for segment in run.segments.clone() {
+            let [a, b] = [self.thread.corners[segment], self.thread.corners[segment + 1]];
+            let d = b - a;
+            let share = ((p - a).dot(d) / d.norm2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let offset = p - (a + d * share);
+            let d2 = offset.norm2();
+            if d2 < best.d2 || d2 == best.d2 && segment < best.segment {
+                *best = Near { d2, segment, share, offset };
+            }
+        }
+    }
+}
+
+/// The nearest point of a line so far: squared distance, segment, share of the way along that, and offset.
+struct Near<const D: usize> {
+    d2: f64,
+    segment: usize,
+    share: f64,
+    offset: Vector<D>,
+}
+
+/// The segments between `corners` in about as many runs as a run has segments.
+fn runs<const D: usize>(corners: &[Vector<D>]) -> Vec<Run<D>> {
+    let count = corners.len() - 1;
+    let long = ((count as f64).sqrt().ceil() as usize).max(4);
+    let run = |from: usize| {
+        let segments = from..(from + long).min(count);
+        let own = &corners[from..=segments.end];
+        let middle = Bounds::around(own.iter().copied()).centre();
+        let radius = own.iter().map(|&c| (c - middle).norm()).fold(0.0, f64::max);
+        Run { segments, middle, radius }
+    };
+    (0..count).step_by(long).map(run).collect()
 }
 
 /// Tangents and directions across at the corners of a line.
@@ -339,6 +390,39 @@ impl<const D: usize> Territory<D> for Tube<D> {
             1 => length,
             2 => length * 2.0 * self.radius,
             _ => length * std::f64::consts::PI * self.radius * self.radius,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Stage, Stream};
+
+    use super::*;
+
+    #[test]
+    fn runs_of_segments_find_what_all_segments_would() {
+        let mut random = Stream::new(7, Stage::TEST, 0);
+        for count in [2, 3, 17, 600] {
+            let mut at = Vector::ZERO;
+            let mut step = || {
+                at += Vector(std::array::from_fn(|_| random.range(-1.0, 1.0)));
+                at
+            };
+            let traced = Traced::new(0, Thread::<3>::new((0..count).map(|_| step()).collect())).unwrap();
+            let corners = &traced.thread.corners;
+            for _ in 0..200 {
+                let p = Vector(std::array::from_fn(|_| random.range(-15.0, 15.0)));
+                let of = |n: usize| {
+                    let d = corners[n + 1] - corners[n];
+                    let share = ((p - corners[n]).dot(d) / d.norm2()).clamp(0.0, 1.0);
+                    (p - (corners[n] + d * share)).norm()
+                };
+                let least = (0..corners.len() - 1).map(of).fold(f64::INFINITY, f64::min);
+                let (s, offset) = traced.nearest(p);
+                assert!((offset.norm() - least).abs() < 1e-12, "{count}: {} {least}", offset.norm());
+                assert!((traced.at(s, 0).0 - (p - offset)).norm() < 1e-9, "the length leads to the same place");
+            }
         }
     }
 }

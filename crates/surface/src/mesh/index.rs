@@ -11,6 +11,11 @@ use crate::{dipoles::Dipoles, tree::Tree};
 
 /// Work units of a node or triangle that a query looks at.
 const LOOK: u64 = 12;
+/// Nodes and triangles that a single question may look at for what its loop pays; more are counted by themselves. Many long thin
+/// triangles around one corner have boxes that all overlap.
+const ORDINARY: u64 = 256;
+/// Questions that tell how dear they are.
+const ASKED: usize = 64;
 
 /// The point of a mesh that is nearest to some place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +33,8 @@ pub struct Closest {
 }
 
 /// A mesh prepared for questions: which of its points is nearest, how far that is, and whether a place is inside. Answers depend on the mesh
-/// and the place alone, whatever thread asks.
+/// and the place alone, whatever thread asks. Single questions that look at far more of the mesh than is usual are counted on the budget
+/// that the index was made with.
 #[derive(Debug)]
 pub struct MeshIndex {
     pub(crate) topology: Topology,
@@ -37,6 +43,7 @@ pub struct MeshIndex {
     tree: Tree,
     dipoles: Dipoles,
     bounds: Bounds<3>,
+    budget: Budget,
     _held: Held,
 }
 
@@ -58,7 +65,7 @@ impl MeshIndex {
         let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
         let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
         let normals = vertex_normals(&topology);
-        Ok(Self { bounds: tree.nodes[0].bounds, topology, normals, tree, dipoles, _held: held })
+        Ok(Self { bounds: tree.nodes[0].bounds, topology, normals, tree, dipoles, budget: budget.clone(), _held: held })
     }
 
     /// The smallest box around the triangles.
@@ -91,14 +98,16 @@ impl MeshIndex {
 
     /// The nearest point of the mesh.
     pub fn closest(&self, p: Vector<3>) -> Closest {
-        let (found, _) = self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)));
+        let (found, looked) = self.nearest(p);
+        self.owe(looked);
         // There is a nearest triangle, unless `p` is no place; then any will do.
         self.on_triangle(found.map_or(0, |(t, _)| t), p)
     }
 
     /// The nearest point of the mesh, if it is no farther than `reach`: faster than [`MeshIndex::closest`] where most places are farther.
     pub fn closest_within(&self, p: Vector<3>, reach: f64) -> Option<Closest> {
-        let (found, _) = self.tree.nearest(p, reach * reach, |t| Some(self.distance2(t, p)));
+        let (found, looked) = self.tree.nearest(p, reach * reach, |t| Some(self.distance2(t, p)));
+        self.owe(looked);
         found.map(|(t, _)| self.on_triangle(t, p))
     }
 
@@ -136,7 +145,19 @@ impl MeshIndex {
     /// How often the surface winds around `p`: 1 inside of a closed surface, 0 outside, -1 inside of one that is turned inside out. To
     /// about 0.03; nearer to the surface it is exact.
     pub fn winding(&self, p: Vector<3>) -> f64 {
-        self.winding_counted(p).0
+        let (winding, looked) = self.winding_counted(p);
+        self.owe(looked);
+        winding
+    }
+
+    /// Work units that a question such as [`MeshIndex::closest`] takes beyond what is usual, on average over the mesh: 0 for nearly all
+    /// meshes. For estimates.
+    pub fn dearness(&self) -> f64 {
+        let step = self.triangles().div_ceil(ASKED);
+        let asked = (0..self.triangles()).step_by(step);
+        let count = asked.len() as f64;
+        let beyond = |t| self.nearest(self.at(t, [1.0 / 3.0; 3]).point).1.saturating_sub(ORDINARY);
+        asked.map(beyond).sum::<u64>() as f64 * LOOK as f64 / count
     }
 
     /// Distance to the mesh on the side that `closest`, the nearest point to `p`, faces: positive above the surface, along its normals, and negative below. For open sheets.
@@ -152,7 +173,7 @@ impl MeshIndex {
     /// As [`Budget::spend`].
     pub fn closest_all(&self, points: &[Vector<3>], budget: &Budget) -> Result<Vec<Closest>> {
         self.all(points, budget, |p| {
-            let (found, looked) = self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)));
+            let (found, looked) = self.nearest(p);
             (self.on_triangle(found.map_or(0, |(t, _)| t), p), looked)
         })
     }
@@ -163,7 +184,7 @@ impl MeshIndex {
     /// As [`Budget::spend`].
     pub fn signed_distances(&self, points: &[Vector<3>], budget: &Budget) -> Result<Vec<f64>> {
         self.all(points, budget, |p| {
-            let (found, looked) = self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)));
+            let (found, looked) = self.nearest(p);
             let distance = found.map_or(f64::INFINITY, |(_, d2)| d2.sqrt());
             let (winding, more) = if self.bounds.contains(p) { self.winding_counted(p) } else { (0.0, 0) };
             (if winding.abs() > 0.5 { distance } else { -distance }, looked + more)
@@ -204,6 +225,18 @@ impl MeshIndex {
             })
             .collect();
         Ok(chunks?.into_iter().flatten().collect())
+    }
+
+    /// The nearest triangle with its squared distance, and what was looked at.
+    fn nearest(&self, p: Vector<3>) -> (Option<(u32, f64)>, u64) {
+        self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)))
+    }
+
+    /// Counts what a single question looked at beyond what its loop pays for.
+    fn owe(&self, looked: u64) {
+        if looked > ORDINARY {
+            self.budget.owe((looked - ORDINARY) * LOOK);
+        }
     }
 
     fn winding_counted(&self, p: Vector<3>) -> (f64, u64) {

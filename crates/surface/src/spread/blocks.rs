@@ -67,7 +67,7 @@ impl Grid {
         let points = bounds.size().0.map(|side| (side / spacing).floor() + 1.0);
         let blocks = points.map(|n| (n / SIDE as f64).ceil());
         let limit = budget.limits().candidates;
-        budget.within("points of a grid: blocks", blocks.iter().product::<f64>() as usize, ("candidates", limit))?;
+        budget.within_expected("points of a grid: blocks", blocks.iter().product::<f64>(), ("candidates", limit))?;
         let slack = Vector(std::array::from_fn(|k| bounds.size()[k] - (points[k] - 1.0) * spacing));
         Ok(Self { origin: bounds.min + slack * 0.5, spacing, blocks: blocks.map(|n| n as usize) })
     }
@@ -104,11 +104,7 @@ impl Grid {
         };
         let blocks: Result<Vec<_>> = (0..self.blocks.iter().product()).into_par_iter().map(of_block).collect();
         let points: Vec<_> = blocks?.into_iter().flatten().collect();
-        budget.within(
-            "points of a grid",
-            points.len(),
-            ("candidates", budget.limits().candidates.saturating_mul(4)),
-        )?;
+        budget.within("points of a grid", points.len(), ("candidates", budget.limits().candidates))?;
         Ok(points)
     }
 }

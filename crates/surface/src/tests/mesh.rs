@@ -152,6 +152,29 @@ fn what_is_wrong_is_told_with_its_place() {
 }
 
 #[test]
+fn dear_questions_are_counted_and_told() {
+    let budget = Budget::default();
+    let even = MeshIndex::new(&ball(24, Vector::ZERO, 1.0), "a.obj", &budget).unwrap();
+    assert_eq!(even.dearness(), 0.0);
+    let before = budget.work();
+    places(50, 1.2).into_iter().for_each(|p| drop(even.closest(p)));
+    assert_eq!(budget.work(), before, "the loop pays for ordinary questions");
+    // Thin triangles around one corner lie in one another's boxes.
+    let rim = |k: u32| {
+        let turn = f64::from(k) / 4000.0 * std::f64::consts::TAU;
+        Vector([turn.cos(), turn.sin(), 0.0])
+    };
+    let positions = std::iter::once(Vector([0.0, 0.0, 0.4])).chain((0..4000).map(rim)).collect();
+    let triangles = (0..4000).map(|k| [0, k + 1, (k + 1) % 4000 + 1]).collect();
+    let fan =
+        MeshIndex::new(&TriangleMesh { positions, triangles, ..TriangleMesh::default() }, "a.obj", &budget).unwrap();
+    let before = budget.work();
+    places(50, 0.5).into_iter().for_each(|p| drop(fan.closest(p)));
+    let each = (budget.work() - before) as f64 / 50.0;
+    assert!(each > 1000.0 && (0.2..5.0).contains(&(each / fan.dearness())), "{each} {}", fan.dearness());
+}
+
+#[test]
 fn what_is_no_mesh_is_refused() {
     let refused = |mesh: &TriangleMesh, limits: Limits| {
         MeshIndex::new(mesh, "a.obj", &Budget::new(limits)).map(|_| ()).unwrap_err().to_string()

@@ -85,7 +85,7 @@ fn bare(job: &mut Space, filling: Filling<'_>, context: &mut RunContext<'_>) -> 
             let lines = lines("along", input, context)?;
             let size = filling.exemplar.window.size();
             let radius = tube.unwrap_or(0.5 * size[1].min(size[2]));
-            let tube = Arc::new(Tube::new(lines, radius, [turned, twist.unwrap_or_default()], context.budget())?);
+            let tube = Arc::new(Tube::new(lines, radius, [turned, twist.unwrap_or_default()])?);
             let rotations: Arc<dyn Rotations<3>> = tube.clone();
             let fields = Fields { orientation: Some(OrientationField::Of(rotations)), ..Fields::default() };
             Ok(Place { domain: Domain::Region(tube), fields, ground: None, shell: None })

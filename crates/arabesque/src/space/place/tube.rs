@@ -1,6 +1,6 @@
 //! A tube around curves in space.
 
-use arabesque_core::{Bounds, Budget, Error, Matrix, Region, Result, Rotations, Vector};
+use arabesque_core::{Bounds, Error, Matrix, Region, Result, Rotations, Vector, rounded};
 use arabesque_structures::{Along, Foot, Thread, Tube as Threads};
 
 /// What lies nearer to curves than a radius; open curves end in flat ends.
@@ -10,10 +10,10 @@ pub(super) struct Tube {
     radius: f64,
 }
 
-/// Corners nearer to one another than this share of the radius are left out: each question to the tube looks at all of them.
+/// Corners nearer to one another than this share of the radius are left out: each question to the tube looks at many of them.
 const FINE: f64 = 0.1;
 /// Most corners.
-const MOST: usize = 20_000;
+const MOST: usize = 100_000;
 
 /// A line without corners that are close to the one before; its ends stay.
 fn thinned(line: Vec<Vector<3>>, least: f64) -> Vec<Vector<3>> {
@@ -34,13 +34,8 @@ impl Tube {
     /// A tube in which the pattern is turned about the curve by some degrees at its start, and by some more until its end.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for numbers out of range, [`Error::Limit`] for curves that have too many corners for their radius.
-    pub(super) fn new(
-        lines: Vec<Vec<Vector<3>>>,
-        radius: f64,
-        [turned, twist]: [f64; 2],
-        budget: &Budget,
-    ) -> Result<Self> {
+    /// [`Error::Parameter`] for numbers out of range, [`Error::Input`] for curves that have too many corners for their radius.
+    pub(super) fn new(lines: Vec<Vec<Vector<3>>>, radius: f64, [turned, twist]: [f64; 2]) -> Result<Self> {
         if !(radius.is_finite() && radius > 0.0) {
             return Err(Error::parameter("tube", radius, "a radius above 0"));
         }
@@ -49,8 +44,12 @@ impl Tube {
         }
         let ends = [turned, turned + twist].map(f64::to_radians);
         let lines: Vec<_> = lines.into_iter().map(|line| thinned(line, FINE * radius)).collect();
-        let corners = lines.iter().map(Vec::len).sum();
-        budget.within("corners of the curves", corners, ("candidates", budget.limits().candidates.min(MOST)))?;
+        let corners: usize = lines.iter().map(Vec::len).sum();
+        if corners > MOST {
+            let problem =
+                format!("{corners} corners for a tube of radius {}, at most {MOST} are possible", rounded(radius));
+            return Err(Error::input("the curves", problem, "simplify them, or make the tube wider"));
+        }
         let thread = |line| Thread { roll: Along(vec![(0.0, ends[0]), (1.0, ends[1])]), ..Thread::new(line) };
         Ok(Self { threads: Threads::new(lines.into_iter().map(thread).collect(), radius)?, radius })
     }
@@ -99,8 +98,7 @@ mod tests {
     use super::*;
 
     fn straight() -> Tube {
-        Tube::new(vec![vec![Vector([0.0, 0.0, 0.0]), Vector([0.0, 0.0, 4.0])]], 0.5, [0.0, 90.0], &Budget::default())
-            .unwrap()
+        Tube::new(vec![vec![Vector([0.0, 0.0, 0.0]), Vector([0.0, 0.0, 4.0])]], 0.5, [0.0, 90.0]).unwrap()
     }
 
     #[test]
@@ -135,13 +133,13 @@ mod tests {
 
     #[test]
     fn tubes_without_a_radius_or_a_line_are_refused() {
-        assert!(Tube::new(vec![vec![Vector::ZERO, Vector::splat(1.0)]], 0.0, [0.0; 2], &Budget::default()).is_err());
-        assert!(Tube::new(Vec::new(), 1.0, [0.0; 2], &Budget::default()).is_err());
-        assert!(Tube::new(vec![vec![Vector::ZERO]], 1.0, [0.0; 2], &Budget::default()).is_err());
-        let dense = (0..50_000).map(|k| Vector([f64::from(k), 0.0, 0.0])).collect();
-        let refused = Tube::new(vec![dense], 0.5, [0.0; 2], &Budget::default()).unwrap_err();
-        assert!(refused.to_string().contains("corners of the curves"), "{refused}");
-        let fine = (0..50_000).map(|k| Vector([1e-4 * f64::from(k), 0.0, 0.0])).collect();
-        assert!(Tube::new(vec![fine], 0.5, [0.0; 2], &Budget::default()).is_ok());
+        assert!(Tube::new(vec![vec![Vector::ZERO, Vector::splat(1.0)]], 0.0, [0.0; 2]).is_err());
+        assert!(Tube::new(Vec::new(), 1.0, [0.0; 2]).is_err());
+        assert!(Tube::new(vec![vec![Vector::ZERO]], 1.0, [0.0; 2]).is_err());
+        let dense = (0..200_000).map(|k| Vector([f64::from(k), 0.0, 0.0])).collect();
+        let refused = Tube::new(vec![dense], 0.5, [0.0; 2]).unwrap_err();
+        assert!(refused.to_string().contains("200000 corners for a tube of radius 0.5"), "{refused}");
+        let fine = (0..200_000).map(|k| Vector([1e-4 * f64::from(k), 0.0, 0.0])).collect();
+        assert!(Tube::new(vec![fine], 0.5, [0.0; 2]).is_ok());
     }
 }

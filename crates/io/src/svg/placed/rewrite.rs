@@ -203,7 +203,7 @@ impl<'a> Rewriting<'a> {
         let size = tile.size();
         let copies = (0..2).map(|k| (bounds.size()[k].max(0.0) / size[k] + 2.0).ceil()).product::<f64>();
         let limit = self.budget.limits().elements;
-        self.budget.within("copies of one element on the tile", copies as usize, ("elements", limit))?;
+        self.budget.within_expected("copies of one element on the tile", copies, ("elements", limit))?;
         self.budget.spend((copies as u64).saturating_mul(PER_ITEM))?;
         Ok(shifts(&bounds, tile))
     }

@@ -1,6 +1,6 @@
 //! Strokes that the border of the domain, or something in the way, cuts off [Tu 2020 §4.3.1].
 
-use arabesque_core::{Border, Drawn, Measured, Vector, spans_inside};
+use arabesque_core::{Border, Bounds, Drawn, Measured, Vector, spans_inside};
 
 use crate::border::Extent;
 
@@ -23,6 +23,9 @@ pub(crate) fn at_border<const D: usize>(
         Border::Inside | Border::Turn => 0.5 * width * stroke.scale,
         Border::Cross => f64::NEG_INFINITY,
     };
+    if !extent.has_obstacles() && lies_within(&stroke, extent, margin + 0.1 * unit) {
+        return vec![stroke];
+    }
     let holds = |p: Vector<D>| extent.depth(p) >= margin && !extent.is_blocked(p, 0.5 * width * stroke.scale);
     let measured = Measured::new(stroke.path.clone(), 0.02 * unit);
     let spans = spans_inside(&measured, 0.1 * unit, &holds);
@@ -33,4 +36,13 @@ pub(crate) fn at_border<const D: usize>(
     // What the border leaves of a stroke is more than a dot.
     let least = (SCRAP * width * stroke.scale).max(1e-3 * unit);
     spans.into_iter().filter(|(a, b)| b - a > least).map(part).filter(|d| !d.path.is_empty()).collect()
+}
+
+/// Whether a stroke is at least so far inside everywhere, as a ball around its points tells at once.
+fn lies_within<const D: usize>(stroke: &Drawn<D>, extent: &Extent<'_, D>, margin: f64) -> bool {
+    let points = || stroke.path.cubics.iter().flatten().copied();
+    let bounds = Bounds::around(points());
+    let middle = bounds.centre();
+    let radius = points().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+    !stroke.path.cubics.is_empty() && extent.depth(middle) >= margin.max(0.0) + radius
 }

@@ -41,6 +41,15 @@ impl<'a, const D: usize> Body<'a, D> {
         self.solid.depth(self.pose.inverse().apply(p)) * self.pose.scale
     }
 
+    /// The place of its surface that is nearest to `p`, with the distance.
+    pub(super) fn nearest(&self, p: Vector<D>) -> (f64, Vector<D>) {
+        let own = self.pose.inverse().apply(p);
+        let far = |q: &Vector<D>| (*q - own).norm2();
+        let nearest = self.solid.points.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b)));
+        let at = nearest.map_or(self.centre, |q| self.pose.apply(q));
+        ((at - p).norm(), at)
+    }
+
     /// Whether the box of `other` lies beside the one of this along one of its axes: long bodies side by side mostly do.
     fn misses(&self, other: &Self, both: &Similarity<D>, moved: Vector<D>) -> bool {
         let (own, its) = (&self.solid.bounds, &other.solid.bounds);

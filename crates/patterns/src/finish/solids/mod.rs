@@ -8,6 +8,7 @@ mod contact;
 mod fill;
 mod relax;
 mod things;
+mod voids;
 
 use arabesque_core::{Exemplar, Numbered, Placement, Result};
 
@@ -21,6 +22,8 @@ const SLACK: f64 = 0.015;
 const BENT: f64 = 0.06;
 /// Rounds of taking out, putting in and moving.
 const ROUNDS: usize = 4;
+/// Steps at most in which overlaps are taken apart.
+const STEPS: usize = 40;
 
 /// Takes out what lies too deep in others, and what does not suit the border: things at the places of a lattice would lose their order if
 /// they were moved apart. Where things lie on one another by rows, as shingles do (`laps`), overlaps are left.
@@ -46,7 +49,7 @@ pub(crate) fn take_out<const D: usize>(
     thinned
 }
 
-/// Mends overlaps and numbers of elements with a volume; anything else stays as it is.
+/// Mends overlaps, numbers and, where they are to be `even`, voids of elements with a volume; anything else stays as it is.
 ///
 /// # Errors
 /// When the budget is used up, or somebody asks to stop; then the elements are as far as that has come.
@@ -55,7 +58,7 @@ pub(crate) fn mend<const D: usize>(
     exemplar: &Exemplar<D>,
     library: &Library<D>,
     extent: &Extent<'_, D>,
-    targets: &Numbered<f64>,
+    (targets, even): (&Numbered<f64>, bool),
 ) -> Result<()> {
     if exemplar.solids.is_empty() {
         return Ok(());
@@ -64,7 +67,13 @@ pub(crate) fn mend<const D: usize>(
     let allowed = Allowed::measure(exemplar, library, &budget)?;
     let mut things = Things::new(placements, exemplar, library, extent, &allowed);
     let mended = (0..ROUNDS).try_for_each(|round| {
-        things.relax(&budget)?;
+        things.relax(STEPS, &budget)?;
+        if round == 0
+            && even
+            && let Some(natural) = things.natural_room(&budget)?
+        {
+            things.close_voids(natural, &budget)?;
+        }
         things.thin(targets, (SLACK, 0.0), &budget)?;
         if round + 1 < ROUNDS { things.fill(targets, SLACK, round as u64, &budget) } else { Ok(()) }
     });

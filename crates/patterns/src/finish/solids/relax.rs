@@ -8,8 +8,6 @@ use super::{
     things::Things,
 };
 
-/// Steps at most.
-const STEPS: usize = 40;
 /// Overlaps beyond what is allowed by less than this share of the spacing are left.
 const ENOUGH: f64 = 0.008;
 /// Bodies are pushed so far inside of a border, in spacings, that what is left undone does not reach over it.
@@ -25,18 +23,25 @@ const GYRATION: f64 = 0.5;
 
 /// How a body moves in a step: the sum of what its contacts want, and how many they are.
 #[derive(Clone, Copy)]
-struct Push<const D: usize> {
+pub(super) struct Push<const D: usize> {
     shift: Vector<D>,
     turn: [f64; 3],
     count: f64,
 }
 
+impl<const D: usize> Push<D> {
+    /// Nothing is wanted.
+    pub(super) fn none() -> Self {
+        Self { shift: Vector::ZERO, turn: [0.0; 3], count: 0.0 }
+    }
+}
+
 impl<const D: usize> Things<'_, D> {
     /// Moves and turns bodies until none lies too deep in another, or for so many steps.
-    pub(super) fn relax(&mut self, budget: &Budget) -> Result<()> {
+    pub(super) fn relax(&mut self, steps: usize, budget: &Budget) -> Result<()> {
         let spacing = self.library.spacing * self.extent.smallest_spacing_scale;
         let starts: Vec<_> = self.bodies.iter().map(|b| b.centre).collect();
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             budget.check()?;
             let index = self.index();
             let pushes: Vec<(Push<D>, u64, f64)> =
@@ -56,7 +61,7 @@ impl<const D: usize> Things<'_, D> {
     /// What the contacts and the border want of a body; what it cost, and the worst of it.
     fn push(&self, i: usize, index: &arabesque_core::GridIndex<D>) -> (Push<D>, u64, f64) {
         let body = &self.bodies[i];
-        let mut push = Push { shift: Vector::ZERO, turn: [0.0; 3], count: 0.0 };
+        let mut push = Push::none();
         let (mut cost, mut worst) = (100, 0.0_f64);
         if self.placements[i].frozen.is_some() {
             return (push, cost, worst);
@@ -114,7 +119,7 @@ impl<const D: usize> Things<'_, D> {
     }
 
     /// Adds what a contact wants: a shift and a turn that take it apart by `amount`.
-    fn add(&self, push: &mut Push<D>, i: usize, found: &Contact<D>, amount: f64) {
+    pub(super) fn add(&self, push: &mut Push<D>, i: usize, found: &Contact<D>, amount: f64) {
         let body = &self.bodies[i];
         let arm = found.at - body.centre;
         let gyration2 = (GYRATION * body.radius).powi(2).max(1e-18);
@@ -131,7 +136,7 @@ impl<const D: usize> Things<'_, D> {
     }
 
     /// Moves a body; how far its places went at most.
-    fn apply(&mut self, i: usize, push: &Push<D>, start: Vector<D>, far: f64) -> f64 {
+    pub(super) fn apply(&mut self, i: usize, push: &Push<D>, start: Vector<D>, far: f64) -> f64 {
         if push.count <= 0.0 {
             return 0.0;
         }

@@ -69,7 +69,7 @@ impl Bending<'_> {
         let extent = chart.extent().grown(BESIDE.1 * self.lattice.shorter());
         let [rows, columns] = self.lattice.nodes_in(origin, &extent);
         let count = (rows.end() - rows.start() + 3) as f64 * (columns.end() - columns.start() + 3) as f64;
-        budget.within("cells of the repeat", count as usize, ("output-elements", budget.limits().output_elements))?;
+        budget.within_expected("cells of the repeat", count, ("output-elements", budget.limits().output_elements))?;
         budget.spend((20.0 * count) as u64)?;
         let rows = rows.start() - 1..=rows.end() + 1;
         let all = (columns.start() - 1..=columns.end() + 1).flat_map(|j| rows.clone().map(move |i| [i, j]));

@@ -1,0 +1,177 @@
+//! Room that the exemplar does not have: what lies around it draws nearer.
+//!
+//! Samples say where neighbours are, not how much room is left between surfaces: in a heap of several kinds things overlap in one place
+//! and leave a void beside it. Voids are found by the largest empty balls at random places, against those of the exemplar.
+
+use arabesque_core::{Budget, Domain, GridIndex, Result, Stage, Stream, Vector};
+use rayon::prelude::*;
+
+use super::{
+    contact::{Body, Contact},
+    relax::Push,
+    things::Things,
+};
+
+const PLACES: Stage = Stage::new(438);
+
+/// Random places for each body, and at least.
+const DENSE: usize = 60;
+const LEAST: usize = 4000;
+/// Share of the places of the exemplar whose empty balls are no larger than what counts as room by nature.
+const QUANTILE: f64 = 0.99;
+/// Fewest places of the exemplar that tell what its room is.
+const ENOUGH: usize = 300;
+/// Rounds of drawing nearer.
+const ROUNDS: usize = 10;
+/// Bodies that reach into a ball so many times as large as the void draw nearer.
+const AROUND: f64 = 1.5;
+/// Share of what a void is too large that those around it draw nearer in a round.
+const PULL: f64 = 0.7;
+/// Work for a place of a surface that is looked at.
+const LOOK: u64 = 3;
+
+/// The largest empty ball at some place.
+#[derive(Clone, Copy, Debug)]
+struct Void<const D: usize> {
+    centre: Vector<D>,
+    radius: f64,
+}
+
+/// Bodies that are asked for the room between them.
+struct Between<'a, const D: usize> {
+    bodies: &'a [Body<'a, D>],
+    index: &'a GridIndex<D>,
+    widest: f64,
+}
+
+impl<const D: usize> Between<'_, D> {
+    /// The empty ball around a place, 0 for what lies in a body, with the cost of knowing. No larger than twice the widest body.
+    fn room(&self, p: Vector<D>) -> (f64, u64) {
+        let (mut room, mut cost) = (2.0 * self.widest, 200);
+        let mut near = Vec::new();
+        cost += 10 * self.index.within(p, 3.0 * self.widest, |j, offset| near.push((offset.norm(), j, offset)));
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (far, j, offset) in near {
+            let body = &self.bodies[j];
+            if far - body.radius >= room {
+                continue;
+            }
+            let seen = body.centre - offset;
+            if body.depth(seen) > 0.0 {
+                return (0.0, cost);
+            }
+            cost += LOOK * body.solid.points.len() as u64;
+            room = room.min(body.nearest(seen).0);
+        }
+        (room, cost)
+    }
+
+    /// Empty balls at random places that lie within the domain as a whole, largest first.
+    fn voids(
+        &self,
+        domain: &Domain<D>,
+        (count, seed, round): (usize, u64, u64),
+        budget: &Budget,
+    ) -> Result<Vec<Void<D>>> {
+        let bounds = domain.bounds();
+        let one = |n: usize| -> Result<Option<Void<D>>> {
+            let mut random = Stream::new(seed, PLACES, round << 32 | n as u64);
+            let centre = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
+            let depth = domain.signed_distance(centre);
+            if depth <= 0.0 {
+                return Ok(None);
+            }
+            let (radius, cost) = self.room(centre);
+            budget.spend(cost)?;
+            Ok((depth >= radius && radius < 2.0 * self.widest).then_some(Void { centre, radius }))
+        };
+        let found: Result<Vec<_>> = (0..count).into_par_iter().with_min_len(64).map(one).collect();
+        let mut found: Vec<_> = found?.into_iter().flatten().collect();
+        found.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+        Ok(found)
+    }
+}
+
+impl<const D: usize> Things<'_, D> {
+    /// The room between the bodies of the exemplar, largest by nature; nothing where the exemplar is too small to tell.
+    pub(super) fn natural_room(&self, budget: &Budget) -> Result<Option<f64>> {
+        let solids = self.exemplar.elements.iter().zip(&self.exemplar.solids);
+        let bodies: Vec<_> = solids.map(|(e, s)| Body::new(s, e.pose)).collect();
+        let widest = bodies.iter().map(|b| b.radius).fold(0.0, f64::max);
+        let domain = Domain::Box(self.exemplar.window);
+        let centres: Vec<_> = bodies.iter().map(|b| b.centre).collect();
+        let index = GridIndex::new(&centres, widest.max(1e-9), &domain);
+        let between = Between { bodies: &bodies, index: &index, widest };
+        let count = (DENSE * bodies.len()).max(LEAST);
+        let found = between.voids(&domain, (count, 0, 0), budget)?;
+        let all = found.len();
+        Ok((all >= ENOUGH).then(|| found[((1.0 - QUANTILE) * all as f64) as usize].radius))
+    }
+
+    /// Draws bodies together around voids that are larger than `natural`, and takes apart what then overlaps.
+    pub(super) fn close_voids(&mut self, natural: f64, budget: &Budget) -> Result<()> {
+        let scale = self.extent.request().fields.scale.range();
+        if self.bodies.is_empty() || scale.1 > 1.5 * scale.0 {
+            return Ok(());
+        }
+        let natural = natural * scale.1;
+        for round in 0..ROUNDS as u64 {
+            let index = self.index();
+            let between = Between { bodies: &self.bodies, index: &index, widest: self.widest };
+            let request = self.extent.request();
+            let count = (DENSE * self.bodies.len()).max(LEAST);
+            let mut voids = between.voids(&request.domain, (count, request.seed, round + 1), budget)?;
+            voids.retain(|v| v.radius > natural);
+            let voids = apart(voids, &request.domain);
+            if voids.is_empty() {
+                break;
+            }
+            self.draw(&voids, natural, &index);
+            self.relax(STEPS, budget)?;
+        }
+        Ok(())
+    }
+
+    /// Moves what lies around voids towards them.
+    fn draw(&mut self, voids: &[Void<D>], natural: f64, index: &GridIndex<D>) {
+        let mut pushes = vec![Push::none(); self.bodies.len()];
+        for void in voids {
+            let reach = AROUND * void.radius;
+            let mut near = Vec::new();
+            index.within(void.centre, reach + self.widest, |j, offset| near.push((j, offset)));
+            for (j, offset) in near {
+                let body = &self.bodies[j];
+                let seen = body.centre - offset;
+                if self.placements[j].frozen.is_some() || offset.norm() - body.radius > reach {
+                    continue;
+                }
+                let (far, at) = body.nearest(seen);
+                if far < reach && far > 0.0 {
+                    let fade = 1.0 - (far - void.radius).max(0.0) / (reach - void.radius);
+                    let found = Contact { depth: 0.0, at, way: (seen - at) * (1.0 / far) };
+                    self.add(&mut pushes[j], j, &found, PULL * fade * (void.radius - natural));
+                }
+            }
+        }
+        for (j, push) in pushes.iter().enumerate() {
+            let start = self.bodies[j].centre;
+            if self.apply(j, push, start, self.widest) > 0.0 {
+                self.moved[j] = true;
+            }
+        }
+    }
+}
+
+/// Steps of taking apart after each round.
+const STEPS: usize = 6;
+
+/// The largest voids that do not reach into one another.
+fn apart<const D: usize>(voids: Vec<Void<D>>, domain: &Domain<D>) -> Vec<Void<D>> {
+    let mut kept: Vec<Void<D>> = Vec::new();
+    for void in voids {
+        if kept.iter().all(|k| domain.offset(k.centre, void.centre).norm() >= k.radius.max(void.radius)) {
+            kept.push(void);
+        }
+    }
+    kept
+}

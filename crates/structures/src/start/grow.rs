@@ -23,8 +23,8 @@ const LAY: u64 = 300;
 
 /// Random matches of each site.
 const TRIES: Stage = Stage::new(42);
-/// How many of them; more where there is more to choose from.
-const RANDOM: [usize; 4] = [28, 28, 28, 80];
+/// How many of them.
+const RANDOM: usize = 28;
 /// What it costs to go on elsewhere in the exemplar, as a share of all that a window holds.
 const JUMP: f64 = 0.1;
 /// Points that matches are compared by.
@@ -305,8 +305,7 @@ impl<const D: usize> Growth<'_, '_, D> {
         let mut stream = Stream::new(seed, TRIES, q as u64);
         let mut best = anywhere(room, &mut stream);
         if around.iter().any(|&o| self.done[o as usize]) {
-            let tries = RANDOM[level.pattern.repeats()];
-            let mut random: Vec<Vector<D>> = (0..tries).map(|_| anywhere(room, &mut stream)).collect();
+            let mut random: Vec<Vector<D>> = (0..RANDOM).map(|_| anywhere(room, &mut stream)).collect();
             let mut carried = Vec::new();
             for &other in around {
                 let other = other as usize;
@@ -322,7 +321,7 @@ impl<const D: usize> Growth<'_, '_, D> {
                     random.extend(level.shifts.iter().map(|&t| m + t).filter(|m| room.contains(*m)));
                 }
             }
-            budget.spend(((tries + 20) * (there.len() * 30 + 1000)) as u64)?;
+            budget.spend(((RANDOM + 20) * (there.len() * 30 + 1000)) as u64)?;
             let rate = |m: &Vector<D>| self.error(&there, &map, m, false);
             let rough = |m: &Vector<D>| self.error(&there, &map, m, true);
             let jump = JUMP * level.tables.back.at(&level.pattern.bounds.centre().0).0;

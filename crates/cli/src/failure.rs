@@ -137,9 +137,22 @@ fn is_name(word: &str) -> bool {
     word.contains(['/', '\\']) || bare.rsplit_once('.').is_some_and(extension)
 }
 
+/// The same with what would move or colour the text of a terminal shown as it is written in strings: names of files may hold it.
+fn without_controls(message: &str) -> String {
+    let mut out = String::with_capacity(message.len());
+    for c in message.chars() {
+        match c {
+            '\n' | '\t' => out.push(c),
+            c if c.is_control() => out.extend(c.escape_default()),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 /// A message that fits a few lines: names and numbers come from outside, and may be of any length.
 fn shortened(message: String) -> String {
-    let message = without_long_numbers(&message);
+    let message = without_controls(&without_long_numbers(&message));
     let count = message.chars().count();
     if count <= LONGEST {
         return message;
@@ -202,6 +215,7 @@ mod tests {
         let number = format!("border = 1{}.5 and so on", "0".repeat(308));
         let message = Failure::usage(number).message();
         assert_eq!(message, format!("border = 1{}....5 and so on", "0".repeat(DIGITS - 1)));
+        assert_eq!(Failure::usage("a\u{1b}[31m.svg: no element").message(), "a\\u{1b}[31m.svg: no element");
         for name in [format!("{}.svg: no element", "7".repeat(40)), format!("a/{}: not there", "7".repeat(40))] {
             assert_eq!(Failure::usage(name.clone()).message(), name);
         }

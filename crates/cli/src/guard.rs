@@ -9,7 +9,7 @@ use arabesque::{
 };
 use clap::Args;
 
-use crate::failure::Failure;
+use crate::{failure::Failure, process::standard};
 
 /// Options of everything that writes a file.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -63,6 +63,9 @@ impl Guard {
 
     /// The same for one file.
     pub(crate) fn target(&self, path: &str) -> Result<Target, Failure> {
+        if file::is_standard_output(path) {
+            standard::check().map_err(Failure::standard)?;
+        }
         self.check(path, Target::new(path).map_err(Failure::writing)?)
     }
 

@@ -270,7 +270,7 @@ impl Prepared {
             colours: texture.colours.as_ref().map(|_| samples.iter().map(|s| s.colour.map(f64::from)).collect()),
             radii: texture.radii.as_ref().map(|r| sources.iter().map(|&i| r[i]).collect()),
             groups: texture.groups.as_ref().map(|g| sources.iter().map(|&i| g[i]).collect()),
-            elements: None,
+            ..PointSet::default()
         };
         (points, sources)
     }

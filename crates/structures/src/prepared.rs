@@ -22,6 +22,11 @@ const IRREGULAR: f64 = 4.5;
 const EVEN: (f64, f64) = (0.0, 0.07);
 /// Width of the Gaussians for even points, in spacings.
 const NARROW: f64 = 0.35;
+/// Gaussians are narrower than that where normals beside one another face other ways, down to the last of these shares: those of the two sides of
+/// what is thin would cancel out.
+const THINNER: [f64; 6] = [1.0, 0.85, 0.72, 0.6, 0.52, 0.45];
+/// How alike normals under one Gaussian are at least, in the mean.
+const ALIKE: f64 = 0.8;
 /// From this strength on an exemplar repeats regularly.
 const REGULAR: f64 = 0.5;
 /// Smallest window, in spacings.
@@ -41,6 +46,21 @@ const MARGIN: f64 = 0.6;
 fn width(variation: f64) -> f64 {
     let uneven = ((variation - EVEN.0) / (EVEN.1 - EVEN.0)).clamp(0.0, 1.0);
     NARROW + (1.0 - NARROW) * uneven
+}
+
+/// The widest Gaussians up to `width`, in spacings, under which normals are alike.
+fn thinned<const D: usize>(pattern: &Pattern<D>, width: f64, budget: &Budget) -> Result<f64> {
+    let mut meter = budget.meter();
+    for share in THINNER {
+        let sigma = width * share;
+        if sigma <= THINNER[THINNER.len() - 1] {
+            break;
+        }
+        if pattern.alike(sigma * pattern.spacing, &mut meter)? >= ALIKE {
+            return Ok(sigma);
+        }
+    }
+    Ok(width.min(THINNER[THINNER.len() - 1]))
 }
 
 /// A prepared exemplar.
@@ -67,7 +87,10 @@ impl<const D: usize> Prepared<D> {
         let budget = budget.stage("preparing the exemplar");
         let mut warnings = Vec::new();
         let pattern = Pattern::new(points, params, &budget, &mut warnings)?;
-        let sigma = params.sigma.unwrap_or_else(|| width(pattern.variation)) * pattern.spacing;
+        let sigma = match params.sigma {
+            Some(sigma) => sigma,
+            None => thinned(&pattern, width(pattern.variation), &budget)?,
+        } * pattern.spacing;
         let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
         let kernel = Kernel::new(sigma, 1e3 * shortest.max(sigma), pattern.base, params.shape);
         let fields = Arc::new(Fields::default());

@@ -35,6 +35,8 @@ const SMALLEST: f64 = 0.5;
 const SHAKE: f64 = 2.7;
 /// So many times as many rounds and tries where the start was not fitted to anything.
 const UNFITTED: usize = 3;
+/// The same for volumes: the exemplar has many more places to choose from, and each fits less often.
+const DEEP: usize = 2;
 /// When more than this share of the sites is in motion, the rest is not left out.
 const WHOLE: f64 = 0.6;
 /// Rounds for the first matches, where the start brings none along.
@@ -257,6 +259,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let mut energy = None;
         // What was not fitted to anything before needs more of them.
         let more = if params.start != Start::Grow && self.done.is_empty() { UNFITTED } else { 1 };
+        let more = if pattern.repeats() > 2 { more.max(DEEP) } else { more };
         let rounds = more * params.rounds;
         for round in 0..rounds {
             let draw =

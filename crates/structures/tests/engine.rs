@@ -198,3 +198,51 @@ fn kept_points_stay_to_the_last_bit() {
     assert_eq!(outcome.points.positions[..2], kept.positions[..]);
     assert_eq!(outcome.sources[..2], [None, None]);
 }
+
+#[test]
+fn classes_of_a_checkerboard_take_turns() {
+    let exemplar =
+        PointSet { classes: Some((0..144).map(|k| 5 - 3 * ((k % 12 + k / 12) % 2)).collect()), ..lattice(12) };
+    for start in [Start::Grow, Start::Noise] {
+        let params = StructureParams { start, ..StructureParams::default() };
+        let outcome = fill(exemplar.clone(), Domain::Box(square(1.6)), &params, 4);
+        let (points, classes) = (&outcome.points.positions, outcome.points.classes.as_ref().unwrap());
+        assert!(classes.iter().all(|c| [2, 5].contains(c)) && classes.len() == points.len());
+        let next = |i: usize| {
+            (0..points.len())
+                .filter(|&j| j != i)
+                .min_by(|&a, &b| (points[a] - points[i]).norm().total_cmp(&(points[b] - points[i]).norm()))
+        };
+        let same = (0..points.len()).filter(|&i| next(i).is_some_and(|j| classes[j] == classes[i])).count();
+        // At random, half of all would have a neighbour like themselves.
+        let most = if start == Start::Grow { 20 } else { 5 };
+        assert!(same * most < points.len(), "{}: {same} of {}", start.name(), points.len());
+    }
+}
+
+#[test]
+fn more_classes_than_channels_go_with_their_points() {
+    let exemplar = PointSet { classes: Some((0..144).map(|k| k % 12 + 12 * (k / 72)).collect()), ..lattice(12) };
+    let outcome = fill(exemplar.clone(), Domain::Box(square(1.2)), &StructureParams::default(), 4);
+    let own = exemplar.classes.unwrap();
+    let classes = outcome.points.classes.unwrap();
+    assert!(outcome.sources.iter().zip(&classes).all(|(s, c)| s.is_none_or(|s| own[s] == *c)));
+}
+
+#[test]
+fn elements_are_as_many_and_as_far_apart_as_in_the_exemplar() {
+    let exemplar = dumbbells();
+    let least = |points: &PointSet<2>| {
+        let (p, e) = (&points.positions, points.elements.as_ref().unwrap());
+        let pairs = (0..p.len()).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|&(i, j)| e[i] != e[j]);
+        pairs.map(|(i, j)| (p[i] - p[j]).norm()).fold(f64::INFINITY, f64::min)
+    };
+    let wanted = least(&exemplar);
+    for seed in 0..3 {
+        let outcome = fill(exemplar.clone(), Domain::Box(square(2.0)), &StructureParams::default(), seed);
+        let found = least(&outcome.points);
+        assert!(found > 0.5 * wanted, "{found} where the exemplar has {wanted}");
+        let count = outcome.elements.len();
+        assert!((120..=165).contains(&count), "{count} where 144 were expected");
+    }
+}

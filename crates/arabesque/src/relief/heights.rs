@@ -1,7 +1,10 @@
 //! Height fields, as textures and as results.
 
 use arabesque_core::{Bounds, Budget, Error, PointSet, Result, Vector};
-use arabesque_io::raster::heights::{read_heights, write_heights};
+use arabesque_io::raster::{
+    heights::{read_heights, write_heights},
+    rows::picture_size,
+};
 use arabesque_reliefs::Axes;
 use arabesque_surface::OrientedPoints;
 use rayon::prelude::*;
@@ -13,10 +16,10 @@ const PIXEL: u64 = 3000;
 
 /// A height field as points: one for each pixel, one unit apart; y points up.
 pub(super) fn points(name: &str, bytes: &[u8], height: Option<f64>, budget: &Budget) -> Result<PointSet<3>> {
+    let count = picture_size(name, bytes)?.iter().fold(1, |n: usize, side| n.saturating_mul(*side));
+    budget.within(&format!("{name}: pixels of a height field"), count, ("nodes", budget.limits().nodes))?;
     let heights = read_heights(name, bytes, budget)?;
     let (w, h) = (heights.width, heights.height);
-    let count = w * h;
-    budget.within(&format!("{name}: pixels of a height field"), count, ("nodes", budget.limits().nodes))?;
     let _held = budget.hold(name, count * 48)?;
     budget.spend(count as u64 * 30)?;
     let scale = height.unwrap_or(HEIGHT * w.min(h) as f64);

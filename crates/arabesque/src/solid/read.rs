@@ -31,7 +31,7 @@ pub(crate) fn raised(points: Cloud) -> PointSet<3> {
         Cloud::Space(points) => points,
         Cloud::Plane(points) => {
             let up = |v: arabesque_core::Vector<2>| arabesque_core::Vector([v[0], v[1], 0.0]);
-            let PointSet { positions, normals, colours, radii, groups, elements } = points;
+            let PointSet { positions, normals, colours, radii, groups, elements, classes } = points;
             PointSet {
                 positions: positions.into_iter().map(up).collect(),
                 normals: normals.map(|list| list.into_iter().map(up).collect()),
@@ -39,6 +39,7 @@ pub(crate) fn raised(points: Cloud) -> PointSet<3> {
                 radii,
                 groups,
                 elements,
+                classes,
             }
         }
     }

@@ -69,8 +69,9 @@ pub(crate) fn encode_points<const D: usize>(
             if sheet.format == Format::Glb {
                 gltf::write_scene(&Scene::of_points(points.clone()), recipe, budget)?
             } else {
-                if points.radii.is_some() || points.groups.is_some() || points.elements.is_some() {
-                    let message = "an OBJ file holds no radii, groups and elements of points: left out";
+                let labels = [&points.groups, &points.elements, &points.classes];
+                if points.radii.is_some() || labels.iter().any(|l| l.is_some()) {
+                    let message = "an OBJ file holds no radii, groups, elements and classes of points: left out";
                     warnings.push(Warning::new(message, "write ply, csv or json"));
                 }
                 obj::write_cloud(points, recipe, budget)?.into_bytes()

@@ -44,6 +44,7 @@ impl Ready for Points {
             (self.points.colours.is_some(), "colours"),
             (self.points.groups.is_some(), "groups"),
             (self.points.elements.is_some(), "elements"),
+            (self.points.classes.is_some(), "classes"),
         ];
         let names: Vec<_> = has.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| *name).collect();
         let with = if names.is_empty() { String::new() } else { format!(" with {}", names.join(", ")) };

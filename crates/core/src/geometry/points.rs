@@ -20,6 +20,8 @@ pub struct PointSet<const D: usize> {
     pub groups: Option<Vec<i32>>,
     /// Rigid elements: points with the same number of 0 or more move as one body; -1 stands for what is no element.
     pub elements: Option<Vec<i32>>,
+    /// Kinds of points, as whole numbers: points of one kind have one number.
+    pub classes: Option<Vec<i32>>,
 }
 
 impl<const D: usize> PointSet<D> {
@@ -61,6 +63,7 @@ impl<const D: usize> PointSet<D> {
             radii: self.radii.as_ref().map(|v| pick(v, numbers)),
             groups: self.groups.as_ref().map(|v| pick(v, numbers)),
             elements: self.elements.as_ref().map(|v| pick(v, numbers)),
+            classes: self.classes.as_ref().map(|v| pick(v, numbers)),
         }
     }
 
@@ -75,6 +78,7 @@ impl<const D: usize> PointSet<D> {
             ("radii", self.radii.as_ref().map(Vec::len)),
             ("groups", self.groups.as_ref().map(Vec::len)),
             ("elements", self.elements.as_ref().map(Vec::len)),
+            ("classes", self.classes.as_ref().map(Vec::len)),
         ];
         match lengths.into_iter().find(|(_, length)| length.is_some_and(|n| n != self.len())) {
             None => Ok(()),

@@ -16,10 +16,11 @@ pub(crate) enum Attribute {
     Radius,
     Group,
     Element,
+    Class,
 }
 
 /// Every attribute in the order of [`Attribute::index`], with its names in lower case: that of what is written first.
-pub(crate) const NAMES: [(Attribute, &[&str]); 12] = [
+pub(crate) const NAMES: [(Attribute, &[&str]); 13] = [
     (Attribute::Position(0), &["x", "px", "pos_x", "posx", "position_x", "x_pos", "easting", "lon", "longitude"]),
     (Attribute::Position(1), &["y", "py", "pos_y", "posy", "position_y", "y_pos", "northing", "lat", "latitude"]),
     (Attribute::Position(2), &["z", "pz", "pos_z", "posz", "position_z", "z_pos", "height", "elevation"]),
@@ -32,6 +33,7 @@ pub(crate) const NAMES: [(Attribute, &[&str]); 12] = [
     (Attribute::Radius, &["radius", "radii", "rad", "point_radius", "pscale"]),
     (Attribute::Group, &["group", "groups", "group_id", "groupid", "group_index", "part", "part_id"]),
     (Attribute::Element, &["element", "elements", "element_id", "elementid", "instance", "instance_id", "object_id"]),
+    (Attribute::Class, &["class", "classes", "class_id", "classid", "label", "labels", "kind", "classification"]),
 ];
 
 /// What a program writes before names of values that it does not know itself.
@@ -74,6 +76,7 @@ impl Attribute {
             Self::Radius => 9,
             Self::Group => 10,
             Self::Element => 11,
+            Self::Class => 12,
         }
     }
 
@@ -96,7 +99,7 @@ impl Attribute {
             Self::Normal(_) => value.is_finite(),
             Self::Colour(_) => (0.0..=65535.0).contains(&value),
             Self::Radius => value > 0.0 && value <= most,
-            Self::Group | Self::Element => value.fract() == 0.0 && whole.contains(&value),
+            Self::Group | Self::Element | Self::Class => value.fract() == 0.0 && whole.contains(&value),
         };
         if sound {
             return Ok(value);
@@ -106,7 +109,7 @@ impl Attribute {
             Self::Normal(_) => "a finite number".to_owned(),
             Self::Colour(_) => "0 to 1, 0 to 255 or 0 to 65535".to_owned(),
             Self::Radius => format!("a radius above 0 and up to {most}"),
-            Self::Group | Self::Element => "a whole number".to_owned(),
+            Self::Group | Self::Element | Self::Class => "a whole number".to_owned(),
         };
         let advice = match self {
             Self::Position(_) => "correct or remove the point",
@@ -161,6 +164,7 @@ mod tests {
             (Attribute::Radius, f64::NAN),
             (Attribute::Group, 0.5),
             (Attribute::Element, 3e9),
+            (Attribute::Class, 1.5),
         ] {
             let (problem, _) = attribute.checked(value, || value.to_string(), &limits).unwrap_err();
             assert!(problem.contains(" was expected"), "{problem}");

@@ -81,8 +81,9 @@ impl Columns {
         };
         let mut take = |attribute: Attribute| std::mem::take(&mut self.values[attribute.index()]);
         let radii = Some(take(Attribute::Radius)).filter(|radii| !radii.is_empty());
-        let (groups, elements) = (whole(take(Attribute::Group)), whole(take(Attribute::Element)));
-        PointSet { positions, normals, colours, radii, groups, elements }
+        let [groups, elements, classes] =
+            [Attribute::Group, Attribute::Element, Attribute::Class].map(|a| whole(take(a)));
+        PointSet { positions, normals, colours, radii, groups, elements, classes }
     }
 
     /// Vectors of three or two columns, where all of them are there.

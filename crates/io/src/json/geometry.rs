@@ -29,6 +29,8 @@ struct File<'a> {
     groups: Option<&'a [i32]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     elements: Option<&'a [i32]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    classes: Option<&'a [i32]>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     triangles: &'a [[u32; 3]],
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -68,6 +70,7 @@ pub fn write_cloud<const D: usize>(points: &PointSet<D>, report: &Report<'_>, bu
         radii: points.radii.as_ref().map(|radii| radii.iter().map(|r| digits.place.plus(2).round(*r)).collect()),
         groups: points.groups.as_deref(),
         elements: points.elements.as_deref(),
+        classes: points.classes.as_deref(),
         normals: points.normals.as_ref().map(|list| rows(list.iter().map(|n| n.0), digits.direction)),
         colours: points.colours.as_ref().map(|list| rows(list.iter().copied(), digits.share)),
         ..file(&points.positions, digits, report)
@@ -127,6 +130,7 @@ fn file<'a, const D: usize>(positions: &[Vector<D>], digits: Digits, report: &Re
         radii: None,
         groups: None,
         elements: None,
+        classes: None,
         triangles: &[],
         parts: Vec::new(),
         warnings: warning_records(report.warnings),

@@ -52,7 +52,10 @@ impl<'a> Rows<'a> {
                 what: format!("{name}: size of the picture"),
                 found: format!("{width} x {height} pixels"),
                 limit: format!("{} pixels", budget.limits().pixels),
-                advice: "scale the picture down; a few hundred pixels are enough".into(),
+                advice: format!(
+                    "scale the picture down; a few hundred pixels are enough; or raise the limit with --limit pixels={}",
+                    width.saturating_mul(height)
+                ),
             });
         }
         // Before the palette and the transparent colour are known: four channels of 16 bits at most.

@@ -52,7 +52,7 @@ fn colours_of<const D: usize>(points: &PointSet<D>) -> Vec<[u8; 3]> {
         return colours.iter().map(|c| bytes(*c)).collect();
     }
     let differ = |list: &Option<Vec<i32>>| list.as_ref().is_some_and(|list| list.windows(2).any(|w| w[0] != w[1]));
-    let labels = [&points.groups, &points.elements].into_iter().find(|list| differ(list));
+    let labels = [&points.groups, &points.elements, &points.classes].into_iter().find(|list| differ(list));
     let continuous = PointSet::<D>::CONTINUOUS;
     let colour = |label: i32| if label == continuous { CLAY } else { of_number(label) };
     match labels.and_then(Option::as_ref).filter(|list| list.len() == points.len()) {

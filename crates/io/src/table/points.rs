@@ -1,7 +1,7 @@
 //! CSV: points with attributes, in and out.
 //!
 //! Read: a header that names the columns in any order and case: `x`, `y` and, in space, `z`; `nx`, `ny`, `nz`; `red`, `green`, `blue`
-//! from 0 to 1, to 255 or to 65535; `radius`, `group`, `element`; each under its usual names ([`crate::geometry`]). Two columns
+//! from 0 to 1, to 255 or to 65535; `radius`, `group`, `element`, `class`; each under its usual names ([`crate::geometry`]). Two columns
 //! without a header are `x` and `y`. Other columns are passed over with a warning. Written: the same, colours from 0 to 1, and the
 //! recipe in comment lines at the end.
 
@@ -119,7 +119,8 @@ impl Table<'_> {
         separator: Option<char>,
         (names, header): (Vec<String>, usize),
     ) -> Result<Found> {
-        let found = columns_of(&names);
+        let mut found = columns_of(&names);
+        self.without_words(&mut found, &lines[from..], separator);
         for axis in [0, 1].map(Attribute::Position) {
             if found[axis.index()].is_none() {
                 let problem = format!("no column {} among {}", axis.name(), list(&names));
@@ -149,6 +150,18 @@ impl Table<'_> {
         let warning = Warning::new(message, "nothing need be done if they do not matter");
         let warnings = if passed.is_empty() { Vec::new() } else { vec![warning] };
         Ok(Found { columns, warnings })
+    }
+
+    /// Classes that are words are passed over, as any column is that says nothing of points by a number.
+    fn without_words(&self, found: &mut [Option<usize>; NAMES.len()], lines: &[&str], separator: Option<char>) {
+        let class = &mut found[Attribute::Class.index()];
+        let first = lines.iter().position(|line| is_data(line.trim()));
+        if let (Some(k), Some(at)) = (*class, first)
+            && let Some((fields, _)) = fields(lines[at], &lines[at + 1..], separator)
+            && fields.get(k).is_some_and(|text| text.parse::<f64>().is_err())
+        {
+            *class = None;
+        }
     }
 
     fn row(
@@ -194,6 +207,7 @@ pub fn write_table<const D: usize>(points: &PointSet<D>, recipe: Option<&str>, b
         points.radii.is_some(),
         points.groups.is_some(),
         points.elements.is_some(),
+        points.classes.is_some(),
     ];
     let is_written = |attribute: &Attribute| match *attribute {
         Attribute::Position(k) => k < D,
@@ -202,6 +216,7 @@ pub fn write_table<const D: usize>(points: &PointSet<D>, recipe: Option<&str>, b
         Attribute::Radius => has[3],
         Attribute::Group => has[4],
         Attribute::Element => has[5],
+        Attribute::Class => has[6],
     };
     let written: Vec<Attribute> = NAMES.iter().map(|(a, _)| *a).filter(is_written).collect();
     let bytes = points.len().saturating_mul(written.len() * NUMBER_BYTES);
@@ -224,6 +239,7 @@ pub fn write_table<const D: usize>(points: &PointSet<D>, recipe: Option<&str>, b
                 Attribute::Radius => points.radii.as_ref().map_or(String::new(), |v| place.plus(2).format(v[n])),
                 Attribute::Group => value(&points.groups),
                 Attribute::Element => value(&points.elements),
+                Attribute::Class => value(&points.classes),
             };
             out.push_str(if k == 0 { "" } else { "," });
             out.push_str(&text);
@@ -252,6 +268,15 @@ mod tests {
         assert_eq!(points.positions, [Vector::xy(2.0, 1.0), Vector::xy(6.0, 5.0)]);
         assert_eq!(points.groups, Some(vec![3, 4]));
         assert_eq!(geometry.warnings[0].message, "a.csv: columns passed over: note");
+    }
+
+    #[test]
+    fn classes_are_numbers_and_words_are_passed_over() {
+        let Cloud::Plane(points) = read("x,y,class\n0,0,2\n1,0,-1\n").unwrap().points else { panic!("no z was given") };
+        assert_eq!(points.classes, Some(vec![2, -1]));
+        let words = read("x,y,class\n0,0,leaf\n1,0,stem\n").unwrap();
+        assert_eq!(words.warnings[0].message, "a.csv: columns passed over: class");
+        assert!(read("x,y,class\n0,0,1\n1,0,stem\n").unwrap_err().to_string().contains("is not a number"));
     }
 
     #[test]
@@ -301,7 +326,7 @@ mod tests {
         #[test]
         fn what_is_written_is_read_again(
             list in prop::collection::vec((0..4096_i32, 0..4096_i32, any::<[u8; 3]>(), any::<i32>()), 1..20),
-            has: [bool; 5],
+            has: [bool; 6],
         ) {
             // The first two corners make the extent the same each time.
             let corners = [(0, 0, [0; 3], 0), (4096, 0, [255; 3], 1)];
@@ -313,6 +338,7 @@ mod tests {
                 radii: has[2].then(|| list.iter().map(|p| f64::from(p.0 + 1) * 0.125).collect()),
                 groups: has[3].then(|| list.iter().map(|p| p.3).collect()),
                 elements: has[4].then(|| list.iter().map(|p| p.1).collect()),
+                classes: has[5].then(|| list.iter().map(|p| p.0).collect()),
             };
             let text = write_table(&points, Some("seed = 1\n"), &Budget::default()).unwrap();
             prop_assert_eq!(recipe_of(&text), Some("seed = 1\n".to_owned()));

@@ -1,6 +1,6 @@
 //! The texture as it is understood: its points as a surface, the box of the texture proper, its field, and where patches may be taken from.
 
-use arabesque_core::{Bounds, Budget, Error, Held, PointSet, Result, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Error, Held, PointSet, Result, Vector, Warning, rounded};
 use arabesque_surface::{OrientedPoints, spacing_of};
 
 use crate::{
@@ -247,7 +247,8 @@ impl Texture {
         if x1 < x0 || y1 < y0 {
             let side = self.bounds.size();
             if params.patch.is_none() {
-                let problem = format!("no room for a patch in its box, which is {:.4} by {:.4}", side[0], side[1]);
+                let problem =
+                    format!("no room for a patch in its box, which is {} by {}", rounded(side[0]), rounded(side[1]));
                 return Err(fail(
                     problem,
                     "give more points, leave out those that lie far from all others, or say with --patch how large patches are",

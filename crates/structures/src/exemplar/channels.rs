@@ -1,18 +1,21 @@
 //! Attributes as weights of the Gaussians [Roveri 2015 §4.1, §4.4].
 //!
-//! Every point has mass 1; directions, colours, radii and whether it belongs to a rigid element are further channels, weighted so that
+//! Every point has mass 1; directions, colours, radii, classes and whether it belongs to a rigid element are further channels, weighted so that
 //! none outweighs the place itself.
 
 use arabesque_core::{Matrix, PointSet, Vector};
 
 use crate::params::StructureParams;
 
-/// Most channels there are: mass, three of a direction, rigid or not, radius, three of a colour.
+/// Most channels there are: mass, three of a direction, rigid or not, radius, three of a colour, and three for classes, or more where some of
+/// the others are not there.
 pub(crate) const LANES: usize = 12;
 /// Channels are handled so many at a time.
 pub(crate) const BLOCK: usize = 4;
 /// Weight of belonging to a rigid element.
 const RIGID: f64 = 1.0;
+/// How much of the mass of a point another one of a different class does not see.
+const APART: f64 = 0.7;
 
 /// The weights of one point's Gaussian.
 pub(crate) type Weights = [f32; LANES];
@@ -27,7 +30,37 @@ pub(crate) struct Channels {
     radius: Option<(usize, f64, f64)>,
     /// First channel, means, weight.
     colour: Option<(usize, [f64; 3], f64)>,
+    /// First channel, and what stands for each class.
+    class: Option<(usize, Vec<Code>)>,
     count: usize,
+}
+
+/// A class of points and its weights.
+#[derive(Clone, Debug)]
+struct Code {
+    class: i32,
+    weights: Vec<f32>,
+}
+
+/// Corners of a regular simplex, one for each class: any two of them are alike, so that no class is nearer to another than the rest.
+fn codes(classes: &[i32]) -> Vec<Code> {
+    let scale = (APART * classes.len() as f64).sqrt();
+    let weight = |k: usize, axis: usize| {
+        let along = axis as f64 + 1.0;
+        let at = if k <= axis {
+            1.0
+        } else if k == axis + 1 {
+            -along
+        } else {
+            0.0
+        };
+        (scale * at / (along * (along + 1.0)).sqrt()) as f32
+    };
+    let code = |(k, &class): (usize, &i32)| Code {
+        class,
+        weights: (1..classes.len()).map(|axis| weight(k, axis - 1)).collect(),
+    };
+    classes.iter().enumerate().map(code).collect()
 }
 
 impl Channels {
@@ -50,7 +83,14 @@ impl Channels {
             let mean = std::array::from_fn(|k| colours.iter().map(|c| c[k]).sum::<f64>() / n);
             (take(3), mean, 2.0 * params.colours)
         });
-        Self { normal, rigid, radius, colour, ..channels }
+        let mut classes = points.classes.clone().unwrap_or_default();
+        classes.sort_unstable();
+        classes.dedup();
+        // More of them than there is room for go with the points of the exemplar that others stand for.
+        let fits = classes.len() > 1 && channels.count + classes.len() - 1 <= LANES;
+        let class = fits.then(|| (channels.count, codes(&classes)));
+        channels.count += class.as_ref().map_or(0, |c| c.1.len() - 1);
+        Self { normal, rigid, radius, colour, class, ..channels }
     }
 
     /// Number of blocks of channels.
@@ -74,7 +114,42 @@ impl Channels {
         if let (Some((at, mean, w)), Some(colours)) = (self.colour, &points.colours) {
             (0..3).for_each(|k| weights[at + k] = (w * (colours[i][k] - mean[k])) as f32);
         }
+        if let (Some((at, codes)), Some(classes)) = (&self.class, &points.classes)
+            && let Some(code) = codes.iter().find(|c| c.class == classes[i])
+        {
+            weights[*at..*at + code.weights.len()].copy_from_slice(&code.weights);
+        }
         weights
+    }
+
+    /// Whether there are classes in the weights.
+    pub(crate) fn has_classes(&self) -> bool {
+        self.class.is_some()
+    }
+
+    /// The class in `weights`: the one that they are most like.
+    pub(crate) fn class(&self, weights: &Weights) -> Option<i32> {
+        Some(self.nearest(weights)?.1.class)
+    }
+
+    /// The weights with the class that they are most like, instead of something between classes.
+    pub(crate) fn classed(&self, mut weights: Weights) -> Weights {
+        if let Some((at, code)) = self.nearest(&weights) {
+            weights[at..at + code.weights.len()].copy_from_slice(&code.weights);
+        }
+        weights
+    }
+
+    fn nearest(&self, weights: &Weights) -> Option<(usize, &Code)> {
+        let (at, codes) = self.class.as_ref()?;
+        let likeness = |code: &Code| -> f32 { code.weights.iter().zip(&weights[*at..]).map(|(a, b)| a * b).sum() };
+        let best = codes.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+        Some((*at, best))
+    }
+
+    /// The channels of the class.
+    pub(crate) fn classes(&self) -> std::ops::Range<usize> {
+        self.class.as_ref().map_or(0..0, |(at, codes)| *at..*at + codes.len() - 1)
     }
 
     /// The weights with their direction turned.
@@ -148,4 +223,36 @@ pub(crate) fn inner(a: &Weights, b: &Weights) -> f32 {
         }
     }
     lanes[0] + lanes[1] + (lanes[2] + lanes[3])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_two_classes_are_equally_unlike() {
+        for count in 2..=8 {
+            let points = PointSet {
+                classes: Some((0..count).map(|k| 7 * k - 3).collect()),
+                ..PointSet::at(vec![Vector([0.0, 1.0]); count as usize])
+            };
+            let channels = Channels::new(&points, &StructureParams::default());
+            let weights: Vec<Weights> = (0..count as usize).map(|i| channels.of(&points, i)).collect();
+            for (i, a) in weights.iter().enumerate() {
+                assert_eq!(channels.class(a), Some(7 * i as i32 - 3));
+                assert!((inner(a, a) - (1.0 + 0.7 * (count - 1) as f32)).abs() < 1e-5);
+                assert!(weights[..i].iter().all(|b| (inner(a, b) - 0.3).abs() < 1e-5));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_between_classes_becomes_the_nearest() {
+        let points = PointSet { classes: Some(vec![1, 2, 3]), ..PointSet::at(vec![Vector([0.0, 1.0]); 3]) };
+        let channels = Channels::new(&points, &StructureParams::default());
+        let [a, b] = [0, 1].map(|i| channels.of(&points, i));
+        let between: Weights = std::array::from_fn(|c| 0.6 * a[c] + 0.4 * b[c]);
+        assert_eq!(channels.classed(between)[1..], a[1..]);
+        assert!(!Channels::new(&PointSet { classes: None, ..points }, &StructureParams::default()).has_classes());
+    }
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Budget, Domain, Error, GridIndex, PointSet, Result, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Domain, Error, GridIndex, Meter, PointSet, Result, Vector, Warning};
 
 use super::{
-    bodies::{Body, LOOSE, bodies},
+    bodies::{Body, Gaps, LOOSE, bodies},
     channels::{Channels, LANES, Weights},
     spacing::{base, spacing},
 };
@@ -15,6 +15,8 @@ use crate::params::StructureParams;
 const FEWEST: usize = 10;
 /// Distances from point to point that vary by this share of themselves are those of points at random.
 const RANDOM: f64 = 0.2;
+/// Where Gaussians end, in their widths.
+const WIDE: f64 = 3.1;
 /// Extents below this share of the largest one count as flat.
 const FLAT: f64 = 1e-6;
 
@@ -45,6 +47,8 @@ pub(crate) struct Pattern<const D: usize> {
     pub(crate) bodies: Vec<Body<D>>,
     /// For each point its rigid element.
     pub(crate) body_of: Vec<u32>,
+    /// How near rigid elements come to one another.
+    pub(crate) gaps: Gaps,
     /// All points by place.
     pub(crate) index: GridIndex<D>,
 }
@@ -96,6 +100,12 @@ impl<const D: usize> Pattern<D> {
         let range = |c: usize| weights.iter().fold((f32::MAX, f32::MIN), |(a, b), w| (w[c].min(a), w[c].max(b)));
         let ranges = std::array::from_fn(range);
         let index = GridIndex::new(&points.positions, 2.0 * spacing, &Domain::Box(all));
+        // Of mixtures, the continuous part says where elements are.
+        let gaps = if body_of.contains(&LOOSE) {
+            Gaps::default()
+        } else {
+            Gaps::new((&points.positions, &index), (&bodies, &body_of), spacing, all.size().norm())
+        };
         Ok(Self {
             channels,
             weights,
@@ -108,9 +118,25 @@ impl<const D: usize> Pattern<D> {
             thickness,
             bodies,
             body_of,
+            gaps,
             index,
             points,
         })
+    }
+
+    /// How alike the normals of loose points are that lie under one Gaussian of width `sigma`: 1 where they face the same way, and without normals.
+    pub(crate) fn alike(&self, sigma: f64, meter: &mut Meter) -> Result<f64> {
+        let Some(normals) = &self.points.normals else { return Ok(1.0) };
+        let (mut same, mut all) = (0.0, 1e-12);
+        for i in (0..self.points.len()).filter(|&i| self.body_of[i] == LOOSE) {
+            let looked = self.index.within(self.points.positions[i], WIDE * sigma, |j, r| {
+                let h = (-0.5 * r.norm2() / (sigma * sigma)).exp();
+                same += h * normals[i].dot(normals[j]);
+                all += h;
+            });
+            meter.spend(20 + 12 * looked)?;
+        }
+        Ok(if all > 1e-9 { same / all } else { 1.0 })
     }
 
     /// Number of directions along which the exemplar repeats.

@@ -197,6 +197,9 @@ pub(crate) fn finish<const D: usize>(
         normals,
         colours,
         radii,
+        classes: exemplar.classes.as_ref().map(|own| {
+            chosen.iter().map(|&i| channels.class(&output.weights[i]).unwrap_or_else(|| own[sources[i]])).collect()
+        }),
         groups: groups.map(|g| chosen.iter().map(|&i| g[i]).collect()),
         elements: exemplar.elements.is_some().then_some(numbers),
     };

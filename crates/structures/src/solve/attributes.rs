@@ -31,7 +31,8 @@ pub(crate) fn attributes<const D: usize>(
     matches: &Matches<D>,
     (pulls, budget): (&mut [Pull<D>], &Budget),
 ) -> Result<()> {
-    if level.pattern.channels.normal().is_none() && level.pattern.channels.scalars().next().is_none() {
+    let channels = &level.pattern.channels;
+    if channels.normal().is_none() && channels.scalars().next().is_none() && !channels.has_classes() {
         return Ok(());
     }
     let stays = |i: usize| output.is_kept(i) || output.body_of[i] != LOOSE;
@@ -62,6 +63,11 @@ pub(crate) fn attributes<const D: usize>(
             let best = (rest[c] + INERTIA * own * old[c]) / ((1.0 + INERTIA) * own).max(1e-12);
             new[c] = best.clamp(least, most);
         }
+        for c in channels.classes() {
+            new[c] = rest[c] + INERTIA * own * old[c];
+        }
+        // Classes are discrete: the nearest one [Roveri 2015 §4.4].
+        new = channels.classed(new);
         // Exactly how T changes.
         let change: f32 =
             (0..LANES).map(|c| own * (new[c] * new[c] - old[c] * old[c]) - 2.0 * rest[c] * (new[c] - old[c])).sum();

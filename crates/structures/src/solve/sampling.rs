@@ -156,17 +156,23 @@ fn remove<const D: usize>(
         let weight: f64 = all.map(|k| f64::from(inner(&output.weights[k], &output.weights[k])) * pulls[k].cover).sum();
         sum / weight.max(1e-30)
     };
+    let mut removed = cutting(level, output, |i| worth(&change, i), budget)?;
     let heads: Vec<usize> = (output.kept..n).filter(|&i| members(i).start == i).collect();
     let mut order: Vec<(f64, usize)> =
         heads.into_iter().map(|i| (worth(&change, i), i)).filter(|c| c.0 < -WORTH).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut removed = vec![false; n];
     let mut gone = vec![0.0; n];
+    // Of mixtures, the continuous part says how many there are.
+    let own = if level.pattern.gaps.usual().is_some() { own_share(level) } else { 0.0 };
     for (_, i) in order {
+        if removed[i] {
+            continue;
+        }
         // Fewer points in the windows of this one by those that went.
         let rigid = output.body_of[i] != LOOSE;
         let least = if rigid { FULLEST } else { EMPTIEST };
-        let enough = surplus.usual[i] - gone[i] / level.usual > least;
+        let own = if rigid { own * members(i).len() as f64 } else { 0.0 };
+        let enough = surplus.usual[i] - gone[i] / level.usual > least + own;
         let least = match (enough, surplus.matched[i] - gone[i] > 0.5) {
             (true, true) => -WORTH,
             // There is a place for a whole element, if not this one.
@@ -189,6 +195,56 @@ fn remove<const D: usize>(
     Ok(removed)
 }
 
+/// What one of the points of an element adds to the windows that hold it, in the mean as far as they do, as a share of what windows hold. An
+/// element sees itself: where there are as many as usual, there are more by that around each of them.
+fn own_share<const D: usize>(level: &Level<'_, D>) -> f64 {
+    0.5_f64.powf(0.5 * level.pattern.repeats() as f64) / level.usual.max(1e-12)
+}
+
+/// Of elements that cut into each other those that are worth less. They go in any case.
+fn cutting<const D: usize>(
+    level: &Level<'_, D>,
+    output: &Output<D>,
+    worth: impl Fn(usize) -> f64,
+    budget: &Budget,
+) -> Result<Vec<bool>> {
+    let mut removed = vec![false; output.places.len()];
+    let clear = level.pattern.gaps.cutting();
+    if clear <= 0.0 || output.bodies.len() < 2 {
+        return Ok(removed);
+    }
+    let index =
+        GridIndex::new(&output.places, clear * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max), level.domain);
+    let mut meter = budget.meter();
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for body in &output.bodies {
+        let mut others = std::collections::BTreeSet::new();
+        for i in body.first..body.first + body.count {
+            let looked = index.within(output.places[i], clear * body.pose.scale, |j, _| {
+                if output.body_of[j] != LOOSE && output.body_of[j] != output.body_of[i] {
+                    others.insert(output.members(j).start);
+                }
+            });
+            meter.spend(20 + 6 * looked)?;
+        }
+        let own = worth(body.first);
+        for other in others {
+            let theirs = worth(other);
+            // Each pair once, by the one that goes.
+            if (own, body.first) < (theirs, other) {
+                pairs.push((own, body.first, other));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    for (_, goes, stays) in pairs {
+        if !removed[goes] && !removed[stays] && !output.is_kept(goes) {
+            removed[output.members(goes)].fill(true);
+        }
+    }
+    Ok(removed)
+}
+
 /// Something of the exemplar that could be added.
 struct Offer<const D: usize> {
     place: Vector<D>,
@@ -205,7 +261,8 @@ fn add<const D: usize>(
     matches: &Matches<D>,
     budget: &Budget,
 ) -> Result<()> {
-    let radius = level.tables.kernel.pairs() * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
+    let clear = level.pattern.gaps.least(level.pattern.spacing);
+    let radius = level.tables.kernel.pairs().max(clear) * level.sites.iter().map(|s| s.scale).fold(0.0, f64::max);
     let index = GridIndex::new(&output.places, radius, level.domain);
     let offers: Result<Vec<Vec<Offer<D>>>> = (0..level.open)
         .into_par_iter()
@@ -219,7 +276,7 @@ fn add<const D: usize>(
     let mut offers: Vec<Offer<D>> = offers?.into_iter().flatten().collect();
     offers.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     // What was added, in cells, for those that come after.
-    let mut fresh: Vec<(Vector<D>, Weights)> = Vec::new();
+    let mut fresh: Vec<(Vector<D>, Weights, bool)> = Vec::new();
     let mut cells: std::collections::HashMap<[i64; D], Vec<u32>> = std::collections::HashMap::new();
     let cell = |p: Vector<D>| -> [i64; D] { std::array::from_fn(|k| (p[k] / radius).floor() as i64) };
     for offer in offers {
@@ -239,10 +296,13 @@ fn add<const D: usize>(
                     home[k] + off
                 });
                 for &f in cells.get(&at).into_iter().flatten() {
-                    let (p, w) = &fresh[f as usize];
+                    let (p, w, rigid) = &fresh[f as usize];
                     let r2 = level.domain.offset(place, *p).norm2();
                     given += level.pair(r2, 1.0, 1.0) * f64::from(inner(weights, w));
-                    crowded |= members.len() == 1 && r2.sqrt() < APART * level.pattern.spacing;
+                    crowded |= match &offer.body {
+                        Some((_, pose)) => *rigid && r2.sqrt() < clear * pose.scale,
+                        None => r2.sqrt() < APART * level.pattern.spacing,
+                    };
                 }
             }
             let own = f64::from(inner(weights, weights));
@@ -255,7 +315,7 @@ fn add<const D: usize>(
         for (place, weights) in &members {
             let place = level.domain.wrap(*place);
             cells.entry(cell(place)).or_default().push(fresh.len() as u32);
-            fresh.push((place, *weights));
+            fresh.push((place, *weights, offer.body.is_some()));
         }
         match offer.body {
             Some((source, pose)) => output.add_body(level.pattern, source, pose),
@@ -314,12 +374,16 @@ fn offers<const D: usize>(
     offers.retain_mut(|offer| {
         let members = members(level, offer);
         let apart = APART * pattern.spacing * site.scale;
-        if let [(place, weights)] = &members[..] {
-            let mut crowded = false;
-            index.within(*place, apart, |i, _| crowded |= inner(weights, &output.weights[i]) > 0.0);
-            if crowded {
-                return false;
-            }
+        let clear = pattern.gaps.least(pattern.spacing) * site.scale;
+        let mut crowded = false;
+        for (place, weights) in &members {
+            match offer.body {
+                Some(_) => index.within(*place, clear, |i, _| crowded |= output.body_of[i] != LOOSE),
+                None => index.within(*place, apart, |i, _| crowded |= inner(weights, &output.weights[i]) > 0.0),
+            };
+        }
+        if crowded {
+            return false;
         }
         let (mut wanted, mut weight) = (0.0, 0.0);
         for (n, (place, weights)) in members.iter().enumerate() {

@@ -4,11 +4,7 @@
 use arabesque_core::{Budget, Matrix, Result, Similarity, Stage, Stream, Vector};
 
 use super::cells::Cells;
-use crate::{
-    energy::level::Level,
-    exemplar::{bodies::LOOSE, pattern::Pattern},
-    output::state::Output,
-};
+use crate::{energy::level::Level, output::state::Output};
 
 /// Elements and places that are tried.
 const TRIES: Stage = Stage::new(48);
@@ -16,42 +12,11 @@ const TRIES: Stage = Stage::new(48);
 const EACH: usize = 10;
 /// Passes over all sites.
 const PASSES: u64 = 4;
-/// Share of the elements of the exemplar that come nearer to another one than an element in a gap may.
-const CLOSE: f64 = 0.1;
 /// Share of the usual number of elements below which there is a gap.
 const GAP: f64 = 0.97;
 
-/// How near to other elements those of the exemplar come: only `share` of them nearer. `None` for mixtures, whose continuous part says where
-/// elements are, and for single elements.
-fn clearance<const D: usize>(pattern: &Pattern<D>, share: f64) -> Option<f64> {
-    if pattern.bodies.len() < 2 || pattern.body_of.contains(&LOOSE) {
-        return None;
-    }
-    let size = pattern.points.bounds().size().norm();
-    let mut gaps: Vec<f64> = (0..pattern.bodies.len())
-        .map(|b| {
-            let mut best = size;
-            for &i in &pattern.bodies[b].members {
-                let mut radius = (2.0 * pattern.spacing).min(best);
-                let mut found = f64::INFINITY;
-                while found > radius && radius < best {
-                    pattern.index.within(pattern.points.positions[i], radius, |j, r| {
-                        if pattern.body_of[j] as usize != b {
-                            found = found.min(r.norm());
-                        }
-                    });
-                    radius *= 2.0;
-                }
-                best = best.min(found);
-            }
-            best
-        })
-        .collect();
-    gaps.sort_by(f64::total_cmp);
-    gaps.get((share * gaps.len() as f64) as usize).copied()
-}
-
-/// Adds elements where there are fewer than usual and one fits without coming too near to others.
+/// Adds elements where there are fewer than usual and one fits without coming too near to others. Of mixtures, the continuous part says where
+/// elements are.
 pub(crate) fn fill<const D: usize>(
     level: &Level<'_, D>,
     output: &mut Output<D>,
@@ -60,7 +25,7 @@ pub(crate) fn fill<const D: usize>(
     budget: &Budget,
 ) -> Result<()> {
     let pattern = level.pattern;
-    let Some(gap) = clearance(pattern, CLOSE) else { return Ok(()) };
+    let Some(gap) = pattern.gaps.usual() else { return Ok(()) };
     let usual = pattern.bodies.len() as f64 / pattern.measure() * level.tables.kernel.volume(pattern.repeats());
     let mut points = Cells::new(gap.max(pattern.spacing), level.domain);
     output.places.iter().for_each(|&p| points.add(p));

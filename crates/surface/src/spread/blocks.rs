@@ -104,7 +104,7 @@ impl Grid {
         };
         let blocks: Result<Vec<_>> = (0..self.blocks.iter().product()).into_par_iter().map(of_block).collect();
         let points: Vec<_> = blocks?.into_iter().flatten().collect();
-        budget.within("points of a grid", points.len(), ("candidates", budget.limits().candidates))?;
+        budget.within("points of a grid, in fours", points.len() / 4, ("candidates", budget.limits().candidates))?;
         Ok(points)
     }
 }

@@ -16,13 +16,14 @@ const RUN: usize = 256;
 /// a place farther than that from all. Candidates by area, thrown one after another [Corsini 2012].
 ///
 /// # Errors
-/// [`Error::Parameter`] for a spacing that is not positive, [`Error::Limit`] for more candidates than `candidates` or the work allow.
+/// [`Error::Parameter`] for a spacing that is not positive, [`Error::Limit`] for more candidates than four times `candidates` or the work allow.
 pub fn scatter(index: &MeshIndex, spacing: f64, seed: u64, budget: &Budget) -> Result<Vec<Closest>> {
     if !(spacing.is_finite() && spacing > 0.0) {
         return Err(Error::parameter("spacing", spacing, "a positive number"));
     }
     let count = (DENSITY * index.area() / (spacing * spacing)).ceil().max(16.0);
-    budget.within_expected("points on a surface", count, ("candidates", budget.limits().candidates))?;
+    let limit = ("candidates", budget.limits().candidates);
+    budget.within_expected("points on a surface, in fours", 0.25 * count, limit)?;
     let count = count as usize;
     let _held = budget.hold("points on a surface", count * 32)?;
     budget.foresee(count as u64 * 200)?;

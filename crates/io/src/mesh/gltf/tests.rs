@@ -226,7 +226,7 @@ proptest! {
     #[test]
     fn points_and_meshes_come_back(
         list in prop::collection::vec((eighths(), any::<[u8; 3]>(), -9..9_i32), 3..20),
-        has: [bool; 5],
+        has: [bool; 6],
     ) {
         let colours: Vec<[f64; 3]> = list.iter().map(|p| p.1.map(|c| f64::from(c) / 255.0)).collect();
         let normal = |k: i32| Vector(std::array::from_fn(|axis| f64::from(u8::from(k.rem_euclid(3) as usize == axis))));
@@ -237,6 +237,7 @@ proptest! {
             radii: has[2].then(|| list.iter().map(|p| f64::from(p.2 + 10) / 8.0).collect()),
             groups: has[3].then(|| list.iter().map(|p| p.2).collect()),
             elements: has[4].then(|| list.iter().map(|p| p.2).collect()),
+            classes: has[5].then(|| list.iter().map(|p| p.2 + 1).collect()),
         };
         let mesh = TriangleMesh {
             positions: points.positions.clone(),

@@ -1,13 +1,16 @@
 //! The recipe in the comments of a PLY file.
 //!
 //! Programs that read PLY take comments of ASCII alone and of up to about a thousand bytes. So the lines of a recipe are cut, what
-//! starts a line is marked `|` and what continues one `+`, and other characters are written as `\u{...}`.
+//! starts a line is marked `|` and what continues one `+`, and other characters are written as `\u{...}`. Some programs take the first
+//! `end_header` for the end of the header wherever it stands, so that no comment has it.
 
 use super::header::comments;
 
 /// The comment that a recipe follows, and the one that ends it.
 const BEGIN: &str = "arabesque recipe:";
 const END: &str = "arabesque recipe ends";
+/// What ends a header.
+const HEADER_END: &str = "end_header";
 /// Characters of the recipe in one comment.
 const LONGEST: usize = 200;
 
@@ -73,8 +76,10 @@ fn length(rest: &str) -> usize {
 fn escaped(line: &str) -> String {
     let mut out = String::with_capacity(line.len());
     let kept = line.trim_end_matches(' ').len();
+    let ends: Vec<usize> = line.match_indices(HEADER_END).map(|(at, _)| at + "end".len()).collect();
     for (at, c) in line.char_indices() {
         match c {
+            '_' if ends.contains(&at) => out.push_str("\\u{5f}"),
             '\\' => out.push_str("\\\\"),
             ' ' if at >= kept => out.push_str("\\u{20}"),
             ' '..='~' => out.push(c),
@@ -117,6 +122,14 @@ mod tests {
         let recipe = format!("seed = 1\n\n  name = \"Bäume \\ 🌳\"  \ndata = \"{}\"\n", "0123456789 ".repeat(100));
         let text = file(&recipe);
         assert!(text.is_ascii() && text.lines().all(|l| l.len() < 220 && l.trim_end() == l), "{text}");
+        assert_eq!(recipe_of(text.as_bytes()), Some(recipe));
+    }
+
+    #[test]
+    fn the_end_of_the_header_is_the_first_place_that_says_so() {
+        let recipe = "content = \"\"\"\nply\nend_header\nend_end_header_end_header\n\"\"\"\n".to_owned();
+        let text = file(&recipe);
+        assert_eq!(text.matches(HEADER_END).count(), 1, "{text}");
         assert_eq!(recipe_of(text.as_bytes()), Some(recipe));
     }
 

@@ -180,7 +180,7 @@ fn points() -> impl Strategy<Value = PointSet<3>> {
     let colour = prop::array::uniform3(any::<u8>()).prop_map(|c| c.map(|v| f64::from(v) / 255.0));
     let point =
         (position, 0..3_usize, colour, (1..99_i32).prop_map(|v| f64::from(v) / 8.0), any::<i32>(), any::<i32>());
-    (prop::collection::vec(point, 1..20), any::<[bool; 5]>()).prop_map(|(list, has)| {
+    (prop::collection::vec(point, 1..20), any::<[bool; 6]>()).prop_map(|(list, has)| {
         let normal = |k: usize| Vector(std::array::from_fn(|axis| f64::from(u8::from(axis == k))));
         PointSet {
             positions: list.iter().map(|p| p.0).collect(),
@@ -189,6 +189,7 @@ fn points() -> impl Strategy<Value = PointSet<3>> {
             radii: has[2].then(|| list.iter().map(|p| p.3).collect()),
             groups: has[3].then(|| list.iter().map(|p| p.4).collect()),
             elements: has[4].then(|| list.iter().map(|p| p.5).collect()),
+            classes: has[5].then(|| list.iter().map(|p| p.5 / 2).collect()),
         }
     })
 }

@@ -137,7 +137,7 @@ impl<'a, 's> Definitions<'a, 's> {
         let limits = self.source.limits;
         if depth > limits.depth {
             let what = format!("{}: definitions that refer to each other in a chain", self.source.name);
-            return Err(guard::too_much(what, depth, limits.depth as u64));
+            return Err(guard::over(what, depth, ("depth", limits.depth)));
         }
         self.weights.insert(node.id().get(), 0);
         let mut weight = 0_usize;
@@ -152,7 +152,7 @@ impl<'a, 's> Definitions<'a, 's> {
         }
         if weight > limits.nodes {
             let what = format!("{}: nodes of a definition, references resolved", self.source.name);
-            return Err(guard::too_much(what, weight, limits.nodes as u64));
+            return Err(guard::over(what, weight, ("nodes", limits.nodes)));
         }
         self.weights.insert(node.id().get(), weight);
         Ok(weight)

@@ -14,7 +14,7 @@ pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
         return Err(Error::input(name, "nothing in it, expected SVG", "give a drawing with something to repeat"));
     }
     if text.len() > limits.file_bytes {
-        return Err(too_much(format!("{name}: bytes"), text.len(), limits.file_bytes as u64));
+        return Err(over(format!("{name}: bytes"), text.len(), ("file-bytes", limits.file_bytes)));
     }
     let Tags { deepest, attributes, namespaces } = tags(text);
     if attributes > ATTRIBUTES {
@@ -31,7 +31,20 @@ pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
     check_entities(text, name)
 }
 
-/// A limit that the file exceeds.
+/// A limit that the file exceeds, and that may be raised by its name.
+pub(crate) fn over(what: String, found: impl ToString, (name, limit): (&str, usize)) -> Error {
+    let found = found.to_string();
+    let enough = found.parse::<usize>().unwrap_or(limit.saturating_mul(2));
+    let advice = format!("make the file smaller or simpler, or raise the limit with --limit {name}={enough}");
+    Error::Limit { what, found, limit: limit.to_string(), advice }
+}
+
+/// More XML nodes than the limit.
+pub(crate) fn over_nodes(name: &str, limits: &Limits) -> Error {
+    over(format!("{name}: XML nodes"), format!("more than {}", limits.nodes), ("nodes", limits.nodes))
+}
+
+/// A bound that the file exceeds, and that stays.
 pub(crate) fn too_much(what: String, found: impl ToString, limit: u64) -> Error {
     Error::Limit {
         what,

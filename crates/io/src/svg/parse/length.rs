@@ -170,8 +170,10 @@ fn checked(source: &Source<'_>, page: Page) -> Result<Page> {
     let root = || source.place(source.xml.root_element());
     let extremes = page.view.min.0.iter().chain(page.view.max.0.iter());
     if let Some(v) = { extremes }.find(|v| !(0.0..=source.limits.coordinate).contains(&v.abs())) {
-        let problem = format!("the page reaches beyond {:e} user units: {}", source.limits.coordinate, rounded(*v));
-        return Err(Error::input(root(), problem, "give it a sensible width, height and viewBox"));
+        let problem =
+            format!("the page reaches beyond {} user units: {}", rounded(source.limits.coordinate), rounded(*v));
+        let advice = "give it a sensible width, height and viewBox, or raise the limit with --limit coordinate=N";
+        return Err(Error::input(root(), problem, advice));
     }
     if size[0] <= source.limits.extent || size[1] <= source.limits.extent {
         return Err(Error::input(root(), "the page has no area", "give it a width, a height and a viewBox"));

@@ -127,7 +127,7 @@ fn node<'a>(source: &Source<'a>, xml: Xml<'a, 'a>, place: &Position<'_>) -> Resu
     source.count_node()?;
     if place.depth > source.limits.depth {
         let what = format!("{}: nested groups, <use> resolved", source.name);
-        return Err(guard::too_much(what, place.depth, source.limits.depth as u64));
+        return Err(guard::over(what, place.depth, ("depth", source.limits.depth)));
     }
     let (style, own) = computed(source, xml, &place.style, place.viewport);
     if own.get("display") == Some("none") {

@@ -122,11 +122,7 @@ fn in_file(file: &str, error: Error) -> Error {
 
 fn unreadable(name: &str, limits: &Limits, error: &roxmltree::Error) -> Error {
     if matches!(error, roxmltree::Error::NodesLimitReached) {
-        return guard::too_much(
-            format!("{name}: XML nodes"),
-            format!("more than {}", limits.nodes),
-            limits.nodes as u64,
-        );
+        return guard::over_nodes(name, limits);
     }
     let place = format!("{name}:{}", error.pos());
     Error::input(place, format!("not well-formed XML: {error}"), "open the file in a drawing program and save it again")
@@ -222,7 +218,11 @@ impl<'a> Source<'a> {
     pub(crate) fn foresee_segments(&self, more: usize) -> Result<()> {
         let total = self.segments.get().saturating_add(more);
         if total > self.limits.segments {
-            return Err(guard::too_much(format!("{}: path segments", self.name), total, self.limits.segments as u64));
+            return Err(guard::over(
+                format!("{}: path segments", self.name),
+                total,
+                ("segments", self.limits.segments),
+            ));
         }
         self.budget.foresee(SEGMENT * more as u64)
     }
@@ -232,7 +232,7 @@ impl<'a> Source<'a> {
         self.nodes.set(self.nodes.get() + 1);
         if self.nodes.get() > self.limits.nodes {
             let what = format!("{}: nodes after <use> is resolved", self.name);
-            return Err(guard::too_much(what, self.nodes.get(), self.limits.nodes as u64));
+            return Err(guard::over(what, self.nodes.get(), ("nodes", self.limits.nodes)));
         }
         self.count_bytes(NODE_BYTES)?;
         let steps = self.sheet.steps();

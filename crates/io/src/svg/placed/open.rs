@@ -170,13 +170,20 @@ pub(super) fn transform_of(raw: Option<&str>) -> Option<Similarity<2>> {
     Some(Similarity { rotation, scale, translation: Vector::xy(t.e, t.f) })
 }
 
+fn unreadable(name: &str, budget: &Budget, error: &roxmltree::Error) -> Error {
+    match error {
+        roxmltree::Error::NodesLimitReached => guard::over_nodes(name, budget.limits()),
+        error => Error::input(name, error.to_string(), "choose a result that arabesque wrote as SVG"),
+    }
+}
+
 fn find(name: &str, text: &str, budget: &Budget) -> Result<Found> {
     let parsing = roxmltree::ParsingOptions {
         nodes_limit: u32::try_from(budget.limits().nodes).unwrap_or(u32::MAX),
         ..roxmltree::ParsingOptions::default()
     };
-    let document = roxmltree::Document::parse_with_options(text, parsing)
-        .map_err(|e| Error::input(name, e.to_string(), "choose a result that arabesque wrote as SVG"))?;
+    let document =
+        roxmltree::Document::parse_with_options(text, parsing).map_err(|error| unreadable(name, budget, &error))?;
     let root = document.root_element();
     let none =
         || Error::input(name, "no element that arabesque placed", "edit a result of arabesque that has elements");

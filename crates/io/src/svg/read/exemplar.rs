@@ -286,7 +286,11 @@ fn settle(
         source.notes.add(Note::Outside, String::new);
     }
     if items.len() > source.limits.elements {
-        return Err(guard::too_much(format!("{}: elements", source.name), items.len(), source.limits.elements as u64));
+        return Err(guard::over(
+            format!("{}: elements", source.name),
+            items.len(),
+            ("elements", source.limits.elements),
+        ));
     }
     if options.method != Method::Elements {
         let as_areas = options.large_fills == LargeFills::Areas;

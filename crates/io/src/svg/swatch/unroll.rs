@@ -60,7 +60,7 @@ impl Period<'_> {
         let copies = layout.count().saturating_mul(self.units.len());
         if copies > source.limits.nodes {
             let what = format!("{}: copies of what one period holds", source.name);
-            return Err(guard::too_much(what, copies, source.limits.nodes as u64));
+            return Err(guard::over(what, copies, ("nodes", source.limits.nodes)));
         }
         source.budget.spend(COPY * copies as u64)?;
         let mut welded: BTreeMap<usize, Vec<BezPath>> = BTreeMap::new();

@@ -13,7 +13,7 @@ use crate::{
         parse::{
             colour,
             definitions::Definitions,
-            guard::too_much,
+            guard::over,
             meta::Meta,
             notes::Note,
             paint::{fraction, reference},
@@ -301,7 +301,7 @@ impl<'a, 's, 'i, 'd> Gatherer<'a, 's, 'i, 'd> {
         if found <= source.limits.elements {
             return Ok(());
         }
-        Err(too_much(format!("{}: curves", source.name), found, source.limits.elements as u64))
+        Err(over(format!("{}: curves", source.name), found, ("elements", source.limits.elements)))
     }
 
     /// How a shape's stroke is painted, in the units of the root.

@@ -4,7 +4,7 @@ use arabesque_core::{Measured, Path, Result};
 
 use crate::svg::{
     drawing::Stroke,
-    parse::{guard::too_much, source::Source},
+    parse::{guard::over, source::Source},
 };
 
 /// Dashes of no length are drawn this long, in widths: their caps are all that is seen of them.
@@ -50,7 +50,7 @@ impl DashPattern {
         let count = (length / period + 1.0) * 0.5 * self.lengths.len() as f64;
         if count > source.limits.elements as f64 {
             let what = format!("{}: dashes of a stroke", source.name);
-            return Err(too_much(what, format!("{count:.0}"), source.limits.elements as u64));
+            return Err(over(what, format!("{count:.0}"), ("elements", source.limits.elements)));
         }
         source.budget.spend(WORK.0 * count as u64 + WORK.1 * measured.points().len() as u64)?;
         let mut dashes = Vec::new();

@@ -250,7 +250,7 @@ impl Selector<'_, '_, '_> {
             return Ok(());
         }
         let what = format!("{}: elements", source.name);
-        Err(guard::too_much(what, format!("more than {found}"), source.limits.elements as u64))
+        Err(guard::over(what, format!("more than {found}"), ("elements", source.limits.elements)))
     }
 
     /// Decides about a node that is, or wraps, a single shape.

@@ -9,7 +9,7 @@ const LOOK: u64 = 8;
 /// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
 const QUANTILE: f64 = 0.9;
 /// Overlaps below this share of the inner radius are none.
-const TOUCH: f64 = 0.04;
+const TOUCH: f64 = 0.02;
 
 /// A solid in its place.
 #[derive(Clone, Copy, Debug)]

@@ -23,7 +23,7 @@ const BENT: f64 = 0.06;
 /// Rounds of taking out, putting in and moving.
 const ROUNDS: usize = 4;
 /// Steps at most in which overlaps are taken apart.
-const STEPS: usize = 40;
+const STEPS: usize = 20;
 
 /// Takes out what lies too deep in others, and what does not suit the border: things at the places of a lattice would lose their order if
 /// they were moved apart. Where things lie on one another by rows, as shingles do (`laps`), overlaps are left.
@@ -66,12 +66,10 @@ pub(crate) fn mend<const D: usize>(
     let budget = extent.request().budget.stage("taking elements apart");
     let allowed = Allowed::measure(exemplar, library, &budget)?;
     let mut things = Things::new(placements, exemplar, library, extent, &allowed);
+    let natural = if even { things.natural_room(&budget)? } else { None };
     let mended = (0..ROUNDS).try_for_each(|round| {
         things.relax(STEPS, &budget)?;
-        if round == 0
-            && even
-            && let Some(natural) = things.natural_room(&budget)?
-        {
+        if let Some(natural) = natural.filter(|_| round + 1 < ROUNDS) {
             things.close_voids(natural, &budget)?;
         }
         things.thin(targets, (SLACK, 0.0), &budget)?;

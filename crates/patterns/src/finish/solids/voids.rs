@@ -15,18 +15,20 @@ use super::{
 const PLACES: Stage = Stage::new(438);
 
 /// Random places for each body, and at least.
-const DENSE: usize = 60;
+const DENSE: usize = 20;
 const LEAST: usize = 4000;
 /// Share of the places of the exemplar whose empty balls are no larger than what counts as room by nature.
-const QUANTILE: f64 = 0.99;
+const QUANTILE: f64 = 0.98;
 /// Fewest places of the exemplar that tell what its room is.
 const ENOUGH: usize = 300;
 /// Rounds of drawing nearer.
-const ROUNDS: usize = 10;
+const ROUNDS: u64 = 8;
+/// Steps of taking apart after each round.
+const STEPS: usize = 4;
 /// Bodies that reach into a ball so many times as large as the void draw nearer.
 const AROUND: f64 = 1.5;
-/// Share of what a void is too large that those around it draw nearer in a round.
-const PULL: f64 = 0.7;
+/// Bodies are looked for so far away, in radii of the widest.
+const REACH: f64 = 2.0;
 /// Work for a place of a surface that is looked at.
 const LOOK: u64 = 3;
 
@@ -45,32 +47,43 @@ struct Between<'a, const D: usize> {
 }
 
 impl<const D: usize> Between<'_, D> {
-    /// The empty ball around a place, 0 for what lies in a body, with the cost of knowing. No larger than twice the widest body.
-    fn room(&self, p: Vector<D>) -> (f64, u64) {
-        let (mut room, mut cost) = (2.0 * self.widest, 200);
+    /// The empty ball around a place, 0 for what lies in a body or has no more room than `enough`, with the cost of knowing. No larger
+    /// than the widest body.
+    fn room(&self, p: Vector<D>, enough: f64) -> (f64, u64) {
+        let (mut room, mut cost) = ((REACH - 1.0) * self.widest, 200);
         let mut near = Vec::new();
-        cost += 10 * self.index.within(p, 3.0 * self.widest, |j, offset| near.push((offset.norm(), j, offset)));
+        cost += 10
+            * self.index.within(p, REACH * self.widest, |j, offset| {
+                near.push((offset.norm() - self.bodies[j].radius, j, offset));
+            });
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (far, j, offset) in near {
-            let body = &self.bodies[j];
-            if far - body.radius >= room {
-                continue;
+        for (least, j, offset) in near {
+            if least >= room {
+                break;
             }
+            let body = &self.bodies[j];
             let seen = body.centre - offset;
-            if body.depth(seen) > 0.0 {
+            let depth = body.depth(seen);
+            if depth > 0.0 {
                 return (0.0, cost);
             }
-            cost += LOOK * body.solid.points.len() as u64;
-            room = room.min(body.nearest(seen).0);
+            // Beyond its grid a solid does not tell how far it is.
+            let far = if depth.is_finite() { -depth } else { body.nearest(seen).0 };
+            cost += if depth.is_finite() { 20 } else { LOOK * body.solid.points.len() as u64 };
+            room = room.min(far);
+            if room <= enough {
+                return (0.0, cost);
+            }
         }
         (room, cost)
     }
 
-    /// Empty balls at random places that lie within the domain as a whole, largest first.
+    /// Empty balls at random places that lie within the domain as a whole, largest first; of those larger than `enough` where it is not 0.
     fn voids(
         &self,
         domain: &Domain<D>,
-        (count, seed, round): (usize, u64, u64),
+        (count, enough): (usize, f64),
+        (seed, round): (u64, u64),
         budget: &Budget,
     ) -> Result<Vec<Void<D>>> {
         let bounds = domain.bounds();
@@ -81,9 +94,10 @@ impl<const D: usize> Between<'_, D> {
             if depth <= 0.0 {
                 return Ok(None);
             }
-            let (radius, cost) = self.room(centre);
+            let (radius, cost) = self.room(centre, enough);
             budget.spend(cost)?;
-            Ok((depth >= radius && radius < 2.0 * self.widest).then_some(Void { centre, radius }))
+            let counts = enough == 0.0 || radius > enough;
+            Ok((counts && depth >= radius && radius < (REACH - 1.0) * self.widest).then_some(Void { centre, radius }))
         };
         let found: Result<Vec<_>> = (0..count).into_par_iter().with_min_len(64).map(one).collect();
         let mut found: Vec<_> = found?.into_iter().flatten().collect();
@@ -103,7 +117,7 @@ impl<const D: usize> Things<'_, D> {
         let index = GridIndex::new(&centres, widest.max(1e-9), &domain);
         let between = Between { bodies: &bodies, index: &index, widest };
         let count = (DENSE * bodies.len()).max(LEAST);
-        let found = between.voids(&domain, (count, 0, 0), budget)?;
+        let found = between.voids(&domain, (count, 0.0), (0, 0), budget)?;
         let all = found.len();
         Ok((all >= ENOUGH).then(|| found[((1.0 - QUANTILE) * all as f64) as usize].radius))
     }
@@ -115,13 +129,12 @@ impl<const D: usize> Things<'_, D> {
             return Ok(());
         }
         let natural = natural * scale.1;
-        for round in 0..ROUNDS as u64 {
+        for round in 0..ROUNDS {
             let index = self.index();
             let between = Between { bodies: &self.bodies, index: &index, widest: self.widest };
             let request = self.extent.request();
             let count = (DENSE * self.bodies.len()).max(LEAST);
-            let mut voids = between.voids(&request.domain, (count, request.seed, round + 1), budget)?;
-            voids.retain(|v| v.radius > natural);
+            let voids = between.voids(&request.domain, (count, natural), (request.seed, round + 1), budget)?;
             let voids = apart(voids, &request.domain);
             if voids.is_empty() {
                 break;
@@ -149,7 +162,7 @@ impl<const D: usize> Things<'_, D> {
                 if far < reach && far > 0.0 {
                     let fade = 1.0 - (far - void.radius).max(0.0) / (reach - void.radius);
                     let found = Contact { depth: 0.0, at, way: (seen - at) * (1.0 / far) };
-                    self.add(&mut pushes[j], j, &found, PULL * fade * (void.radius - natural));
+                    self.add(&mut pushes[j], j, &found, fade * (void.radius - natural));
                 }
             }
         }
@@ -161,9 +174,6 @@ impl<const D: usize> Things<'_, D> {
         }
     }
 }
-
-/// Steps of taking apart after each round.
-const STEPS: usize = 6;
 
 /// The largest voids that do not reach into one another.
 fn apart<const D: usize>(voids: Vec<Void<D>>, domain: &Domain<D>) -> Vec<Void<D>> {

@@ -18,6 +18,7 @@ pub(super) fn in_place(points: &PointSet<3>, place: &Affine) -> PointSet<3> {
         radii: radii.filter(|radii: &Vec<f64>| radii.iter().all(|r| *r > 0.0 && r.is_finite())),
         groups: points.groups.clone(),
         elements: points.elements.clone(),
+        classes: points.classes.clone(),
     }
 }
 
@@ -50,6 +51,7 @@ pub(super) fn append(all: &mut PointSet<3>, more: PointSet<3>) -> bool {
         joined(&mut all.radii, more.radii),
         joined(&mut all.groups, more.groups),
         joined(&mut all.elements, more.elements),
+        joined(&mut all.classes, more.classes),
     ];
     !complete.contains(&false)
 }

@@ -237,6 +237,7 @@ impl Reader<'_> {
         let whole = |list: Vec<f64>| list.into_iter().map(|v| v as i32).collect();
         set.groups = self.scalars(primitive, "_GROUP", Attribute::Group, set.len())?.map(whole);
         set.elements = self.scalars(primitive, "_ELEMENT", Attribute::Element, set.len())?.map(whole);
+        set.classes = self.scalars(primitive, "_CLASS", Attribute::Class, set.len())?.map(whole);
         if let Some(accessor) = primitive.indices {
             let indices = self.binary.indices(accessor)?;
             if let Some(bad) = indices.iter().find(|i| **i as usize >= set.len()) {

@@ -129,7 +129,7 @@ pub(super) fn points_of(
     if let Some(radii) = &points.radii {
         attributes["_RADIUS"] = buffer.scalars(&radii.iter().map(|r| *r as f32).collect::<Vec<_>>()).into();
     }
-    for (name, labels) in [("_GROUP", &points.groups), ("_ELEMENT", &points.elements)] {
+    for (name, labels) in [("_GROUP", &points.groups), ("_ELEMENT", &points.elements), ("_CLASS", &points.classes)] {
         let Some(labels) = labels else { continue };
         if let Some(label) = labels.iter().find(|l| l.unsigned_abs() > WHOLE.unsigned_abs()) {
             let what = format!("{name} {label} in a GLB file, which holds floats,");

@@ -3,7 +3,7 @@
 //! Samples say where neighbours are, not how much room is left between surfaces: in a heap of several kinds things overlap in one place
 //! and leave a void beside it. Voids are found by the largest empty balls at random places, against those of the exemplar.
 
-use arabesque_core::{Budget, Domain, GridIndex, Result, Stage, Stream, Vector};
+use arabesque_core::{Buckets, Budget, Domain, GridIndex, Result, Stage, Stream, Vector};
 use rayon::prelude::*;
 
 use super::{
@@ -37,6 +37,8 @@ const LOOK: u64 = 3;
 struct Void<const D: usize> {
     centre: Vector<D>,
     radius: f64,
+    /// By how much it is larger than those of the exemplar.
+    excess: f64,
 }
 
 /// Bodies that are asked for the room between them.
@@ -78,11 +80,12 @@ impl<const D: usize> Between<'_, D> {
         (room, cost)
     }
 
-    /// Empty balls at random places that lie within the domain as a whole, largest first; of those larger than `enough` where it is not 0.
+    /// Empty balls at random places that lie within the domain as a whole, largest first; of those
+    /// that are larger than `natural` there where it is not 0.
     fn voids(
         &self,
         domain: &Domain<D>,
-        (count, enough): (usize, f64),
+        (count, natural): (usize, &(dyn Fn(Vector<D>) -> f64 + Sync)),
         (seed, round): (u64, u64),
         budget: &Budget,
     ) -> Result<Vec<Void<D>>> {
@@ -94,10 +97,12 @@ impl<const D: usize> Between<'_, D> {
             if depth <= 0.0 {
                 return Ok(None);
             }
-            let (radius, cost) = self.room(centre, enough);
+            let natural = natural(centre);
+            let (radius, cost) = self.room(centre, natural);
             budget.spend(cost)?;
-            let counts = enough == 0.0 || radius > enough;
-            Ok((counts && depth >= radius && radius < (REACH - 1.0) * self.widest).then_some(Void { centre, radius }))
+            let excess = radius - natural;
+            let counts = (natural == 0.0 || excess > 0.0) && depth >= radius && radius < (REACH - 1.0) * self.widest;
+            Ok(counts.then_some(Void { centre, radius, excess }))
         };
         let found: Result<Vec<_>> = (0..count).into_par_iter().with_min_len(64).map(one).collect();
         let mut found: Vec<_> = found?.into_iter().flatten().collect();
@@ -117,36 +122,40 @@ impl<const D: usize> Things<'_, D> {
         let index = GridIndex::new(&centres, widest.max(1e-9), &domain);
         let between = Between { bodies: &bodies, index: &index, widest };
         let count = (DENSE * bodies.len()).max(LEAST);
-        let found = between.voids(&domain, (count, 0.0), (0, 0), budget)?;
+        let found = between.voids(&domain, (count, &|_| 0.0), (0, 0), budget)?;
         let all = found.len();
         Ok((all >= ENOUGH).then(|| found[((1.0 - QUANTILE) * all as f64) as usize].radius))
     }
 
     /// Draws bodies together around voids that are larger than `natural`, and takes apart what then overlaps.
     pub(super) fn close_voids(&mut self, natural: f64, budget: &Budget) -> Result<()> {
-        let scale = self.extent.request().fields.scale.range();
-        if self.bodies.is_empty() || scale.1 > 1.5 * scale.0 {
+        if self.bodies.is_empty() {
             return Ok(());
         }
-        let natural = natural * scale.1;
+        let request = self.extent.request();
+        let spacing = self.library.spacing;
+        // Where things are to be sparser, the room between them grows by as much as their distances do.
+        let natural_at = |p: Vector<D>| {
+            let frame = request.fields.frame(p);
+            natural * frame.element_scale + spacing * (frame.spacing_scale - frame.element_scale)
+        };
         for round in 0..ROUNDS {
             let index = self.index();
             let between = Between { bodies: &self.bodies, index: &index, widest: self.widest };
-            let request = self.extent.request();
             let count = (DENSE * self.bodies.len()).max(LEAST);
-            let voids = between.voids(&request.domain, (count, natural), (request.seed, round + 1), budget)?;
+            let voids = between.voids(&request.domain, (count, &natural_at), (request.seed, round + 1), budget)?;
             let voids = apart(voids, &request.domain);
             if voids.is_empty() {
                 break;
             }
-            self.draw(&voids, natural, &index);
+            self.draw(&voids, &index);
             self.relax(STEPS, budget)?;
         }
         Ok(())
     }
 
     /// Moves what lies around voids towards them.
-    fn draw(&mut self, voids: &[Void<D>], natural: f64, index: &GridIndex<D>) {
+    fn draw(&mut self, voids: &[Void<D>], index: &GridIndex<D>) {
         let mut pushes = vec![Push::none(); self.bodies.len()];
         for void in voids {
             let reach = AROUND * void.radius;
@@ -162,7 +171,7 @@ impl<const D: usize> Things<'_, D> {
                 if far < reach && far > 0.0 {
                     let fade = 1.0 - (far - void.radius).max(0.0) / (reach - void.radius);
                     let found = Contact { depth: 0.0, at, way: (seen - at) * (1.0 / far) };
-                    self.add(&mut pushes[j], j, &found, fade * (void.radius - natural));
+                    self.add(&mut pushes[j], j, &found, fade * void.excess);
                 }
             }
         }
@@ -177,9 +186,17 @@ impl<const D: usize> Things<'_, D> {
 
 /// The largest voids that do not reach into one another.
 fn apart<const D: usize>(voids: Vec<Void<D>>, domain: &Domain<D>) -> Vec<Void<D>> {
+    let Some(largest) = voids.first().map(|void| void.radius) else { return voids };
+    let mut near = Buckets::new(domain, largest, largest);
     let mut kept: Vec<Void<D>> = Vec::new();
     for void in voids {
-        if kept.iter().all(|k| domain.offset(k.centre, void.centre).norm() >= k.radius.max(void.radius)) {
+        let mut is_free = true;
+        near.near(void.centre, largest, |k| {
+            let other = &kept[k as usize];
+            is_free &= domain.offset(other.centre, void.centre).norm() >= other.radius.max(void.radius);
+        });
+        if is_free {
+            near.insert(kept.len() as u32, void.centre);
             kept.push(void);
         }
     }

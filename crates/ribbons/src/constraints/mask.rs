@@ -12,7 +12,7 @@ const INSIDE: f64 = 0.5;
 
 /// Work of one pixel of a piece, of comparing it with one other piece, of one blocked point, and of one box among others.
 const PIXEL: u64 = 60;
-const RIVAL: u64 = 45;
+const RIVAL: u64 = 8;
 const POINT: u64 = 60;
 const BOX: u64 = 2;
 

@@ -185,6 +185,24 @@ impl Grid {
         Ok(all.filter(near).collect())
     }
 
+    /// What of the exemplar's plane a domain covers along each of two axes of length 1.
+    pub(crate) fn ranges(&self, domain: &Domain<2>, axes: [Vector<2>; 2]) -> [[f64; 2]; 2] {
+        let bounds = domain.bounds();
+        let corners = [
+            bounds.min,
+            Vector::xy(bounds.max[0], bounds.min[1]),
+            bounds.max,
+            Vector::xy(bounds.min[0], bounds.max[1]),
+        ];
+        let zero = self.place(Vector::ZERO, [0, 0]);
+        let scale2 = self.scale().powi(2);
+        axes.map(|axis| {
+            let there = self.vector(axis);
+            let all = corners.map(|corner| (corner - zero).dot(there) / scale2);
+            [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+        })
+    }
+
     /// Mean factor by which lengths grow.
     pub(crate) fn scale(&self) -> f64 {
         let [[a, b], [c, d]] = self.linear.0;

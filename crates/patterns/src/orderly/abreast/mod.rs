@@ -96,11 +96,14 @@ impl Abreast {
         let Ok(grid) = Grid::new(&repeat, exemplar, request) else { return Ok(None) };
         let budget = &request.budget.stage("drawing lines side by side");
         let page = match &request.domain {
-            Domain::Torus(tile) => self.tile(tile.size(), spacing, request.seed),
-            domain => self.page(self.ranges(&grid, domain), request.seed),
+            Domain::Torus(tile) => self.tile((tile.size(), spacing), request.seed, budget)?,
+            domain => {
+                let units = [Vector::xy(1.0, 0.0), Vector::xy(0.0, 1.0)];
+                let axes = [units[self.lines.axis], units[1 - self.lines.axis]];
+                self.page(grid.ranges(domain, axes), request.seed, budget)?
+            }
         };
         let count = page.sheet.rows as f64 * page.sheet.columns as f64;
-        checks::expected(count, &request.budget)?;
         watch.foreseen(&Forecast { count, work: count * PER_PLACE, allowed: request.budget.allowed() as f64 });
         let obstacles = obstacles(request)?;
         let ground = Ground { grid: &grid, request, obstacles: obstacles.as_ref() };
@@ -131,26 +134,8 @@ impl Abreast {
         Lattice::new(Vector::xy(sides[0], 0.0), Vector::xy(0.0, sides[1])).map(Repeat::drawn)
     }
 
-    /// What of the exemplar's plane, along and across, a domain covers.
-    fn ranges(&self, grid: &Grid, domain: &Domain<2>) -> [[f64; 2]; 2] {
-        let bounds = domain.bounds();
-        let corners = [
-            bounds.min,
-            Vector::xy(bounds.max[0], bounds.min[1]),
-            bounds.max,
-            Vector::xy(bounds.min[0], bounds.max[1]),
-        ];
-        let zero = grid.place(Vector::ZERO, [0, 0]);
-        [self.lines.axis, 1 - self.lines.axis].map(|axis| {
-            let unit = if axis == 0 { Vector::xy(1.0, 0.0) } else { Vector::xy(0.0, 1.0) };
-            let there = grid.vector(unit);
-            let all = corners.map(|corner| (corner - zero).dot(there) / there.norm2());
-            [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
-        })
-    }
-
     /// Lines that cover what lies between these places, along and across.
-    fn page(&self, [along, across]: [[f64; 2]; 2], seed: u64) -> Page {
+    fn page(&self, [along, across]: [[f64; 2]; 2], seed: u64, budget: &Budget) -> Result<Page> {
         let Lines { step, slope, gap, wander, .. } = self.lines;
         let columns = ((along[1] - along[0]) / step).ceil() as usize + 3;
         let origin = along[0] - step;
@@ -159,18 +144,20 @@ impl Abreast {
         let beyond = BEYOND.0 * wander + BEYOND.1 * gap;
         let low = across[0] - rise.max(0.0) - beyond;
         let rows = ((across[1] - rise.min(0.0) + beyond - low) / gap).ceil() as usize + 1;
-        let styles = styles::styles(&self.lines, rows, &mut Stream::new(seed, STYLES, 0));
+        checks::expected(rows as f64 * columns as f64, budget)?;
+        let styles = styles::styles(&self.lines, rows, &mut Stream::new(seed, STYLES, 0), budget)?;
         let sheet = Sheet { rows, columns, closes: None };
-        Page { sheet, styles, measures: self.measures(step, gap), origin: [origin, low], slope }
+        Ok(Page { sheet, styles, measures: self.measures(step, gap), origin: [origin, low], slope })
     }
 
     /// Lines that close up on a tile.
-    fn tile(&self, size: Vector<2>, spacing: f64, seed: u64) -> Page {
+    fn tile(&self, (size, spacing): (Vector<2>, f64), seed: u64, budget: &Budget) -> Result<Page> {
         let lines = &self.lines;
         let [length, height] = [size[lines.axis] / spacing, size[1 - lines.axis] / spacing];
         let columns = (length / lines.step).round().max(4.0);
+        checks::expected(columns * (height / lines.gap), budget)?;
         let mut stream = Stream::new(seed, STYLES, 0);
-        let styles = styles::closed(lines, height / lines.gap, &mut stream);
+        let styles = styles::closed(lines, height / lines.gap, &mut stream, budget)?;
         let rows = styles.len();
         let (step, gap) = (length / columns, height / rows as f64);
         // After one turn around, a line goes on as one of its style, as nearly as the slope asks for.
@@ -180,18 +167,15 @@ impl Abreast {
         };
         let around = (wanted.round() as i64 - rows as i64)..=(wanted.round() as i64 + rows as i64);
         let off = |shift: &i64| (*shift as f64 - wanted).abs();
-        let shift = around.filter(goes_on).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        let mut shifts: Vec<i64> = around.collect();
+        shifts.sort_by(|a, b| off(a).total_cmp(&off(b)));
+        let shift = shifts.into_iter().find(goes_on).unwrap_or(0);
         let closes = Some(shift.rem_euclid(rows as i64) as usize);
         let sheet = Sheet { rows, columns: columns as usize, closes };
         // Lines begin anywhere.
         let low = stream.range(0.0, gap);
-        Page {
-            sheet,
-            styles,
-            measures: self.measures(step, gap),
-            origin: [0.0, low],
-            slope: shift as f64 * gap / length,
-        }
+        let slope = shift as f64 * gap / length;
+        Ok(Page { sheet, styles, measures: self.measures(step, gap), origin: [0.0, low], slope })
     }
 
     fn measures(&self, step: f64, gap: f64) -> Measures {

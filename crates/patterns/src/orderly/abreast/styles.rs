@@ -1,6 +1,6 @@
 //! Which style each line of the output has.
 
-use arabesque_core::Stream;
+use arabesque_core::{Budget, Result, Stream};
 
 use crate::orderly::abreast::find::Lines;
 
@@ -8,24 +8,32 @@ use crate::orderly::abreast::find::Lines;
 const BEFORE: usize = 8;
 /// The same across the seam of a tile.
 const AT_SEAM: usize = 4;
-/// By how much the number of lines in a tile may differ from what suits their distance best, as a share and at least.
-const ROOM: (f64, f64) = (0.12, 1.0);
+/// By how much the number of lines in a tile may differ from what suits their distance best, as a share, at least and at most.
+const ROOM: (f64, f64, f64) = (0.12, 1.0, 32.0);
 /// Beginnings that are tried for a tile.
 const TRIES: usize = 24;
+/// Work for comparing a line with one of the exemplar's.
+const COMPARED: u64 = 3;
 
 /// The styles of so many lines, one after the other: as the exemplar goes on.
-pub(crate) fn styles(lines: &Lines, count: usize, stream: &mut Stream) -> Vec<usize> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn styles(lines: &Lines, count: usize, stream: &mut Stream, budget: &Budget) -> Result<Vec<usize>> {
     let known: Vec<usize> = lines.lines.iter().map(|line| line.style).collect();
     let mut at = stream.below(known.len());
-    let mut made: Vec<usize> = Vec::with_capacity(count);
+    let (mut made, _held) = budget.list("lines side by side", count)?;
+    let mut meter = budget.meter();
     while made.len() < count {
+        meter.spend(COMPARED)?;
         if at >= known.len() {
+            meter.spend(COMPARED * (2 * BEFORE * known.len()) as u64)?;
             at = after(&known, &made, stream);
         }
         made.push(known[at]);
         at += 1;
     }
-    made
+    Ok(made)
 }
 
 /// Where the exemplar goes on after what comes nearest to the last lines made.
@@ -40,26 +48,29 @@ fn after(known: &[usize], made: &[usize], stream: &mut Stream) -> usize {
 }
 
 /// The styles of lines that close up: about `wanted` of them.
-pub(crate) fn closed(lines: &Lines, wanted: f64, stream: &mut Stream) -> Vec<usize> {
+///
+/// # Errors
+/// When the budget is used up, or somebody asks to stop.
+pub(crate) fn closed(lines: &Lines, wanted: f64, stream: &mut Stream, budget: &Budget) -> Result<Vec<usize>> {
     let known: Vec<usize> = lines.lines.iter().map(|line| line.style).collect();
-    let room = (ROOM.0 * wanted).max(ROOM.1);
+    let room = (ROOM.0 * wanted).clamp(ROOM.1, ROOM.2);
     let nearest = wanted.round().max(1.0);
     let counts = ((wanted - room).ceil().max(1.0) as usize)..=((wanted + room).floor().max(nearest) as usize);
     let is_uniform = known.iter().all(|style| *style == known[0]);
     if is_uniform {
-        return vec![known[0]; nearest as usize];
+        return Ok(vec![known[0]; nearest as usize]);
     }
     let mut best: Option<((usize, f64), Vec<usize>)> = None;
     for count in counts {
         for _ in 0..TRIES {
-            let made = styles(lines, count, stream);
+            let made = styles(lines, count, stream, budget)?;
             let cost = (unlike(&known, &made), (count as f64 - wanted).abs());
             if best.as_ref().is_none_or(|(least, _)| cost.0 < least.0 || (cost.0 == least.0 && cost.1 < least.1)) {
                 best = Some((cost, made));
             }
         }
     }
-    best.map_or_else(|| vec![known[0]; nearest as usize], |(_, made)| made)
+    Ok(best.map_or_else(|| vec![known[0]; nearest as usize], |(_, made)| made))
 }
 
 /// Runs across the seam that the exemplar does not have.

@@ -10,7 +10,7 @@ mod tests;
 
 use arabesque_core::{
     Border, Budget, Domain, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Similarity,
-    Snapshot, StopReason, Vector, Watch,
+    Snapshot, StopReason, Watch,
 };
 
 use crate::{
@@ -79,7 +79,7 @@ impl Boards {
         request.budget.allow_elements(count);
         watch.foreseen(&Forecast { count, work: count * PER_BOARD, allowed: request.budget.allowed() as f64 });
         let budget = &request.budget.stage("laying boards");
-        let [along, across] = self.ranges(&grid, &request.domain);
+        let [along, across] = grid.ranges(&request.domain, [self.courses.along, self.courses.across]);
         let laid = Laying::new(&self.courses).rows(across, along, request.seed, budget)?;
         let placements = self.placements(&laid, exemplar, (&grid, request), budget)?;
         if placements.is_empty() {
@@ -95,24 +95,6 @@ impl Boards {
         };
         let (sequence, curves, areas, energy, warnings) = Default::default();
         Ok(Some(Outcome { placements, sequence, curves, areas, energy, warnings, stopped }))
-    }
-
-    /// What of the exemplar's plane, along and across, a domain covers.
-    fn ranges(&self, grid: &Grid, domain: &Domain<2>) -> [[f64; 2]; 2] {
-        let bounds = domain.bounds();
-        let corners = [
-            bounds.min,
-            Vector::xy(bounds.max[0], bounds.min[1]),
-            bounds.max,
-            Vector::xy(bounds.min[0], bounds.max[1]),
-        ];
-        let zero = grid.place(Vector::ZERO, [0, 0]);
-        let scale2 = grid.scale().powi(2);
-        [self.courses.along, self.courses.across].map(|axis| {
-            let there = grid.vector(axis);
-            let all = corners.map(|corner| (corner - zero).dot(there) / scale2);
-            [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
-        })
     }
 
     fn placements(

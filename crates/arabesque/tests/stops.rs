@@ -8,7 +8,7 @@ use arabesque::{
 };
 
 /// Places at which each job is stopped.
-const PLACES: u64 = 24;
+const PLACES: u64 = 64;
 
 fn svg(body: &str) -> Vec<u8> {
     format!("<svg xmlns='http://www.w3.org/2000/svg' width='120' height='80' viewBox='0 0 120 80'>{body}</svg>")

@@ -390,7 +390,9 @@ impl Prepared {
             let next = if k + 1 < n { Some(k + 1) } else { (cage.closed && n == cage.len()).then_some(0) };
             next.map_or(Ok(Vec::new()), |next| self.shift(cage, [k, next], solution, budget))
         };
-        (0..n).into_par_iter().map(shift).collect()
+        let shifts = (0..n).into_par_iter().map(shift).collect::<Result<_>>()?;
+        budget.spend(0)?;
+        Ok(shifts)
     }
 
     /// The same on a fresh account, where that takes little time; else nothing is bent.
@@ -432,7 +434,7 @@ impl Prepared {
             };
             ribbon.pieces.par_iter().enumerate().map(hit).collect::<Result<Vec<bool>>>()
         });
-        let hits = hits.collect::<Result<Vec<Vec<bool>>>>();
+        let hits = hits.collect::<Result<Vec<Vec<bool>>>>().and_then(|hits| budget.spend(0).map(|()| hits));
         for (r, ribbon) in ribbons.iter_mut().enumerate() {
             for (k, piece) in ribbon.pieces.iter_mut().enumerate() {
                 if hits.as_ref().map_or(true, |hits| hits[r][k]) {

@@ -22,7 +22,8 @@ const INSTALMENT: u64 = 1 << 14;
 ///
 /// Every loop that input can lengthen draws on a budget: [`Budget::spend`] for work, [`Budget::hold`] for memory, [`Budget::within`] for
 /// what is counted once. Work is counted, never timed, so that a run ends at the same place on every machine and with any number of
-/// threads: whether a parallel step is over its budget depends on its sum alone, and a step that was cut short is given up as a whole.
+/// threads: whether a parallel step is over its budget depends on its sum alone (`spend(0)` ends one whose parts have meters), and a step that was cut short is given
+/// up as a whole.
 ///
 /// ```
 /// use arabesque_core::{Budget, Limits};
@@ -319,8 +320,8 @@ impl<'a> Meter<'a> {
 
 impl Drop for Meter<'_> {
     fn drop(&mut self) {
-        // What is left is counted; whoever draws next is told.
-        let _ = self.budget.spend(std::mem::take(&mut self.owed));
+        // Nobody would hear of it here: whoever draws next is told, which after a parallel step is to be at once (`spend(0)`).
+        self.budget.owe(std::mem::take(&mut self.owed));
     }
 }
 

@@ -55,6 +55,7 @@ pub(crate) fn neighbours<const D: usize>(scene: &Scene<'_, D>, budget: &Budget) 
         Ok(near)
     };
     let forward: Vec<Vec<Near>> = (0..bodies.len()).into_par_iter().map(of).collect::<Result<_>>()?;
+    budget.spend(0)?;
     let mut all = forward.clone();
     for (i, near) in forward.iter().enumerate() {
         for n in near {

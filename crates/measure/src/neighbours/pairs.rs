@@ -159,6 +159,7 @@ impl<'a, const D: usize> Placed<'a, D> {
             Ok(pairs)
         };
         let parts: Vec<Pairs> = chosen.par_chunks(256).map(chunk).collect::<Result<_>>()?;
+        budget.spend(0)?;
         Ok(parts.into_iter().fold(Pairs::none(classes), |mut all, part| {
             all.found.iter_mut().zip(part.found).for_each(|(a, b)| *a += b);
             all.expected.iter_mut().zip(part.expected).for_each(|(a, b)| *a += b);

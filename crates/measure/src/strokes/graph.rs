@@ -199,6 +199,7 @@ fn crossings<const D: usize>(
         Ok(found.into_iter().map(|(_, event)| event).collect())
     };
     let found: Vec<Vec<Event<D>>> = (0..pieces.len()).into_par_iter().map(of).collect::<Result<_>>()?;
+    budget.spend(0)?;
     Ok(found.into_iter().flatten().collect())
 }
 

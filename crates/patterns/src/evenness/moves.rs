@@ -84,6 +84,7 @@ where
             Ok((self.price_of_space(&scene, Some(&body.pose), None, QUIET, &mut meter)? >= QUIET).then_some(b))
         };
         let found = bodies.par_iter().with_min_len(ALONE).map(pays).collect::<Result<Vec<_>>>()?;
+        self.budget.spend(0)?;
         Ok(found.into_iter().flatten().collect())
     }
 

@@ -107,6 +107,7 @@ where
         let open: Vec<u32> = (0..work.page.bodies.len() as u32).filter(is_new).collect();
         let missing = |&b: &u32| Ok((work.worst(b, &mut work.budget.meter())?, b));
         let mut clumps: Vec<(f64, u32)> = open.par_iter().with_min_len(16).map(missing).collect::<Result<_>>()?;
+        work.budget.spend(0)?;
         clumps.retain(|(missing, _)| *missing > NEAR);
         clumps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         self.work_on(clumps.into_iter().map(|(_, b)| Clump(b)).collect(), meter)

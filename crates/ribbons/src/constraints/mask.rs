@@ -152,6 +152,7 @@ impl Forbidden {
             Ok((offsets.list, offsets.held))
         };
         let found = (0..all.len()).into_par_iter().map(one).collect::<Result<Vec<(Vec<Offset>, Option<Held>)>>>()?;
+        budget.spend(0)?;
         let (offsets, held): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let mut rest = offsets.into_iter().map(Arc::new);
         let cages = cages.iter().map(|cage| rest.by_ref().take(cage.len()).collect()).collect();

@@ -130,6 +130,7 @@ impl Step<'_> {
             Ok(query.best)
         };
         let found = leaves.par_iter().map(search).collect::<Result<Vec<[Best; LANES]>>>()?;
+        budget.spend(0)?;
         let mut best = vec![Best::NONE; self.positions.len()];
         for (leaf, found) in leaves.iter().zip(&found) {
             for (&member, found) in groups.order[leaf.members.clone()].iter().zip(found) {
@@ -164,6 +165,7 @@ impl Step<'_> {
             }
             Ok(())
         })?;
+        self.budget.spend(0)?;
         Ok(best)
     }
 
@@ -193,6 +195,7 @@ impl Step<'_> {
             Ok(best)
         };
         let best = (0..self.positions.len()).into_par_iter().map(way).collect::<Result<Vec<Best>>>()?;
+        self.budget.spend(0)?;
         self.row(&best)
     }
 

@@ -145,15 +145,12 @@ pub(crate) fn windows<const D: usize>(
     let lists: Result<Vec<Vec<u32>>> = places
         .par_iter()
         .with_min_len(256)
-        .map_init(
-            || budget.meter(),
-            |meter, &p| {
-                let mut list = Vec::new();
-                let looked = index.windows(sites, p, reach, |q, _| list.push(q as u32));
-                meter.spend(20 + 12 * looked)?;
-                Ok(list)
-            },
-        )
+        .map(|&p| {
+            let mut list = Vec::new();
+            let looked = index.windows(sites, p, reach, |q, _| list.push(q as u32));
+            budget.spend(20 + 12 * looked)?;
+            Ok(list)
+        })
         .collect();
     Ok(Lists::new(&lists?))
 }
@@ -170,19 +167,16 @@ pub(crate) fn neighbours<const D: usize>(
         .par_iter()
         .enumerate()
         .with_min_len(256)
-        .map_init(
-            || budget.meter(),
-            |meter, (i, &p)| {
-                let mut list = Vec::new();
-                let looked = index.within(p, radius, |j, _| {
-                    if j != i {
-                        list.push(j as u32);
-                    }
-                });
-                meter.spend(20 + 6 * looked)?;
-                Ok(list)
-            },
-        )
+        .map(|(i, &p)| {
+            let mut list = Vec::new();
+            let looked = index.within(p, radius, |j, _| {
+                if j != i {
+                    list.push(j as u32);
+                }
+            });
+            budget.spend(20 + 6 * looked)?;
+            Ok(list)
+        })
         .collect();
     Ok(Lists::new(&lists?))
 }

@@ -140,7 +140,8 @@ impl<const D: usize> Field<D> {
                 }
             }
             Ok(())
-        })
+        })?;
+        budget.spend(0)
     }
 
     /// Number of the lowest corner of the cell at `y`, and how far into the cell it is; `None` where the field is zero.

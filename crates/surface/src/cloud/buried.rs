@@ -48,7 +48,9 @@ pub(crate) fn buried(
         Ok(found)
     };
     let chunks: Result<Vec<_>> = sheet.par_chunks(256).map(chunk).collect();
-    let windings: Vec<f64> = chunks?.into_iter().flatten().collect();
+    let chunks = chunks?;
+    budget.spend(0)?;
+    let windings: Vec<f64> = chunks.into_iter().flatten().collect();
     let mut sorted = windings.clone();
     let half = sorted.len() / 2;
     let usual = *sorted.select_nth_unstable_by(half, f64::total_cmp).1;
@@ -77,5 +79,7 @@ fn facing(
         let mut meter = budget.meter();
         chunk.iter().try_fold(0, |count, &i| Ok(count + usize::from(is_faced(i, &mut meter)?)))
     };
-    sheet.par_chunks(256).map(chunk).try_reduce(|| 0, |a, b| Ok(a + b))
+    let facing = sheet.par_chunks(256).map(chunk).try_reduce(|| 0, |a, b| Ok(a + b))?;
+    budget.spend(0)?;
+    Ok(facing)
 }

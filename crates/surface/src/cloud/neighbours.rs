@@ -45,7 +45,9 @@ impl Neighbours {
         };
         let chunks: Result<Vec<_>> = points.par_chunks(512).enumerate().map(chunk).collect();
         let (mut all, mut spacing) = (Vec::with_capacity(points.len() * each), Vec::with_capacity(points.len()));
-        for (some, theirs) in chunks? {
+        let chunks = chunks?;
+        budget.spend(0)?;
+        for (some, theirs) in chunks {
             all.extend(some);
             spacing.extend(theirs);
         }

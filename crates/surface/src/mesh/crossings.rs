@@ -51,7 +51,9 @@ pub(crate) fn crossings(index: &MeshIndex, budget: &Budget) -> Result<Crossings>
             Ok(sum)
         })
         .collect();
-    Ok(chunks?.into_iter().fold(Crossings { is_whole: true, ..Crossings::default() }, |a, b| Crossings {
+    let chunks = chunks?;
+    budget.spend(0)?;
+    Ok(chunks.into_iter().fold(Crossings { is_whole: true, ..Crossings::default() }, |a, b| Crossings {
         count: a.count + b.count,
         first: a.first.or(b.first),
         is_whole: a.is_whole && b.is_whole,

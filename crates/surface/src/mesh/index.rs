@@ -224,7 +224,9 @@ impl MeshIndex {
                 chunk.iter().map(one).collect()
             })
             .collect();
-        Ok(chunks?.into_iter().flatten().collect())
+        let chunks = chunks?;
+        budget.spend(0)?;
+        Ok(chunks.into_iter().flatten().collect())
     }
 
     /// The nearest triangle with its squared distance, and what was looked at.

@@ -103,7 +103,9 @@ impl Grid {
             Ok(points)
         };
         let blocks: Result<Vec<_>> = (0..self.blocks.iter().product()).into_par_iter().map(of_block).collect();
-        let points: Vec<_> = blocks?.into_iter().flatten().collect();
+        let blocks = blocks?;
+        budget.spend(0)?;
+        let points: Vec<_> = blocks.into_iter().flatten().collect();
         budget.within("points of a grid, in fours", points.len() / 4, ("candidates", budget.limits().candidates))?;
         Ok(points)
     }

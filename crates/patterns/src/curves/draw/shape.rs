@@ -80,6 +80,7 @@ where
     }
     let cut: Vec<Vec<Drawn<D>>> =
         free.into_par_iter().map(|d| cut_at_border(d, state, net, &budget)).collect::<Result<_>>()?;
+    budget.spend(0)?;
     Ok(frozen.chain(cut.into_iter().flatten()).collect())
 }
 

@@ -162,21 +162,47 @@ fn dear_questions_are_counted_and_told() {
         std::hint::black_box(even.closest(p));
     }
     assert_eq!(budget.work(), before, "the loop pays for ordinary questions");
-    // Thin triangles around one corner lie in one another's boxes.
-    let rim = |k: u32| {
-        let turn = f64::from(k) / 4000.0 * std::f64::consts::TAU;
-        Vector([turn.cos(), turn.sin(), 0.0])
-    };
-    let positions = std::iter::once(Vector([0.0, 0.0, 0.4])).chain((0..4000).map(rim)).collect();
-    let triangles = (0..4000).map(|k| [0, k + 1, (k + 1) % 4000 + 1]).collect();
-    let fan =
-        MeshIndex::new(&TriangleMesh { positions, triangles, ..TriangleMesh::default() }, "a.obj", &budget).unwrap();
+    // Thin triangles around one corner lie in one another's boxes, and so do pieces of them where they are many.
+    let dear = |count| fan(count, &budget).dearness();
+    assert!(dear(100) == 0.0 && dear(4000) < 20_000.0 && dear(100_000) > 100_000.0, "{} {}", dear(4000), dear(100_000));
+    let many = fan(100_000, &budget);
     let before = budget.work();
     for p in places(50, 0.5) {
-        std::hint::black_box(fan.closest(p));
+        std::hint::black_box(many.closest(p));
     }
     let each = (budget.work() - before) as f64 / 50.0;
-    assert!(each > 1000.0 && fan.dearness() > 1000.0, "{each} {}", fan.dearness());
+    assert!(each > 1000.0, "{each}");
+    let error = many.signed_distances(&vec![Vector::ZERO; 10_000_000], &Budget::default()).unwrap_err().to_string();
+    assert!(
+        error.contains("fan.obj: distances to its long thin triangles") && error.contains("--limit work="),
+        "{error}"
+    );
+}
+
+/// Thin triangles from one corner to a circle of radius 1 below it, and back to another corner.
+fn fan(count: u32, budget: &Budget) -> MeshIndex {
+    let rim = |k: u32| {
+        let turn = f64::from(k) / f64::from(count) * std::f64::consts::TAU;
+        Vector([turn.cos(), turn.sin(), 0.0])
+    };
+    let positions = [0.4, -0.4].map(|z| Vector([0.0, 0.0, z])).into_iter().chain((0..count).map(rim)).collect();
+    let next = |k: u32| [k + 2, (k + 1) % count + 2];
+    let triangles = (0..count).flat_map(|k| [[0, next(k)[0], next(k)[1]], [1, next(k)[1], next(k)[0]]]).collect();
+    MeshIndex::new(&TriangleMesh { positions, triangles, ..TriangleMesh::default() }, "fan.obj", budget).unwrap()
+}
+
+#[test]
+fn pieces_of_thin_triangles_give_the_answers_of_the_whole() {
+    let fan = fan(3000, &Budget::default());
+    for p in places(60, 0.7) {
+        let closest = fan.closest(p);
+        let all = (0..fan.triangles()).map(|t| fan.closest_on(t, p).distance);
+        assert!((closest.distance - all.fold(f64::INFINITY, f64::min)).abs() < 1e-9);
+        assert!((closest.point - fan.at(closest.triangle, closest.barycentric).point).norm() < 1e-12);
+        // Beside a double cone.
+        let beside = p.0[0].hypot(p.0[1]) + p.0[2].abs() / 0.4 - 1.0;
+        assert!(beside.abs() < 1e-3 || fan.is_inside(p) == (beside < 0.0), "{p:?}");
+    }
 }
 
 #[test]

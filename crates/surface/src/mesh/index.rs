@@ -4,7 +4,6 @@ use arabesque_core::{Bounds, Budget, Error, Held, Result, TriangleMesh, Vector};
 use rayon::prelude::*;
 
 use super::{
-    pieces::Pieces,
     topology::{NONE, Topology},
     triangle,
 };
@@ -17,8 +16,6 @@ const LOOK: u64 = 12;
 const ORDINARY: u64 = 256;
 /// Questions that tell how dear they are.
 const ASKED: usize = 64;
-/// Dearness from which long thin triangles are cut.
-const DEAR: f64 = (4 * ORDINARY * LOOK) as f64;
 
 /// The point of a mesh that is nearest to some place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +40,9 @@ pub struct MeshIndex {
     pub(crate) topology: Topology,
     /// Normals at the vertices of the topology, weighted by the angles of the triangles around them.
     pub(crate) normals: Vec<Vector<3>>,
-    /// The items of the tree, where these are not the triangles.
-    pieces: Option<Pieces>,
     tree: Tree,
     dipoles: Dipoles,
     bounds: Bounds<3>,
-    dearness: f64,
     name: String,
     budget: Budget,
     _held: Held,
@@ -66,32 +60,14 @@ impl MeshIndex {
         let held = budget.hold(name, mesh.triangles.len() * 260 + mesh.positions.len() * 80)?;
         let topology = Topology::new(mesh, budget)?;
         budget.spend(mesh.triangles.len() as u64 * 200)?;
-        let (tree, dipoles) = Self::search(&topology, None, budget)?;
-        let (bounds, normals) = (tree.nodes[0].bounds, vertex_normals(&topology));
-        let (name, budget) = (name.to_owned(), budget.clone());
-        let mut index =
-            Self { bounds, topology, normals, pieces: None, tree, dipoles, dearness: 0.0, name, budget, _held: held };
-        index.dearness = index.asked();
-        if index.dearness > DEAR {
-            let pieces = Pieces::new(&index.topology, bounds.size(), &index.budget)?;
-            (index.tree, index.dipoles) = Self::search(&index.topology, Some(&pieces), &index.budget)?;
-            index.pieces = Some(pieces);
-            index.dearness = index.asked();
-        }
-        Ok(index)
-    }
-
-    /// The tree over the pieces, or the triangles, and its dipoles.
-    fn search(topology: &Topology, pieces: Option<&Pieces>, budget: &Budget) -> Result<(Tree, Dipoles)> {
-        let corners = |item| pieces.map_or_else(|| topology.corners(item), |pieces| pieces.corners(item));
-        let count = pieces.map_or(topology.triangles.len(), Pieces::len);
-        let boxes: Vec<_> = (0..count as u32).into_par_iter().map(|item| Bounds::around(corners(item))).collect();
+        let boxes: Vec<_> =
+            (0..topology.triangles.len() as u32).into_par_iter().map(|t| Bounds::around(topology.corners(t))).collect();
         let tree = Tree::new(&boxes, budget)?;
-        let dipoles = Dipoles::new(&tree, |item| {
-            let [a, b, c] = corners(item);
-            (triangle::at(&[a, b, c], [1.0 / 3.0; 3]), (b - a).cross(c - a) * 0.5)
-        });
-        Ok((tree, dipoles))
+        let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
+        let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
+        let normals = vertex_normals(&topology);
+        let (bounds, name, budget) = (tree.nodes[0].bounds, name.to_owned(), budget.clone());
+        Ok(Self { bounds, topology, normals, tree, dipoles, name, budget, _held: held })
     }
 
     /// The smallest box around the triangles.
@@ -132,7 +108,7 @@ impl MeshIndex {
 
     /// The nearest point of the mesh, if it is no farther than `reach`: faster than [`MeshIndex::closest`] where most places are farther.
     pub fn closest_within(&self, p: Vector<3>, reach: f64) -> Option<Closest> {
-        let (found, looked) = self.nearest_within(p, reach * reach);
+        let (found, looked) = self.tree.nearest(p, reach * reach, |t| Some(self.distance2(t, p)));
         self.owe(looked);
         found.map(|(t, _)| self.on_triangle(t, p))
     }
@@ -179,11 +155,6 @@ impl MeshIndex {
     /// Work units that a question such as [`MeshIndex::closest`] takes beyond what is usual, on average over the mesh: 0 for nearly all
     /// meshes. For estimates.
     pub fn dearness(&self) -> f64 {
-        self.dearness
-    }
-
-    /// [`MeshIndex::dearness`], by asking.
-    fn asked(&self) -> f64 {
         let step = self.triangles().div_ceil(ASKED);
         let asked = (0..self.triangles()).step_by(step);
         let count = asked.len() as f64;
@@ -233,10 +204,9 @@ impl MeshIndex {
         })
     }
 
-    /// The numbers of triangles whose boxes may meet `bounds`, some of them more than once, until `visit` answers false; and what was
-    /// looked at.
-    pub(crate) fn meeting(&self, bounds: &Bounds<3>, mut visit: impl FnMut(u32) -> bool) -> u64 {
-        self.tree.meeting(bounds, |item| visit(self.triangle(item)))
+    /// The numbers of triangles whose boxes may meet `bounds`, until `visit` answers false; and what was looked at.
+    pub(crate) fn meeting(&self, bounds: &Bounds<3>, visit: impl FnMut(u32) -> bool) -> u64 {
+        self.tree.meeting(bounds, visit)
     }
 
     fn all<T: Send>(
@@ -245,9 +215,7 @@ impl MeshIndex {
         budget: &Budget,
         ask: impl Fn(Vector<3>) -> (T, u64) + Sync,
     ) -> Result<Vec<T>> {
-        let expected = (self.dearness * points.len() as f64 / 1e6).floor();
-        let what = format!("{}: distances to its long thin triangles, in million units of work", self.name);
-        budget.within_expected(&what, expected, ("work", budget.limits().work))?;
+        self.foresee(points, budget, |p| ask(p).1)?;
         let chunks: Result<Vec<Vec<T>>> = points
             .par_chunks(256)
             .map(|chunk| {
@@ -264,25 +232,23 @@ impl MeshIndex {
         Ok(chunks.into_iter().flatten().collect())
     }
 
+    /// Refuses so many questions where a few of them tell that all would be over the limit of work.
+    fn foresee(&self, points: &[Vector<3>], budget: &Budget, looks: impl Fn(Vector<3>) -> u64) -> Result<()> {
+        let asked = points.iter().step_by(points.len().div_ceil(ASKED).max(1));
+        let share = points.len() as f64 / asked.len().max(1) as f64;
+        if share < ASKED as f64 {
+            return Ok(());
+        }
+        let looked: u64 = asked.map(|&p| looks(p)).sum();
+        budget.spend(looked * LOOK)?;
+        let expected = looked as f64 * share * LOOK as f64 / 1e6;
+        let what = format!("{}: questions to its triangles, in million units of work", self.name);
+        budget.within_expected(&what, expected, ("work", (budget.allowed() / 1_000_000) as usize))
+    }
+
     /// The nearest triangle with its squared distance, and what was looked at.
     fn nearest(&self, p: Vector<3>) -> (Option<(u32, f64)>, u64) {
-        self.nearest_within(p, f64::INFINITY)
-    }
-
-    /// The same within the root of `limit`.
-    fn nearest_within(&self, p: Vector<3>, limit: f64) -> (Option<(u32, f64)>, u64) {
-        let (found, looked) = self.tree.nearest(p, limit, |item| Some(distance2(&self.item(item), p)));
-        (found.map(|(item, d2)| (self.triangle(item), d2)), looked)
-    }
-
-    /// The corners of an item of the tree.
-    fn item(&self, item: u32) -> [Vector<3>; 3] {
-        self.pieces.as_ref().map_or_else(|| self.topology.corners(item), |pieces| pieces.corners(item))
-    }
-
-    /// The triangle of an item.
-    fn triangle(&self, item: u32) -> u32 {
-        self.pieces.as_ref().map_or(item, |pieces| pieces.triangle(item))
+        self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)))
     }
 
     /// Counts what a single question looked at beyond what its loop pays for.
@@ -293,7 +259,12 @@ impl MeshIndex {
     }
 
     fn winding_counted(&self, p: Vector<3>) -> (f64, u64) {
-        self.dipoles.winding(&self.tree, p, |item| triangle::solid_angle(&self.item(item), p))
+        self.dipoles.winding(&self.tree, p, |t| triangle::solid_angle(&self.topology.corners(t), p))
+    }
+
+    fn distance2(&self, t: u32, p: Vector<3>) -> f64 {
+        let corners = self.topology.corners(t);
+        (triangle::at(&corners, triangle::nearest(&corners, p)) - p).norm2()
     }
 
     fn on_triangle(&self, t: u32, p: Vector<3>) -> Closest {
@@ -332,11 +303,6 @@ impl MeshIndex {
             }
         }
     }
-}
-
-/// The squared distance from `p` to a triangle.
-fn distance2(corners: &[Vector<3>; 3], p: Vector<3>) -> f64 {
-    (triangle::at(corners, triangle::nearest(corners, p)) - p).norm2()
 }
 
 /// Refuses what is no mesh, or too much of one.

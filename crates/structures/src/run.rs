@@ -36,7 +36,7 @@ const SHAKE: f64 = 2.7;
 /// So many times as many rounds and tries where the start was not fitted to anything.
 const UNFITTED: usize = 3;
 /// The same for volumes: the exemplar has many more places to choose from, and each fits less often.
-const DEEP: usize = 3;
+const DEEP: usize = 2;
 /// When more than this share of the sites is in motion, the rest is not left out.
 const WHOLE: f64 = 0.6;
 /// Rounds for the first matches, where the start brings none along.

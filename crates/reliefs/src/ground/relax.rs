@@ -101,20 +101,10 @@ pub(crate) fn relax(
     let kept: Vec<usize> = (0..some.len()).filter(|&i| !is_gone[i]).collect();
     let merged = some.len() - kept.len();
     some = kept.iter().map(|&i| some[i]).collect();
-    let (surface, _) = cloud(&some)?;
-    let seams: Vec<usize> = (0..some.len()).filter(|&i| some[i].is_at_seam).collect();
-    let lies_within = |at: &Vector<3>| extent.is_none_or(|size| (0..2).all(|k| (0.0..=size[k]).contains(&at[k])));
-    for round in 0..rounds {
-        let moved = if round == 0 { None } else { Some(cloud(&some)?.0) };
-        let now = moved.as_ref().unwrap_or(&surface);
-        budget.spend(seams.len() as u64 * 2500)?;
-        let moved: Vec<(Vector<3>, Vector<3>)> =
-            seams.par_iter().with_min_len(128).map(|&i| step(&some[i], now, &surface, spacing)).collect();
-        for (&i, (at, normal)) in seams.iter().zip(moved) {
-            if lies_within(&at) || !lies_within(&some[i].at) {
-                (some[i].at, some[i].normal) = (at, normal);
-            }
-        }
+    // Who asks to stop does not wait for the surface of all of them.
+    if rounds > 0 {
+        let lies_within = |at: &Vector<3>| extent.is_none_or(|size| (0..2).all(|k| (0.0..=size[k]).contains(&at[k])));
+        spread((&mut some, spacing), rounds, &|some| Ok(cloud(some)?.0), &lies_within, budget)?;
     }
     for (&i, s) in kept.iter().zip(&some) {
         samples[near[i] as usize] = *s;
@@ -126,6 +116,31 @@ pub(crate) fn relax(
         gone.next_if_eq(&(k - 1)).is_none()
     });
     Ok(merged)
+}
+
+/// Moves points at seams for some rounds. `cloud` gives the points as a surface, `lies_within` says whether a place is within the border.
+fn spread(
+    (some, spacing): (&mut [Sample], f64),
+    rounds: usize,
+    cloud: &dyn Fn(&[Sample]) -> Result<OrientedPoints>,
+    lies_within: &dyn Fn(&Vector<3>) -> bool,
+    budget: &Budget,
+) -> Result<()> {
+    let surface = cloud(some)?;
+    let seams: Vec<usize> = (0..some.len()).filter(|&i| some[i].is_at_seam).collect();
+    for round in 0..rounds {
+        let moved = if round == 0 { None } else { Some(cloud(some)?) };
+        let now = moved.as_ref().unwrap_or(&surface);
+        budget.spend(seams.len() as u64 * 2500)?;
+        let moved: Vec<(Vector<3>, Vector<3>)> =
+            seams.par_iter().with_min_len(128).map(|&i| step(&some[i], now, &surface, spacing)).collect();
+        for (&i, (at, normal)) in seams.iter().zip(moved) {
+            if lies_within(&at) || !lies_within(&some[i].at) {
+                (some[i].at, some[i].normal) = (at, normal);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Where one point goes: away from those around it, and back onto the surface.

@@ -30,7 +30,7 @@ params! {
         /// Size of the window that has to look like the exemplar, at first; half of it in the end.
         window "window": Option<f64> = None, in 1.0..=1000.0, auto "about half of what repeats in the exemplar", unit "spacings";
         /// Width of the Gaussians that stand for the points.
-        sigma "sigma": Option<f64> = None, in 0.2..=5.0, auto "1, and less where points lie as evenly as in a lattice or on both sides of something thin", unit "spacings";
+        sigma "sigma": Option<f64> = None, in 0.2..=5.0, auto "1, and less where points lie as evenly as in a lattice or, but for volumes, on both sides of something thin", unit "spacings";
         /// Width of these Gaussians in the last levels, which make the spacing of the points even.
         fine "fine": f64 = 0.45, in 0.1..=5.0, unit "spacings";
         /// How much of a neighbourhood counts.

@@ -89,6 +89,8 @@ impl<const D: usize> Prepared<D> {
         let pattern = Pattern::new(points, params, &budget, &mut warnings)?;
         let sigma = match params.sigma {
             Some(sigma) => sigma,
+            // In a volume pieces of the exemplar hardly fit each other, and Gaussians must reach from what ends here to what goes on beside it.
+            None if pattern.repeats() > 2 => width(pattern.variation),
             None => thinned(&pattern, width(pattern.variation), &budget)?,
         } * pattern.spacing;
         let shortest = pattern.sides().fold(f64::INFINITY, f64::min);
@@ -164,5 +166,36 @@ impl<const D: usize> Prepared<D> {
             thickness: self.pattern.thickness,
             repetition: self.repetition.length.filter(|_| self.repetition.strength > REGULAR),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Stage, Stream, Vector};
+
+    use super::*;
+
+    /// Three thin walls above each other, of points that lie unevenly on both sides and face outwards.
+    fn walls() -> PointSet<3> {
+        let mut stream = Stream::new(1, Stage::TEST, 0);
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for n in 0..3 * 2 * 100 {
+            let (wall, side, x, y) = (n / 200, n / 100 % 2, n / 10 % 10, n % 10);
+            let mut at = |k: usize| k as f64 + stream.range(-0.3, 0.3);
+            positions.push(Vector([at(x), at(y), 4.0 * wall as f64 + 0.4 * side as f64]));
+            normals.push(Vector([0.0, 0.0, if side == 0 { -1.0 } else { 1.0 }]));
+        }
+        PointSet { normals: Some(normals), ..PointSet::at(positions) }
+    }
+
+    #[test]
+    fn gaussians_are_narrow_on_thin_sheets_and_wide_in_volumes() {
+        let sigma = |repeats: usize| {
+            let params = StructureParams { repeats: Some(repeats), window: Some(4.0), ..StructureParams::default() };
+            let prepared = Prepared::new(Arc::new(walls()), &params, &Budget::default()).unwrap();
+            prepared.sigma / prepared.spacing()
+        };
+        assert!(sigma(2) < 0.65, "{}", sigma(2));
+        assert!(sigma(3) > 0.95, "{}", sigma(3));
     }
 }

@@ -98,6 +98,11 @@ impl<const D: usize> SiteIndex<D> {
         })
     }
 
+    /// Calls `visit` with each site within `radius` of `p` and the offset to it.
+    pub(crate) fn around(&self, p: Vector<D>, radius: f64, visit: impl FnMut(usize, Vector<D>)) -> u64 {
+        self.index.within(p, radius, visit)
+    }
+
     /// The site nearest to `p`, no farther than `radius`.
     pub(crate) fn nearest(&self, p: Vector<D>, radius: f64) -> Option<usize> {
         self.index.nearest(p, radius, None).map(|found| found.0)

@@ -39,6 +39,8 @@ const CELLS: [f64; 4] = [2.5, 2.5, 2.5, 1.7];
 const SHORTEST: f64 = 0.2;
 /// Share of what is there already of which the exemplar must show the counterpart around a match.
 const SHOWN: f64 = 0.75;
+/// A place belongs to the site nearest to it, within so many steps.
+const NEAREST: f64 = 1.1;
 /// A new point is no nearer to one like it than this, in spacings.
 const APART: f64 = 0.5;
 
@@ -213,10 +215,13 @@ impl<const D: usize> Growth<'_, '_, D> {
         let half = (LOOK[level.pattern.repeats()] * level.tables.kernel.delta / cell).ceil() as i64;
         let base = level.pattern.base;
         let side = 2 * half + 1;
-        let count = side.pow(base.iter().filter(|b| **b).count() as u32);
-        let done = (0..count)
-            .map(|n| {
-                let mut rest = n;
+        let count = side.pow(base.iter().filter(|b| **b).count() as u32) as usize;
+        let done = if level.domain.period().is_none() {
+            self.claimed(q, (half, cell), count)
+        } else {
+            // A site may be nearest to several cells, each of them another way around.
+            let asked = |n: usize| {
+                let mut rest = n as i64;
                 let offset = Vector(std::array::from_fn(|k| {
                     if !base[k] {
                         return 0.0;
@@ -226,10 +231,52 @@ impl<const D: usize> Growth<'_, '_, D> {
                     c as f64 * cell
                 }));
                 let p = site.place + site.shown(offset);
-                level.index.nearest(p, 1.1 * self.step * site.scale).is_some_and(|s| self.done[s])
-            })
-            .collect();
+                level.index.nearest(p, NEAREST * self.step * site.scale).is_some_and(|s| self.done[s])
+            };
+            (0..count).map(asked).collect()
+        };
         Map { half, cell, base, done }.eroded()
+    }
+
+    /// For each cell around site `q` whether the site nearest to it is done. The sites are gone through once, and each claims the cells that
+    /// none before it is nearer to.
+    fn claimed(&self, q: usize, (half, cell): (i64, f64), count: usize) -> Vec<bool> {
+        let level = self.level;
+        let (site, base) = (&level.sites[q], level.pattern.base);
+        let side = 2 * half + 1;
+        let reach = NEAREST * self.step;
+        let radius = (half as f64 + 0.5) * cell * (level.pattern.repeats() as f64).sqrt() + reach;
+        let mut nearest = vec![(reach * reach, usize::MAX); count];
+        level.index.around(site.place, radius * site.scale, |s, offset| {
+            let at = site.seen(offset);
+            let span = |k: usize| -> (i64, i64) {
+                if !base[k] {
+                    return (0, 1);
+                }
+                let low = (((at[k] - reach) / cell).ceil() as i64).max(-half);
+                let high = (((at[k] + reach) / cell).floor() as i64).min(half);
+                (low, (high - low + 1).max(0))
+            };
+            let spans: [(i64, i64); D] = std::array::from_fn(span);
+            for n in 0..spans.iter().map(|s| s.1).product::<i64>() {
+                let (mut rest, mut index, mut stride, mut far) = (n, 0, 1, 0.0);
+                for k in 0..D {
+                    let c = spans[k].0 + rest % spans[k].1;
+                    rest /= spans[k].1;
+                    let off = c as f64 * cell - at[k];
+                    far += off * off;
+                    if base[k] {
+                        index += (c + half) * stride;
+                        stride *= side;
+                    }
+                }
+                let best = &mut nearest[index as usize];
+                if (far, s) < *best {
+                    *best = (far, s);
+                }
+            }
+        });
+        nearest.into_iter().map(|(_, s)| s != usize::MAX && self.done[s]).collect()
     }
 
     /// What is there around site `q`.
@@ -268,7 +315,8 @@ impl<const D: usize> Growth<'_, '_, D> {
             }
         }
         let look = LOOK[pattern.repeats()] * tables.kernel.delta;
-        let radius = (look * look * pattern.repeats() as f64 + pattern.thickness * pattern.thickness * 1.1).sqrt();
+        let along = (look * look * pattern.repeats() as f64).min(tables.kernel.reach() * tables.kernel.reach());
+        let radius = (along + pattern.thickness * pattern.thickness * 1.1).sqrt();
         pattern.index.within(*m, radius, |j, v| {
             if j % stride == 0 && map.at(&v.0) {
                 sum += tables.kernel.weight(&v.0) * self.own_exemplar[j];
@@ -335,8 +383,15 @@ impl<const D: usize> Growth<'_, '_, D> {
                 random.par_iter().map(|m| (rough(m) / run(m).max(SHORTEST), *m)).collect();
             rated.sort_by(|a, b| a.0.total_cmp(&b.0));
             rated.truncate(BEST);
-            rated.iter_mut().for_each(|r| r.0 = rate(&r.1));
-            let refined = rated.into_iter().map(|start| self.refined(start, room, &rate));
+            let refined = rated.into_iter().map(|(_, m)| {
+                if level.pattern.repeats() > 2 {
+                    // There is much to look at in a volume: from where a match is, any share of it tells which way to go.
+                    let m = self.refined((rough(&m), m), room, &rough).1;
+                    (rate(&m), m)
+                } else {
+                    self.refined((rate(&m), m), room, &rate)
+                }
+            });
             let refined = refined.map(|(e, m)| ((e + jump) / run(&m).max(SHORTEST), m));
             let first = carried.into_iter().chain(refined).min_by(|a, b| a.0.total_cmp(&b.0));
             best = first.map_or(best, |b| b.1);

@@ -133,12 +133,39 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
             return Ok((dashes, Some(found)));
         }
     }
+    let is_asked = options.tiling != svg::Tiling::Auto || shown(&drawing) > SMALL;
+    if known.is_none()
+        && is_asked
+        && let Some(alike) = areas_alike(text, &options, &drawing, budget)?
+    {
+        return Ok(alike);
+    }
     if drawing.exemplar.areas.is_empty() || known.is_some() {
         return Ok((drawing, known));
     }
     // Without a repeat, lines are all that can be made of areas.
     let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
     Ok((svg::read_exemplar(text, &options)?, None))
+}
+
+/// A drawing whose fills repeat once all that are painted like those through the frame are areas: contour lines turned into
+/// outlines, of which some close in the frame and lie in one another. `drawing`: what it is otherwise, which does not repeat.
+fn areas_alike(
+    text: &str,
+    options: &ReadOptions,
+    drawing: &Drawing,
+    budget: &Budget,
+) -> Result<Option<(Drawing, Option<Arc<Regular>>)>> {
+    let is_through = |known: &svg::Understood| matches!(known.reason, Reason::Area | Reason::Band | Reason::Traced);
+    if options.large_fills != LargeFills::Areas || !drawing.understood.iter().any(is_through) {
+        return Ok(None);
+    }
+    let alike = ReadOptions { large_fills: LargeFills::AreasAlike, parts: Parts::Apart, ..options.clone() };
+    let Ok(other) = svg::read_exemplar(text, &alike) else { return Ok(None) };
+    if other.exemplar.areas.is_empty() {
+        return Ok(None);
+    }
+    Ok(regular(&other.exemplar, budget)?.map(|found| (other, Some(found))))
 }
 
 /// A page whose repeat cannot be told and that shows no more elements than this is taken for one period.
@@ -164,6 +191,12 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
     // A page that repeats by itself is no period, even if what its edges cut fits together by chance.
     if found.is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
         return page.map(|page| (page, found));
+    }
+    if let Ok(page) = &page
+        && let Some(alike) =
+            areas_alike(text, &ReadOptions { tiling: svg::Tiling::Page, ..options.clone() }, page, budget)?
+    {
+        return Ok(alike);
     }
     if options.method != svg::Method::Auto && period.is_none() {
         return page.map(|page| (page, None));

@@ -66,8 +66,9 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
     Ok(())
 }
 
-/// Takes fills that run through the frame for areas.
-pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
+/// Takes fills that run through the frame for areas, and `all_alike`, what else is painted like one of them.
+pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>, all_alike: bool) {
+    let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| is_plain_fill(item)) {
         let is_area = match item.kind {
             Kind::Large => reaches(item, window) >= 2,
@@ -78,6 +79,13 @@ pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
             continue;
         }
         (item.kind, item.reason) = (Kind::Area, Reason::Area);
+        if all_alike {
+            paints.insert(item.painted.colours_key());
+        }
+    }
+    let may_be = |item: &&mut Item| matches!(item.kind, Kind::Large | Kind::Element) && is_plain_fill(item);
+    for item in items.iter_mut().filter(may_be).filter(|item| paints.contains(&item.painted.colours_key())) {
+        (item.kind, item.reason) = (Kind::Area, Reason::AreaAlike);
     }
 }
 

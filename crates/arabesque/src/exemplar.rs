@@ -148,7 +148,7 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
     Ok((svg::read_exemplar(text, &options)?, None))
 }
 
-/// A drawing whose fills repeat once all that are painted like those through the frame are areas: contour lines turned into
+/// A drawing whose fills repeat once all that are painted like those at the frame are areas: contour lines turned into
 /// outlines, of which some close in the frame and lie in one another. `drawing`: what it is otherwise, which does not repeat.
 fn areas_alike(
     text: &str,
@@ -156,8 +156,8 @@ fn areas_alike(
     drawing: &Drawing,
     budget: &Budget,
 ) -> Result<Option<(Drawing, Option<Arc<Regular>>)>> {
-    let is_through = |known: &svg::Understood| matches!(known.reason, Reason::Area | Reason::Band | Reason::Traced);
-    if options.large_fills != LargeFills::Areas || !drawing.understood.iter().any(is_through) {
+    let may_be = |reason| matches!(reason, Reason::Area | Reason::Band | Reason::Traced | Reason::Piece);
+    if options.large_fills != LargeFills::Areas || !drawing.understood.iter().any(|known| may_be(known.reason)) {
         return Ok(None);
     }
     let alike = ReadOptions { large_fills: LargeFills::AreasAlike, parts: Parts::Apart, ..options.clone() };
@@ -297,6 +297,8 @@ pub(crate) fn understood<const D: usize>(exemplar: &Exemplar<D>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
     use crate::recipe::Method;
 
@@ -332,5 +334,45 @@ mod tests {
         let drawing = points_as_drawing(&points);
         assert!(drawing.exemplar.elements[0].outline.area() > 0.0);
         assert_ne!(drawing.fragments[0].markup, drawing.fragments[1].markup);
+    }
+
+    /// Rings in rings over columns 50 apart, cut by the sides of the page, with a line of uneven width
+    /// through it; `off`: how far each row lies beside the last.
+    fn rings_in_rings(off: impl Fn(usize) -> f64) -> String {
+        let at = |x: f64, y: f64| format!("{x} {y}");
+        let mut data = String::new();
+        for row in 0..4_usize {
+            let (top, by) = (50.0 * row as f64, off(row));
+            for column in 0..4_usize {
+                let (x, y) = (50.0 * column as f64 - 20.0 + by, top + 20.0);
+                for r in [18.0, 16.5, 9.0, 7.0] {
+                    let corners = [at(x - r, y), at(x, y - 0.8 * r), at(x + r, y), at(x, y + 0.9 * r)];
+                    let _ = write!(data, "M{}z", corners.join("L"));
+                }
+            }
+            let wave = |down: f64| (0..8).map(move |k| (25.0 * f64::from(k) - 20.0, down * f64::from(k % 2)));
+            let upper = wave(5.0).map(|(x, y)| at(x + by, top + 40.0 + y));
+            let lower = wave(3.0).map(|(x, y)| at(x + by, top + 44.0 + y)).rev();
+            let _ = write!(data, "M{}z", upper.chain(lower).collect::<Vec<_>>().join("L"));
+        }
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='125' height='160'><path fill-rule='evenodd' d='{data}'/></svg>"
+        )
+    }
+
+    #[test]
+    fn outlines_that_repeat_are_areas_together_and_others_are_not() {
+        let budget = Budget::default();
+        let alike = |text: &str| {
+            let large_fills = LargeFills::Areas;
+            let options = ReadOptions { large_fills, tiling: svg::Tiling::Page, ..ReadOptions::new("t.svg") };
+            let drawing = svg::read_exemplar(text, &options).unwrap();
+            areas_alike(text, &options, &drawing, &budget).unwrap()
+        };
+        let (drawing, found) = alike(&rings_in_rings(|_| 0.0)).unwrap();
+        assert!(drawing.exemplar.elements.is_empty() && found.is_some_and(|f| f.repeat().extent == Extent::Plane));
+        let cell = regular(&drawing.exemplar, &budget).unwrap().unwrap().repeat().lattice.cell();
+        assert!((cell - 2500.0).abs() < 1.0, "{cell}");
+        assert!(alike(&rings_in_rings(|row| [0.0, 13.0, 4.0, 21.0][row])).is_none(), "rows that slip");
     }
 }

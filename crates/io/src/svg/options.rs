@@ -39,8 +39,9 @@ pub enum LargeFills {
     Lines,
     /// Areas, which only a repeat can continue.
     Areas,
-    /// The same, and areas too are all fills that are painted like one of these, whatever their size: contour lines turned into
-    /// outlines, of which some run through the frame and others close in it.
+    /// The same, and areas too are all fills that are painted like one of these, or like a piece of a compound path that reaches a
+    /// side of the frame, whatever their size: contour lines turned into outlines, of which some run through the frame and others
+    /// close in it.
     AreasAlike,
 }
 

@@ -81,7 +81,7 @@ pub enum Reason {
     BandOutline,
     /// A fill that runs through the frame.
     Area,
-    /// A fill painted like one that runs through the frame.
+    /// A fill painted like one at the frame.
     AreaAlike,
     /// A fill that covers the frame.
     Background,
@@ -140,7 +140,7 @@ impl Reason {
             Self::HandBand => "filled bands of about one width through the frame, as lines of their mean width",
             Self::BandOutline => "outlines of fills that run through the frame",
             Self::Area => "fills that run through the frame",
-            Self::AreaAlike => "fills painted like those that run through the frame, with which they repeat",
+            Self::AreaAlike => "fills painted like those at the frame, with which they repeat",
             Self::Background => "fills that cover the frame",
             Self::Covered => "fully covered by something opaque",
             Self::Original => "originals of tiled clones, under their first copies",

@@ -209,7 +209,8 @@ impl Prepared {
         stopped: StopReason,
         budget: &Budget,
     ) -> Result<ReliefOutcome> {
-        let (period, is_flat, scale) = (canvas.period(), canvas.is_flat(), canvas.scale());
+        let (period, extent) = (canvas.period(), canvas.extent());
+        let (is_flat, scale) = (canvas.is_flat(), canvas.scale());
         let mut samples = canvas.into_samples();
         let mut warnings = self.texture.warnings.clone();
         let spent = (stopped == StopReason::Limit).then(|| budget.spent());
@@ -219,7 +220,7 @@ impl Prepared {
         let scale = (texture.spacing * scale, texture.radius * scale);
         // Who asks to stop does not want to wait for points to be evened out; without the time for it they stay where they are.
         let rounds = if stopped == StopReason::Stopped { 0 } else { self.params.relax };
-        let merged = match relax(&mut samples, scale, rounds, period, &budget) {
+        let merged = match relax(&mut samples, scale, rounds, (period, extent), &budget) {
             Ok(merged) => merged,
             Err(Error::Limit { .. } | Error::Stopped { .. }) => 0,
             Err(error) => return Err(error),

@@ -170,7 +170,10 @@ impl Prepared {
             let blocked = blocked.as_ref().map(|b| b as &dyn Fn(Vector<2>) -> bool);
             return self.lay_objects(&cages, request, blocked, watch);
         }
-        let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget)?;
+        let pieces = allow(&cages, &budget);
+        let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget, &mut |work| {
+            watch.foreseen(&Forecast { count: pieces as f64, work, allowed: budget.allowed() as f64 });
+        })?;
         let mut outcome = self.lay(&cages, &free, (request, before), watch)?;
         let Some(mask) = mask else { return Ok(outcome) };
         let spared = self.spare(&mut outcome.ribbons, &cages, mask, &after(&budget, outcome.stopped));
@@ -193,6 +196,7 @@ impl Prepared {
         if self.objects.is_some() {
             return self.lay_objects(&cages, request, None, watch);
         }
+        allow(&cages, &request.budget);
         self.lay(&cages, &Forbidden::none(&cages), (request, &Memory::default()), watch)
     }
 
@@ -274,7 +278,6 @@ impl Prepared {
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
         let mut outcome = RibbonOutcome::new();
         let total: usize = cages.iter().map(Cage::len).sum();
-        budget.allow_elements(ELEMENTS * total as f64);
         let told = ((TYPICAL * total as f64) as usize).clamp(TOLD[0], TOLD[1]);
         let mut before_half = budget.work();
         let mut done = 0;
@@ -458,6 +461,13 @@ impl Prepared {
         })?;
         Ok(hit)
     }
+}
+
+/// Allows the work of all pieces, and says how many there are.
+fn allow<const D: usize>(cages: &[Cage<D>], budget: &Budget) -> usize {
+    let pieces = cages.iter().map(Cage::len).sum();
+    budget.allow_elements(ELEMENTS * pieces as f64);
+    pieces
 }
 
 /// What is left to do after a run is done on its own account, or on a fresh one when that has ended.

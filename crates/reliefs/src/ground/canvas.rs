@@ -26,6 +26,11 @@ pub(crate) trait Canvas {
         None
     }
 
+    /// The sides of the rectangle from the origin that points may not leave.
+    fn extent(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Whether samples are in the frame of the texture, whose plane is x, y: not so for what stands on a mesh.
     fn is_flat(&self) -> bool {
         true

@@ -295,6 +295,10 @@ impl Canvas for PlaneCanvas<'_> {
     fn period(&self) -> Option<[f64; 2]> {
         self.is_tile.then_some(self.size)
     }
+
+    fn extent(&self) -> Option<[f64; 2]> {
+        (!self.is_tile).then_some(self.size)
+    }
 }
 
 impl PlaneCanvas<'_> {

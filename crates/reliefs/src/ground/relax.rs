@@ -66,12 +66,13 @@ fn near_seams(samples: &[Sample], period: Period, reach: f64) -> Vec<u32> {
     (0..samples.len() as u32).filter(|&i| is_near[slot(cell(samples[i as usize].at))]).collect()
 }
 
-/// Spreads the points along seams; answers how many went. When it cannot be done, they stay as they are.
+/// Spreads the points along seams; answers how many went. When it cannot be done, they stay as they are. None leaves the `extent` in which
+/// it lies: beyond the border nothing pushes back.
 pub(crate) fn relax(
     samples: &mut Vec<Sample>,
     (spacing, radius): (f64, f64),
     rounds: usize,
-    period: Period,
+    (period, extent): (Period, Option<[f64; 2]>),
     budget: &Budget,
 ) -> Result<usize> {
     budget.spend(samples.len() as u64 * 20)?;
@@ -102,6 +103,7 @@ pub(crate) fn relax(
     some = kept.iter().map(|&i| some[i]).collect();
     let (surface, _) = cloud(&some)?;
     let seams: Vec<usize> = (0..some.len()).filter(|&i| some[i].is_at_seam).collect();
+    let lies_within = |at: &Vector<3>| extent.is_none_or(|size| (0..2).all(|k| (0.0..=size[k]).contains(&at[k])));
     for round in 0..rounds {
         let moved = if round == 0 { None } else { Some(cloud(&some)?.0) };
         let now = moved.as_ref().unwrap_or(&surface);
@@ -109,7 +111,9 @@ pub(crate) fn relax(
         let moved: Vec<(Vector<3>, Vector<3>)> =
             seams.par_iter().with_min_len(128).map(|&i| step(&some[i], now, &surface, spacing)).collect();
         for (&i, (at, normal)) in seams.iter().zip(moved) {
-            (some[i].at, some[i].normal) = (at, normal);
+            if lies_within(&at) || !lies_within(&some[i].at) {
+                (some[i].at, some[i].normal) = (at, normal);
+            }
         }
     }
     for (&i, s) in kept.iter().zip(&some) {
@@ -167,7 +171,7 @@ mod tests {
         let mut samples = sheet();
         samples.push(Sample { at: Vector([5.1, 5.1, 0.0]), is_at_seam: true, ..samples[0] });
         samples.push(Sample { at: Vector([7.6, 7.2, 0.0]), is_at_seam: true, ..samples[0] });
-        let merged = relax(&mut samples, (1.0, 2.5), 8, None, &Budget::default()).unwrap();
+        let merged = relax(&mut samples, (1.0, 2.5), 8, (None, None), &Budget::default()).unwrap();
         assert_eq!((merged, samples.len()), (1, 401));
         let moved = samples[400].at;
         assert!((moved - Vector([7.5, 7.5, 0.0])).norm() < 0.25 && moved[2].abs() < 1e-9, "{moved:?}");
@@ -178,7 +182,20 @@ mod tests {
     fn tiles_see_across_their_border() {
         let mut samples = sheet();
         samples.push(Sample { at: Vector([19.9, 5.0, 0.0]), is_at_seam: true, ..samples[0] });
-        let merged = relax(&mut samples, (1.0, 2.5), 0, Some([20.0, 20.0]), &Budget::default()).unwrap();
+        let merged = relax(&mut samples, (1.0, 2.5), 0, (Some([20.0, 20.0]), None), &Budget::default()).unwrap();
         assert_eq!(merged, 1, "the point at 0 is the one at 20");
+    }
+
+    #[test]
+    fn points_do_not_leave_the_extent() {
+        let beyond = |extent| {
+            let mut samples = sheet();
+            let first = samples[0];
+            let at = |k: u32| Vector([f64::from(k) + 0.5, 18.2, 0.0]);
+            samples.extend((0..19).map(|k| Sample { at: at(k), is_at_seam: true, ..first }));
+            relax(&mut samples, (1.0, 2.5), 8, (None, extent), &Budget::default()).unwrap();
+            samples[400..].iter().filter(|s| s.at[1] > 18.3).count()
+        };
+        assert!(beyond(None) > 10 && beyond(Some([20.0, 18.3])) == 0, "{}", beyond(None));
     }
 }

@@ -16,6 +16,9 @@ const RIVAL: u64 = 8;
 const POINT: u64 = 60;
 const BOX: u64 = 2;
 
+/// Pieces by whose work that of all is foreseen, where there are more.
+const TRIED: usize = 16;
+
 /// Cells over the canvas in which no ink may fall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
@@ -128,35 +131,75 @@ impl Forbidden {
         Self { cages, _held: Vec::new() }
     }
 
-    /// What `mask` and other pieces leave free. Pieces longer than `longest` pixels have no position anyway, and are not looked at.
+    /// What `mask` and other pieces leave free. Pieces longer than `longest` pixels have no position anyway, and are not looked at. `foreseen`
+    /// is told the work that this will take, about.
     ///
     /// # Errors
     /// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
-    pub(crate) fn of(cages: &[Cage<2>], mask: Option<&Mask>, longest: f64, budget: &Budget) -> Result<Self> {
-        let all: Vec<PieceId> =
-            cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
-        let bounds: Vec<Bounds<2>> = all.iter().map(|&(c, k)| cages[c].bounds(k)).collect();
-        let near = Near::new(&bounds);
-        let one = |id: usize| {
-            let (c, k) = all[id];
-            if cages[c].forms[k].bounds().size()[0] > longest {
-                return Ok((Vec::new(), None));
-            }
-            let rivals: Vec<PieceId> = near.of(id, &bounds, budget)?.into_iter().map(|j| all[j]).collect();
-            let mut offsets = Offsets { list: Vec::new(), held: None, budget };
-            overlaps(cages, all[id], &rivals, &mut offsets)?;
-            if let Some(mask) = mask {
-                blocked(&cages[c], k, mask, &mut offsets)?;
-            }
-            offsets.tidy();
-            Ok((offsets.list, offsets.held))
-        };
-        let found = (0..all.len()).into_par_iter().map(one).collect::<Result<Vec<(Vec<Offset>, Option<Held>)>>>()?;
+    pub(crate) fn of(
+        cages: &[Cage<2>],
+        mask: Option<&Mask>,
+        longest: f64,
+        budget: &Budget,
+        foreseen: &mut dyn FnMut(f64),
+    ) -> Result<Self> {
+        let search = Search::new(cages, mask, longest, budget);
+        foreseen(search.foreseen()?);
+        let found = (0..search.all.len()).into_par_iter().map(|id| search.offsets(id)).collect::<Result<Vec<_>>>()?;
         budget.spend(0)?;
         let (offsets, held): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let mut rest = offsets.into_iter().map(Arc::new);
         let cages = cages.iter().map(|cage| rest.by_ref().take(cage.len()).collect()).collect();
         Ok(Self { cages, _held: held })
+    }
+}
+
+/// The search for the pixels of all pieces that must stay free.
+struct Search<'a> {
+    cages: &'a [Cage<2>],
+    mask: Option<&'a Mask>,
+    longest: f64,
+    all: Vec<PieceId>,
+    bounds: Vec<Bounds<2>>,
+    near: Near,
+    budget: &'a Budget,
+}
+
+impl<'a> Search<'a> {
+    fn new(cages: &'a [Cage<2>], mask: Option<&'a Mask>, longest: f64, budget: &'a Budget) -> Self {
+        let all: Vec<PieceId> =
+            cages.iter().enumerate().flat_map(|(c, cage)| (0..cage.len()).map(move |k| (c, k))).collect();
+        let bounds: Vec<Bounds<2>> = all.iter().map(|&(c, k)| cages[c].bounds(k)).collect();
+        Self { cages, mask, longest, near: Near::new(&bounds), all, bounds, budget }
+    }
+
+    /// The work of all pieces, by that of a few of them.
+    fn foreseen(&self) -> Result<f64> {
+        let step = self.all.len().div_ceil(TRIED).max(1);
+        let before = self.budget.work();
+        let tried = (0..self.all.len()).step_by(step);
+        let share = self.all.len() as f64 / tried.len().max(1) as f64;
+        for id in tried {
+            self.offsets(id)?;
+        }
+        Ok((self.budget.work() - before) as f64 * share)
+    }
+
+    /// Those of one piece, with their memory.
+    fn offsets(&self, id: usize) -> Result<(Vec<Offset>, Option<Held>)> {
+        let (c, k) = self.all[id];
+        if self.cages[c].forms[k].bounds().size()[0] > self.longest {
+            return Ok((Vec::new(), None));
+        }
+        let rivals: Vec<PieceId> =
+            self.near.of(id, &self.bounds, self.budget)?.into_iter().map(|j| self.all[j]).collect();
+        let mut offsets = Offsets { list: Vec::new(), held: None, budget: self.budget };
+        overlaps(self.cages, self.all[id], &rivals, &mut offsets)?;
+        if let Some(mask) = self.mask {
+            blocked(&self.cages[c], k, mask, &mut offsets)?;
+        }
+        offsets.tidy();
+        Ok((offsets.list, offsets.held))
     }
 }
 

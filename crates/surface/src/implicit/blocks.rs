@@ -196,6 +196,12 @@ pub(crate) struct Field {
 }
 
 impl Field {
+    /// Memory of the nodes of a field over these blocks, in bytes.
+    pub(crate) fn bytes(blocks: &Blocks, has_colours: bool) -> usize {
+        let each = size_of::<Node>() + if has_colours { size_of::<[f32; 3]>() } else { 0 };
+        (blocks.len() * BLOCK).saturating_mul(each)
+    }
+
     /// A field with nodes from `evaluate`, which is given a block's number, its nodes, and their colours, if any.
     pub(crate) fn new(
         blocks: Blocks,
@@ -205,8 +211,7 @@ impl Field {
         evaluate: impl Fn(&Blocks, usize, &mut [Node], &mut [[f32; 3]]) -> Result<()> + Sync,
     ) -> Result<Self> {
         let count = blocks.len() * BLOCK;
-        let each = size_of::<Node>() + if has_colours { size_of::<[f32; 3]>() } else { 0 };
-        let held = budget.hold("nodes near the points", count.saturating_mul(each))?;
+        let held = budget.hold("nodes near the points", Self::bytes(&blocks, has_colours))?;
         let mut nodes = filled(elsewhere, count, budget)?;
         let mut colours = filled([0.0; 3], if has_colours { count } else { 0 }, budget)?;
         if has_colours {

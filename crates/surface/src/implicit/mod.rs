@@ -6,4 +6,4 @@ mod rimls;
 
 pub(crate) use blocks::{BLOCK, Blocks, Field, Node, SIDE};
 pub(crate) use metaballs::{Balls, metaballs};
-pub(crate) use rimls::{Kernel, Oriented, border_offset, rimls};
+pub(crate) use rimls::{Kernel, Oriented, border_offset, rimls, rimls_bytes};

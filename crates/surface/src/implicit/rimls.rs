@@ -16,6 +16,7 @@ use super::blocks::{BLOCK, Blocks, Field, Node, SIDE, reached};
 const CARE: f32 = 1.75;
 
 /// Points with normals, as a surface is made of them.
+#[derive(Clone, Copy)]
 pub(crate) struct Oriented<'a> {
     pub(crate) positions: &'a [Vector<3>],
     pub(crate) normals: &'a [Vector<3>],
@@ -63,10 +64,20 @@ struct Sample {
     inverse2: f32,
 }
 
+/// Memory of the nodes of that field, in bytes.
+pub(crate) fn rimls_bytes(points: &Oriented<'_>, cell: f64, budget: &Budget) -> Result<usize> {
+    Ok(Field::bytes(&blocks(points, cell, budget)?, points.colours.is_some()))
+}
+
+/// The blocks that points reach.
+fn blocks(points: &Oriented<'_>, cell: f64, budget: &Budget) -> Result<Blocks> {
+    let reaches: Vec<f64> = points.radii.iter().map(|r| r * f64::from(REACH)).collect();
+    Blocks::new(points.positions, &reaches, cell, budget)
+}
+
 /// The field of points with normals, with nodes at distances of `cell`.
 pub(crate) fn rimls(points: &Oriented<'_>, kernel: Kernel, cell: f64, budget: &Budget) -> Result<Field> {
-    let reaches: Vec<f64> = points.radii.iter().map(|r| r * f64::from(REACH)).collect();
-    let blocks = Blocks::new(points.positions, &reaches, cell, budget)?;
+    let blocks = blocks(points, cell, budget)?;
     let evaluate = |blocks: &Blocks, block: usize, nodes: &mut [Node], colours: &mut [[f32; 3]]| {
         let corner = blocks.corner(block);
         let numbers = blocks.balls(block);

@@ -23,13 +23,17 @@ pub(crate) fn crossings(index: &MeshIndex, budget: &Budget) -> Result<Crossings>
     let topology = &index.topology;
     let one = |t: u32| {
         let corners = topology.corners(t);
+        let bounds = Bounds::around(corners);
         let (mut crossed, mut compared) = (false, 0);
         let own = topology.triangles[t as usize];
-        let looked = index.meeting(&Bounds::around(corners), |other| {
+        let looked = index.meeting(&bounds, |other| {
             let theirs = topology.triangles[other as usize];
             if other != t && !theirs.iter().any(|v| own.contains(v)) {
-                compared += 1;
-                crossed = triangle::cross(&corners, &topology.corners(other));
+                let others = topology.corners(other);
+                if overlap(&bounds, &Bounds::around(others)) {
+                    compared += 1;
+                    crossed = triangle::cross(&corners, &others);
+                }
             }
             !crossed && compared < MOST
         });
@@ -58,4 +62,10 @@ pub(crate) fn crossings(index: &MeshIndex, budget: &Budget) -> Result<Crossings>
         first: a.first.or(b.first),
         is_whole: a.is_whole && b.is_whole,
     }))
+}
+
+/// Whether boxes have more in common than a side: what lies in boxes that touch does not cross.
+fn overlap(a: &Bounds<3>, b: &Bounds<3>) -> bool {
+    (0..3).all(|k| a.max[k] > b.min[k] && b.max[k] > a.min[k] || a.min[k] == a.max[k] || b.min[k] == b.max[k])
+        && a.intersects(b)
 }

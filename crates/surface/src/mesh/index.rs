@@ -43,6 +43,7 @@ pub struct MeshIndex {
     tree: Tree,
     dipoles: Dipoles,
     bounds: Bounds<3>,
+    name: String,
     budget: Budget,
     _held: Held,
 }
@@ -65,7 +66,8 @@ impl MeshIndex {
         let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
         let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
         let normals = vertex_normals(&topology);
-        Ok(Self { bounds: tree.nodes[0].bounds, topology, normals, tree, dipoles, budget: budget.clone(), _held: held })
+        let (bounds, name, budget) = (tree.nodes[0].bounds, name.to_owned(), budget.clone());
+        Ok(Self { bounds, topology, normals, tree, dipoles, name, budget, _held: held })
     }
 
     /// The smallest box around the triangles.
@@ -213,6 +215,7 @@ impl MeshIndex {
         budget: &Budget,
         ask: impl Fn(Vector<3>) -> (T, u64) + Sync,
     ) -> Result<Vec<T>> {
+        self.foresee(points, budget, |p| ask(p).1)?;
         let chunks: Result<Vec<Vec<T>>> = points
             .par_chunks(256)
             .map(|chunk| {
@@ -227,6 +230,20 @@ impl MeshIndex {
         let chunks = chunks?;
         budget.spend(0)?;
         Ok(chunks.into_iter().flatten().collect())
+    }
+
+    /// Refuses so many questions where a few of them tell that all would be over the limit of work.
+    fn foresee(&self, points: &[Vector<3>], budget: &Budget, looks: impl Fn(Vector<3>) -> u64) -> Result<()> {
+        let asked = points.iter().step_by(points.len().div_ceil(ASKED).max(1));
+        let share = points.len() as f64 / asked.len().max(1) as f64;
+        if share < ASKED as f64 {
+            return Ok(());
+        }
+        let looked: u64 = asked.map(|&p| looks(p)).sum();
+        budget.spend(looked * LOOK)?;
+        let expected = looked as f64 * share * LOOK as f64 / 1e6;
+        let what = format!("{}: questions to its triangles, in million units of work", self.name);
+        budget.within_expected(&what, expected, ("work", (budget.allowed() / 1_000_000) as usize))
     }
 
     /// The nearest triangle with its squared distance, and what was looked at.

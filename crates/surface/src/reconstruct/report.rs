@@ -1,6 +1,6 @@
 //! What the user should know of a reconstruction, counted part by part and told once.
 
-use arabesque_core::Warning;
+use arabesque_core::{Warning, rounded};
 
 /// What was noticed.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +25,8 @@ pub(super) struct Notes {
     pub(super) empty: Vec<String>,
     /// Small pieces of surface that were left out.
     pub(super) crumbs: usize,
+    /// The usual side of a cell and the largest that was taken instead, to stay within the memory.
+    pub(super) coarser: Option<(f64, f64)>,
 }
 
 impl Notes {
@@ -101,6 +103,16 @@ impl Notes {
                 many(self.crumbs, "piece of surface was", "pieces of surface were")
             ),
             "set a larger kernel to join them to the rest",
+        );
+        let (usual, cell) = self.coarser.unwrap_or_default();
+        tell(
+            self.coarser.is_some(),
+            format!(
+                "cells of {} instead of {}: those of so many points would take too much memory",
+                rounded(cell),
+                rounded(usual)
+            ),
+            "set the size of the cells, and raise the limit with --limit memory=N where that is needed",
         );
         warnings
     }

@@ -1,16 +1,28 @@
 //! The door of the crate for points: all parts, one after another.
 
-use arabesque_core::{Budget, Error, MeshPart, PointSet, Progress, Result, StopReason, TriangleMesh, Warning, Watch};
+use arabesque_core::{
+    Budget, Error, Forecast, MeshPart, PointSet, Progress, Result, StopReason, TriangleMesh, Warning, Watch,
+};
 
 use super::{
     parts::{Name, parts},
     report::Notes,
-    sheet::{Job, LEAST},
+    sheet::{CELL, Job, LEAST},
 };
-use crate::{mesh::MeshIndex, params::SurfaceParams};
+use crate::{
+    cloud::Neighbours,
+    mesh::MeshIndex,
+    params::{Method, SurfaceParams},
+};
 
 /// What errors call the points.
 const NAME: &str = "points";
+/// Work of a point, and of the cells around it where they have the usual size, as measured on spheres.
+const EACH: [f64; 2] = [10_000.0, 12_000.0];
+/// Elements of a result that a point counts as, for the work that each adds.
+const POINT: f64 = 0.01;
+/// Points of fewer have no work worth telling.
+const WORTH_TELLING: usize = 50_000;
 /// Fewest points of which a surface is made at all.
 const FEWEST: usize = 10;
 
@@ -50,6 +62,8 @@ pub fn reconstruct(
         }
     };
     let job = Job { params, cell, trim, budget };
+    budget.allow_elements(POINT * points.len() as f64);
+    foresee(&job, points, watch)?;
     let (mut mesh, mut notes) = (
         TriangleMesh { colours: points.colours.as_ref().map(|_| Vec::new()), ..TriangleMesh::default() },
         Notes::default(),
@@ -97,6 +111,20 @@ pub fn reconstruct(
         ));
     }
     Ok(Reconstruction { mesh, warnings: notes.warnings(), stopped })
+}
+
+/// Tells how much work it will be, about.
+fn foresee(job: &Job<'_>, points: &PointSet<3>, watch: &mut dyn Watch<TriangleMesh>) -> Result<()> {
+    if points.len() < WORTH_TELLING || job.method(points) == Method::Metaballs {
+        return Ok(());
+    }
+    let usual = CELL * Neighbours::usual_spacing(&points.positions, job.params.neighbours, job.budget)?;
+    // The number of cells along a surface.
+    let finer = job.cell.map_or(1.0, |cell| (usual / cell).powi(2));
+    let count = points.len() as f64;
+    let work = count * (EACH[0] + EACH[1] * finer);
+    watch.foreseen(&Forecast { count, work, allowed: job.budget.allowed() as f64 });
+    Ok(())
 }
 
 /// Whether points need others around them to make a surface: balls do not.

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     cloud::{Neighbours, buried, contradictions, estimated, mended, sheets, turned},
-    implicit::{Balls, Field, Kernel, Oriented, border_offset, metaballs, rimls},
+    implicit::{Balls, Field, Kernel, Oriented, border_offset, metaballs, rimls, rimls_bytes},
     isosurface::{Patch, beyond_border, crumbs, cut, march, pinches},
     mesh::MeshIndex,
     params::{Method, Normals, SurfaceParams},
@@ -17,9 +17,11 @@ use crate::{
 /// Fewest points that make a surface.
 pub(super) const LEAST: usize = 4;
 /// Side of a cell where nobody says, in spacings: about six triangles for each point.
-const CELL: f64 = 0.68;
+pub(super) const CELL: f64 = 0.68;
 /// Side of a cell of metaballs where nobody says, in radii of the smaller ones.
 const CELL_OF_BALLS: f64 = 0.4;
+/// Most memory that nodes take of what is allowed, where nobody says how large cells are; and fewest points of which they may take more.
+const AFFORDABLE: (f64, usize) = (0.4, 100_000);
 /// Share of contradicting normals from which all are turned anew.
 const CONTRARY: f64 = 0.2;
 /// Pieces of surface smaller than so many squares of the spacing are crumbs.
@@ -47,14 +49,18 @@ struct Cloud {
 }
 
 impl Job<'_> {
-    /// The surfaces of one part's points.
-    pub(super) fn patches(&self, points: &PointSet<3>, name: &str, notes: &mut Notes) -> Result<Vec<Patch>> {
-        let method = match (self.params.method, &points.radii, &points.normals) {
+    /// How points become a surface.
+    pub(super) fn method(&self, points: &PointSet<3>) -> Method {
+        match (self.params.method, &points.radii, &points.normals) {
             (Method::Auto, Some(_), None) => Method::Metaballs,
             (Method::Auto, ..) => Method::Rimls,
             (method, ..) => method,
-        };
-        if method == Method::Metaballs {
+        }
+    }
+
+    /// The surfaces of one part's points.
+    pub(super) fn patches(&self, points: &PointSet<3>, name: &str, notes: &mut Notes) -> Result<Vec<Patch>> {
+        if self.method(points) == Method::Metaballs {
             let (field, grain) = self.of_balls(points)?;
             return Ok(vec![self.patch(field, false, grain, notes)?]);
         }
@@ -62,8 +68,12 @@ impl Job<'_> {
         let mut sorted = cloud.spacing.clone();
         sorted.sort_by(f64::total_cmp);
         let grain = sorted[sorted.len() / 2];
-        let of_sheet = |sheet: &Vec<usize>| self.patch(self.of_sheet(&cloud, sheet, grain)?, true, grain, notes);
-        cloud.sheets.iter().map(of_sheet).collect()
+        let mut patches = Vec::with_capacity(cloud.sheets.len());
+        for sheet in &cloud.sheets {
+            let field = self.of_sheet(&cloud, sheet, grain, notes)?;
+            patches.push(self.patch(field, true, grain, notes)?);
+        }
+        Ok(patches)
     }
 
     /// The surface of a field.
@@ -106,11 +116,7 @@ impl Job<'_> {
     }
 
     /// The field of one sheet of points; `grain` is the spacing of most points.
-    fn of_sheet(&self, cloud: &Cloud, sheet: &[usize], grain: f64) -> Result<Field> {
-        let cell = self.cell.unwrap_or(CELL * grain);
-        // A cell at the surface has all its nodes within reach of points.
-        let radius = |s: f64| (self.params.kernel * s).max(1.8 * cell + 0.7 * s);
-        let radii: Vec<f64> = sheet.iter().map(|&i| radius(cloud.spacing[i])).collect();
+    fn of_sheet(&self, cloud: &Cloud, sheet: &[usize], grain: f64, notes: &mut Notes) -> Result<Field> {
         let positions: Vec<_> = sheet.iter().map(|&i| cloud.positions[i]).collect();
         let normals: Vec<_> = sheet.iter().map(|&i| cloud.normals[i]).collect();
         let colours: Option<Vec<_>> = cloud.colours.as_ref().map(|c| sheet.iter().map(|&i| c[i]).collect());
@@ -120,9 +126,48 @@ impl Job<'_> {
             sharpness: self.params.sharpness as f32,
             border: border_offset((self.params.border - 0.5) / self.params.kernel) as f32,
         };
-        let oriented =
-            Oriented { positions: &positions, normals: &normals, colours: colours.as_deref(), radii: &radii };
+        let radii = |cell: f64| -> Vec<f64> {
+            // A cell at the surface has all its nodes within reach of points.
+            let radius = |s: f64| (self.params.kernel * s).max(1.8 * cell + 0.7 * s);
+            sheet.iter().map(|&i| radius(cloud.spacing[i])).collect()
+        };
+        let mut oriented =
+            Oriented { positions: &positions, normals: &normals, colours: colours.as_deref(), radii: &[] };
+        let cell = match self.cell {
+            Some(cell) => cell,
+            None => self.affordable(CELL * grain, oriented, &radii, notes)?,
+        };
+        let radii = radii(cell);
+        oriented.radii = &radii;
         rimls(&oriented, kernel, cell, self.budget)
+    }
+
+    /// The side of a cell where nobody says: the usual one, or as much larger as the nodes have to be fewer.
+    fn affordable(
+        &self,
+        usual: f64,
+        points: Oriented<'_>,
+        radii: &dyn Fn(f64) -> Vec<f64>,
+        notes: &mut Notes,
+    ) -> Result<f64> {
+        if points.positions.len() < AFFORDABLE.1 {
+            return Ok(usual);
+        }
+        let most = AFFORDABLE.0 * self.budget.limits().memory as f64;
+        let mut cell = usual;
+        loop {
+            let radii = radii(cell);
+            let bytes = rimls_bytes(&Oriented { radii: &radii, ..points }, cell, self.budget)? as f64;
+            if bytes <= most {
+                break;
+            }
+            // Nodes lie along the surface.
+            cell *= (bytes / most).sqrt().max(1.05);
+        }
+        if cell > usual && notes.coarser.is_none_or(|(_, largest)| cell > largest) {
+            notes.coarser = Some((usual, cell));
+        }
+        Ok(cell)
     }
 
     /// The points with normals and spacings.

@@ -163,20 +163,34 @@ fn dear_questions_are_counted_and_told() {
     }
     assert_eq!(budget.work(), before, "the loop pays for ordinary questions");
     // Thin triangles around one corner lie in one another's boxes.
-    let rim = |k: u32| {
-        let turn = f64::from(k) / 4000.0 * std::f64::consts::TAU;
-        Vector([turn.cos(), turn.sin(), 0.0])
-    };
-    let positions = std::iter::once(Vector([0.0, 0.0, 0.4])).chain((0..4000).map(rim)).collect();
-    let triangles = (0..4000).map(|k| [0, k + 1, (k + 1) % 4000 + 1]).collect();
-    let fan =
-        MeshIndex::new(&TriangleMesh { positions, triangles, ..TriangleMesh::default() }, "a.obj", &budget).unwrap();
+    let fan = fan(4000, &budget);
     let before = budget.work();
     for p in places(50, 0.5) {
         std::hint::black_box(fan.closest(p));
     }
     let each = (budget.work() - before) as f64 / 50.0;
     assert!(each > 1000.0 && fan.dearness() > 1000.0, "{each} {}", fan.dearness());
+    let error = fan.signed_distances(&vec![Vector::ZERO; 1_000_000], &Budget::default()).unwrap_err().to_string();
+    assert!(error.contains("fan.obj: questions to its triangles") && error.contains("--limit work="), "{error}");
+}
+
+/// Thin triangles from one corner to a circle of radius 1 below it, and back to another corner.
+fn fan(count: u32, budget: &Budget) -> MeshIndex {
+    let rim = |k: u32| {
+        let turn = f64::from(k) / f64::from(count) * std::f64::consts::TAU;
+        Vector([turn.cos(), turn.sin(), 0.0])
+    };
+    let positions = [0.4, -0.4].map(|z| Vector([0.0, 0.0, z])).into_iter().chain((0..count).map(rim)).collect();
+    let next = |k: u32| [k + 2, (k + 1) % count + 2];
+    let triangles = (0..count).flat_map(|k| [[0, next(k)[0], next(k)[1]], [1, next(k)[1], next(k)[0]]]).collect();
+    MeshIndex::new(&TriangleMesh { positions, triangles, ..TriangleMesh::default() }, "fan.obj", budget).unwrap()
+}
+
+#[test]
+fn the_triangles_of_a_fan_are_known_not_to_cross() {
+    let budget = Budget::default();
+    let fan = MeshReport::new(&fan(2000, &budget), &budget).unwrap();
+    assert!(fan.crossings_counted && !fan.crossings.any() && fan.is_closed());
 }
 
 #[test]

@@ -28,9 +28,15 @@ impl Inside {
         let nodes = bounds.size().0.map(|side| (side / cell).ceil() as usize + 1);
         let mut distances = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
         let places: Vec<_> = (0..distances.values.len()).map(|n| distances.node(n)).collect();
-        distances.values = index.signed_distances(&places, budget)?;
         let is_sound = report.is_closed() && report.crossings_counted && !report.crossings.any();
         let sense = is_sound.then_some(if report.is_inverted() { -1.0 } else { 1.0 });
+        distances.values = match sense {
+            Some(sense) => {
+                let closest = index.closest_all(&places, budget)?;
+                closest.iter().zip(&places).map(|(closest, &p)| -sense * index.height(closest, p)).collect()
+            }
+            None => index.signed_distances(&places, budget)?,
+        };
         Ok(Self { index, volume: report.volume.abs(), sense, distances, cell })
     }
 }

@@ -83,12 +83,21 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
     let (drawing, known) = read_parts(text, options.clone(), budget)?;
     if has_recurring_parts(&drawing) {
         // What a repeat keeps in place needs not be put together.
-        let apart = read_parts(text, ReadOptions { parts: Parts::Apart, ..options }, budget);
+        let apart = read_parts(text, ReadOptions { parts: Parts::Apart, ..options.clone() }, budget);
         if let Ok((apart, known)) = apart
             && repeats(&apart, budget)?
         {
             return Ok((apart, known));
         }
+    }
+    // Elements that repeat, or are strewn over one period, are better kept apart.
+    if known.is_none()
+        && drawing.exemplar.period.is_none()
+        && has(&drawing, &[Reason::Piece])
+        && regular(&drawing.exemplar, budget)?.is_none()
+        && let Some(alike) = areas_alike(text, &options, budget)?
+    {
+        return Ok(alike);
     }
     Ok((drawing, known))
 }
@@ -96,6 +105,11 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
 /// Whether loose parts were put together, because they come together in the same way again and again.
 pub(crate) fn has_recurring_parts(drawing: &Drawing) -> bool {
     drawing.understood.iter().any(|known| known.reason == Reason::Recurring)
+}
+
+/// Whether something in a drawing was taken for what it is for one of these reasons.
+fn has(drawing: &Drawing, reasons: &[Reason]) -> bool {
+    drawing.understood.iter().any(|known| reasons.contains(&known.reason))
 }
 
 /// Whether a drawing repeats in all directions.
@@ -136,7 +150,8 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
     let is_asked = options.tiling != svg::Tiling::Auto || shown(&drawing) > SMALL;
     if known.is_none()
         && is_asked
-        && let Some(alike) = areas_alike(text, &options, &drawing, budget)?
+        && has(&drawing, &THROUGH)
+        && let Some(alike) = areas_alike(text, &options, budget)?
     {
         return Ok(alike);
     }
@@ -149,15 +164,9 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
 }
 
 /// A drawing whose fills repeat once all that are painted like those at the frame are areas: contour lines turned into
-/// outlines, of which some close in the frame and lie in one another. `drawing`: what it is otherwise, which does not repeat.
-fn areas_alike(
-    text: &str,
-    options: &ReadOptions,
-    drawing: &Drawing,
-    budget: &Budget,
-) -> Result<Option<(Drawing, Option<Arc<Regular>>)>> {
-    let may_be = |reason| matches!(reason, Reason::Area | Reason::Band | Reason::Traced | Reason::Piece);
-    if options.large_fills != LargeFills::Areas || !drawing.understood.iter().any(|known| may_be(known.reason)) {
+/// outlines, of which some close in the frame and lie in one another.
+fn areas_alike(text: &str, options: &ReadOptions, budget: &Budget) -> Result<Option<(Drawing, Option<Arc<Regular>>)>> {
+    if options.large_fills != LargeFills::Areas {
         return Ok(None);
     }
     let alike = ReadOptions { large_fills: LargeFills::AreasAlike, parts: Parts::Apart, ..options.clone() };
@@ -167,6 +176,9 @@ fn areas_alike(
     }
     Ok(regular(&other.exemplar, budget)?.map(|found| (other, Some(found))))
 }
+
+/// Why fills that run through the frame are taken for what they are.
+const THROUGH: [Reason; 3] = [Reason::Area, Reason::Band, Reason::Traced];
 
 /// A page whose repeat cannot be told and that shows no more elements than this is taken for one period.
 const FEW: usize = 6;
@@ -192,9 +204,9 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
     if found.is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
         return page.map(|page| (page, found));
     }
-    if let Ok(page) = &page
-        && let Some(alike) =
-            areas_alike(text, &ReadOptions { tiling: svg::Tiling::Page, ..options.clone() }, page, budget)?
+    let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
+    if matches!(&page, Ok(page) if has(page, &THROUGH))
+        && let Some(alike) = areas_alike(text, &as_page, budget)?
     {
         return Ok(alike);
     }
@@ -366,8 +378,7 @@ mod tests {
         let alike = |text: &str| {
             let large_fills = LargeFills::Areas;
             let options = ReadOptions { large_fills, tiling: svg::Tiling::Page, ..ReadOptions::new("t.svg") };
-            let drawing = svg::read_exemplar(text, &options).unwrap();
-            areas_alike(text, &options, &drawing, &budget).unwrap()
+            areas_alike(text, &options, &budget).unwrap()
         };
         let (drawing, found) = alike(&rings_in_rings(|_| 0.0)).unwrap();
         assert!(drawing.exemplar.elements.is_empty() && found.is_some_and(|f| f.repeat().extent == Extent::Plane));

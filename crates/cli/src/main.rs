@@ -13,7 +13,7 @@ mod progress;
 mod say;
 mod summary;
 
-use std::process::ExitCode;
+use std::{io::Write, process::ExitCode};
 
 use clap::{Parser, error::ErrorKind};
 
@@ -25,7 +25,10 @@ static ALLOCATOR: process::memory::Counting = process::memory::Counting;
 fn main() -> ExitCode {
     process::sentinel::began();
     let wanted = app::asks_for_json(std::env::args_os());
-    let app = app::App::try_parse().unwrap_or_else(|error| refuse(&error, wanted));
+    let app = match app::App::try_parse() {
+        Ok(app) => app,
+        Err(error) => return refuse(&error, wanted),
+    };
     match app.execute() {
         Ok(code) => code,
         Err(failure) => {
@@ -38,7 +41,7 @@ fn main() -> ExitCode {
 }
 
 /// Ends the program with help, or with what is wrong in the options: for a machine too, where it asked for that.
-fn refuse(error: &clap::Error, wanted: bool) -> ! {
+fn refuse(error: &clap::Error, wanted: bool) -> ExitCode {
     let is_help = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
@@ -48,5 +51,8 @@ fn refuse(error: &clap::Error, wanted: bool) -> ! {
         let message = text.lines().take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
         summary::print_failure(&Failure::with(USAGE, message.trim_start_matches("error: ")));
     }
-    error.exit()
+    match error.print().and_then(|()| std::io::stdout().flush()) {
+        Ok(()) => ExitCode::from(if error.use_stderr() { USAGE } else { 0 }),
+        Err(error) => Failure::from(error).report(),
+    }
 }

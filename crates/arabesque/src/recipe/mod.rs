@@ -217,7 +217,12 @@ impl Recipe {
 fn refused(name: &str, text: &str, error: &toml::de::Error) -> Error {
     let line = error.span().and_then(|span| text.get(..span.start)).map(|before| before.matches('\n').count() + 1);
     let place = line.map_or_else(|| name.to_owned(), |n| format!("{name}: line {n}"));
-    let message = error.message().replace('\n', " ");
+    let mut message = error.message().replace('\n', " ");
+    if message == "duplicate key"
+        && let Some(key) = error.span().and_then(|span| text.get(span))
+    {
+        message = format!("the key `{key}` is there twice");
+    }
     let advice = advice(&message);
     Error::input(place, message, advice)
 }

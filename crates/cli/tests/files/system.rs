@@ -70,6 +70,7 @@ fn a_closed_or_full_standard_output_is_told() {
         "$A fill leaves.svg --size 80x80 -o - >/dev/full",
         "$A fill leaves.svg --size 80x80 -o /dev/full --format svg",
         "$A inspect leaves.svg >/dev/full",
+        "$A fill --help >/dev/full",
         "$A man >/dev/full",
     ] {
         let (code, message) = shell(&folder, "sh", line);

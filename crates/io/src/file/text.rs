@@ -53,7 +53,23 @@ fn unpacked(place: &str, bytes: &[u8], budget: &Budget) -> Result<Vec<u8>> {
     }
 }
 
+/// What is known of files that are not text, by how they begin.
+const OTHERS: [(&[u8], &str); 8] = [
+    (b"\x89PNG\r\n\x1a\n", "a PNG picture"),
+    (b"\xFF\xD8\xFF", "a JPEG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"RIFF", "a WebP picture or a sound"),
+    (b"II*\0", "a TIFF picture"),
+    (b"%PDF", "a PDF document, as Illustrator files are too"),
+    (b"PK\x03\x04", "a ZIP archive"),
+    (b"glTF", "a GLB scene"),
+];
+
 fn plain_text(place: &str, bytes: &[u8]) -> Result<String> {
+    if let Some((_, kind)) = OTHERS.iter().find(|(begin, _)| bytes.starts_with(begin)) {
+        let problem = format!("{kind}, where text such as SVG was expected");
+        return Err(Error::input(place, problem, "export it as SVG, or give the file that was meant"));
+    }
     let units = |from: fn([u8; 2]) -> u16| bytes[2..].chunks_exact(2).map(|c| from([c[0], c[1]])).collect::<Vec<_>>();
     let wide = match bytes {
         [0xFF, 0xFE, ..] => Some(units(u16::from_le_bytes)),
@@ -105,6 +121,15 @@ mod tests {
         assert_eq!(text("t", &[0xFF, 0xFE, b'a', 0, b'b', 0]).unwrap(), "ab");
         assert_eq!(text("t", &[0xEF, 0xBB, 0xBF, b'a']).unwrap(), "a");
         assert!(text("t", &[b'a', 0xE9, b'b']).unwrap_err().to_string().contains("byte 2"));
+    }
+
+    #[test]
+    fn pictures_and_archives_are_called_what_they_are() {
+        for (bytes, kind) in [(&b"\xFF\xD8\xFF\xE0JFIF"[..], "a JPEG picture"), (b"%PDF-1.7", "a PDF document")] {
+            let error = text("t.svg", bytes).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("t.svg: {kind}")), "{error}");
+        }
+        assert_eq!(text("t", b"GIF").unwrap(), "GIF");
     }
 
     fn packed(bytes: &[u8]) -> Vec<u8> {

@@ -117,7 +117,13 @@ impl Relief {
         let names: Vec<_> = given.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
         match names.as_slice() {
             [_] => {}
-            [] => return Err(Error::parameter("place", "none", "one of extent, on and fill_hole")),
+            [] => {
+                return Err(Error::parameter(
+                    "place",
+                    "none",
+                    "one of extent, on and fill_hole (--extent, --on or --fill-hole)",
+                ));
+            }
             several => return Err(Error::parameter("place", several.join(" and "), "one of them")),
         }
         if self.tile && self.extent.is_none() {

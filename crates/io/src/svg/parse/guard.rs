@@ -11,7 +11,7 @@ const EXPANSION: usize = 16 << 20;
 /// Refuses text that is too large, nested too deeply, or blown up by entities.
 pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
     if text.trim().is_empty() {
-        return Err(Error::input(name, "nothing in it, expected SVG", "give a drawing with something to repeat"));
+        return Err(Error::input(name, "nothing in it, expected SVG", "give a drawing with something in it"));
     }
     if text.len() > limits.file_bytes {
         return Err(over(format!("{name}: bytes"), text.len(), ("file-bytes", limits.file_bytes)));

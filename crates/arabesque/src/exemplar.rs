@@ -83,12 +83,21 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
     let (drawing, known) = read_parts(text, options.clone(), budget)?;
     if has_recurring_parts(&drawing) {
         // What a repeat keeps in place needs not be put together.
-        let apart = read_parts(text, ReadOptions { parts: Parts::Apart, ..options }, budget);
+        let apart = read_parts(text, ReadOptions { parts: Parts::Apart, ..options.clone() }, budget);
         if let Ok((apart, known)) = apart
             && repeats(&apart, budget)?
         {
             return Ok((apart, known));
         }
+    }
+    // Elements that repeat, or are strewn over one period, are better kept apart.
+    if known.is_none()
+        && drawing.exemplar.period.is_none()
+        && has(&drawing, &[Reason::Piece])
+        && regular(&drawing.exemplar, budget)?.is_none()
+        && let Some(alike) = areas_alike(text, &options, budget)?
+    {
+        return Ok(alike);
     }
     Ok((drawing, known))
 }
@@ -96,6 +105,11 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
 /// Whether loose parts were put together, because they come together in the same way again and again.
 pub(crate) fn has_recurring_parts(drawing: &Drawing) -> bool {
     drawing.understood.iter().any(|known| known.reason == Reason::Recurring)
+}
+
+/// Whether something in a drawing was taken for what it is for one of these reasons.
+fn has(drawing: &Drawing, reasons: &[Reason]) -> bool {
+    drawing.understood.iter().any(|known| reasons.contains(&known.reason))
 }
 
 /// Whether a drawing repeats in all directions.
@@ -133,6 +147,14 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
             return Ok((dashes, Some(found)));
         }
     }
+    let is_asked = options.tiling != svg::Tiling::Auto || shown(&drawing) > SMALL;
+    if known.is_none()
+        && is_asked
+        && has(&drawing, &THROUGH)
+        && let Some(alike) = areas_alike(text, &options, budget)?
+    {
+        return Ok(alike);
+    }
     if drawing.exemplar.areas.is_empty() || known.is_some() {
         return Ok((drawing, known));
     }
@@ -140,6 +162,23 @@ fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Draw
     let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
     Ok((svg::read_exemplar(text, &options)?, None))
 }
+
+/// A drawing whose fills repeat once all that are painted like those at the frame are areas: contour lines turned into
+/// outlines, of which some close in the frame and lie in one another.
+fn areas_alike(text: &str, options: &ReadOptions, budget: &Budget) -> Result<Option<(Drawing, Option<Arc<Regular>>)>> {
+    if options.large_fills != LargeFills::Areas {
+        return Ok(None);
+    }
+    let alike = ReadOptions { large_fills: LargeFills::AreasAlike, parts: Parts::Apart, ..options.clone() };
+    let Ok(other) = svg::read_exemplar(text, &alike) else { return Ok(None) };
+    if other.exemplar.areas.is_empty() {
+        return Ok(None);
+    }
+    Ok(regular(&other.exemplar, budget)?.map(|found| (other, Some(found))))
+}
+
+/// Why fills that run through the frame are taken for what they are.
+const THROUGH: [Reason; 3] = [Reason::Area, Reason::Band, Reason::Traced];
 
 /// A page whose repeat cannot be told and that shows no more elements than this is taken for one period.
 const FEW: usize = 6;
@@ -164,6 +203,12 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
     // A page that repeats by itself is no period, even if what its edges cut fits together by chance.
     if found.is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
         return page.map(|page| (page, found));
+    }
+    let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
+    if matches!(&page, Ok(page) if has(page, &THROUGH))
+        && let Some(alike) = areas_alike(text, &as_page, budget)?
+    {
+        return Ok(alike);
     }
     if options.method != svg::Method::Auto && period.is_none() {
         return page.map(|page| (page, None));
@@ -264,6 +309,8 @@ pub(crate) fn understood<const D: usize>(exemplar: &Exemplar<D>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
     use crate::recipe::Method;
 
@@ -299,5 +346,44 @@ mod tests {
         let drawing = points_as_drawing(&points);
         assert!(drawing.exemplar.elements[0].outline.area() > 0.0);
         assert_ne!(drawing.fragments[0].markup, drawing.fragments[1].markup);
+    }
+
+    /// Rings in rings over columns 50 apart, cut by the sides of the page, with a line of uneven width
+    /// through it; `off`: how far each row lies beside the last.
+    fn rings_in_rings(off: impl Fn(usize) -> f64) -> String {
+        let at = |x: f64, y: f64| format!("{x} {y}");
+        let mut data = String::new();
+        for row in 0..4_usize {
+            let (top, by) = (50.0 * row as f64, off(row));
+            for column in 0..4_usize {
+                let (x, y) = (50.0 * column as f64 - 20.0 + by, top + 20.0);
+                for r in [18.0, 16.5, 9.0, 7.0] {
+                    let corners = [at(x - r, y), at(x, y - 0.8 * r), at(x + r, y), at(x, y + 0.9 * r)];
+                    let _ = write!(data, "M{}z", corners.join("L"));
+                }
+            }
+            let wave = |down: f64| (0..8).map(move |k| (25.0 * f64::from(k) - 20.0, down * f64::from(k % 2)));
+            let upper = wave(5.0).map(|(x, y)| at(x + by, top + 40.0 + y));
+            let lower = wave(3.0).map(|(x, y)| at(x + by, top + 44.0 + y)).rev();
+            let _ = write!(data, "M{}z", upper.chain(lower).collect::<Vec<_>>().join("L"));
+        }
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='125' height='160'><path fill-rule='evenodd' d='{data}'/></svg>"
+        )
+    }
+
+    #[test]
+    fn outlines_that_repeat_are_areas_together_and_others_are_not() {
+        let budget = Budget::default();
+        let alike = |text: &str| {
+            let large_fills = LargeFills::Areas;
+            let options = ReadOptions { large_fills, tiling: svg::Tiling::Page, ..ReadOptions::new("t.svg") };
+            areas_alike(text, &options, &budget).unwrap()
+        };
+        let (drawing, found) = alike(&rings_in_rings(|_| 0.0)).unwrap();
+        assert!(drawing.exemplar.elements.is_empty() && found.is_some_and(|f| f.repeat().extent == Extent::Plane));
+        let cell = regular(&drawing.exemplar, &budget).unwrap().unwrap().repeat().lattice.cell();
+        assert!((cell - 2500.0).abs() < 1.0, "{cell}");
+        assert!(alike(&rings_in_rings(|row| [0.0, 13.0, 4.0, 21.0][row])).is_none(), "rows that slip");
     }
 }

@@ -342,3 +342,22 @@ fn of_rows_that_lie_on_the_last_only_what_shows_is_drawn() {
         }
     }
 }
+
+#[test]
+fn fills_painted_like_those_at_the_frame_are_areas_where_that_is_asked() {
+    let ring = |x: i32, r: i32| format!("M{x} {}h{r}v{r}h-{r}zm2 2v{}h{}v-{}z", 60 - r, r - 4, r - 4, r - 4);
+    let lines = format!("M-5 70l60 9 50 -9v9l-60 8 -50 -8z{}{}", ring(20, 40), ring(30, 20));
+    let body = format!(
+        "<path fill='#234' d='{lines}'/><path fill='#234' d='M70 20h9v9z'/><path fill='#a11' d='M80 40h9v9z'/>\
+         <path fill='#1a1' d='M5 5h9v9zM25 5h9v9z'/><path fill='#11a' d='M40 -5h9v9zM60 5h9v9z'/>"
+    );
+    let text = format!("<svg {NAMESPACES} width='100' height='100'>{body}</svg>");
+    let of = |large_fills| {
+        let options = ReadOptions { large_fills, tiling: Tiling::Page, ..ReadOptions::new("t.svg") };
+        let drawing = read_exemplar(&text, &options).unwrap();
+        (drawing.exemplar.areas.len(), drawing.exemplar.elements.len(), because(&drawing, Reason::AreaAlike))
+    };
+    assert_eq!(of(LargeFills::Areas), (1, 7, 0), "two rings, one in the other, are one thing");
+    // Red, and green of which nothing reaches the frame, are things still.
+    assert_eq!(of(LargeFills::AreasAlike), (5, 3, 4));
+}

@@ -75,7 +75,12 @@ pub(super) fn read(
     let mut options = ReadOptions { budget: budget.clone(), ..reading.of_drawings(name)? };
     options.tiling = Tiling::Page;
     options.parts = own.parts;
-    options.large_fills = if own.exemplar.areas.is_empty() { LargeFills::Lines } else { LargeFills::Areas };
+    let is_alike = own.understood.iter().any(|known| known.reason == svg::Reason::AreaAlike);
+    options.large_fills = match own.exemplar.areas.is_empty() {
+        true => LargeFills::Lines,
+        false if is_alike => LargeFills::AreasAlike,
+        false => LargeFills::Areas,
+    };
     if reading.method == crate::recipe::Method::Auto {
         // Strokes that touch on a spoiled page are no net where the exemplar has none, and so the other way round.
         options.method = match (own.exemplar.elements.is_empty(), own.exemplar.curves.is_empty()) {

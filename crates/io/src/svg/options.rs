@@ -39,6 +39,17 @@ pub enum LargeFills {
     Lines,
     /// Areas, which only a repeat can continue.
     Areas,
+    /// The same, and areas too are all fills that are painted like one of these, or like a piece of a compound path that reaches a
+    /// side of the frame, whatever their size: contour lines turned into outlines, of which some run through the frame and others
+    /// close in it.
+    AreasAlike,
+}
+
+impl LargeFills {
+    /// Whether fills that run through the frame are areas.
+    pub fn are_areas(self) -> bool {
+        matches!(self, Self::Areas | Self::AreasAlike)
+    }
 }
 
 /// What the dashes of a stroke are.

@@ -81,6 +81,8 @@ pub enum Reason {
     BandOutline,
     /// A fill that runs through the frame.
     Area,
+    /// A fill painted like one at the frame.
+    AreaAlike,
     /// A fill that covers the frame.
     Background,
     /// Something under what is opaque.
@@ -107,7 +109,7 @@ impl Reason {
             Self::MarkedCurve | Self::Through | Self::Vast | Self::Crowded | Self::Beside | Self::Asked => "curves",
             Self::Ruled => "curves",
             Self::Traced | Self::Band | Self::HandBand | Self::BandOutline => "curves",
-            Self::Area => "areas",
+            Self::Area | Self::AreaAlike => "areas",
             Self::Background => "background",
             Self::Covered | Self::Original | Self::Border | Self::Outside => "left out",
         }
@@ -138,6 +140,7 @@ impl Reason {
             Self::HandBand => "filled bands of about one width through the frame, as lines of their mean width",
             Self::BandOutline => "outlines of fills that run through the frame",
             Self::Area => "fills that run through the frame",
+            Self::AreaAlike => "fills painted like those at the frame, with which they repeat",
             Self::Background => "fills that cover the frame",
             Self::Covered => "fully covered by something opaque",
             Self::Original => "originals of tiled clones, under their first copies",

@@ -52,7 +52,10 @@ pub(crate) fn cell_areas(
 }
 
 fn overlap(rings: &[Ring<2>], other: &Outline<2>, budget: &Budget) -> Result<bool> {
-    let common = Outline { rings: rings.to_vec() }.try_intersection(other, budget)?;
+    // Of the many rings of a style, those far away cover nothing of it.
+    let extent = other.bounds();
+    let is_near = |ring: &&Ring<2>| Bounds::around(ring.iter().copied()).intersects(&extent);
+    let common = Outline { rings: rings.iter().filter(is_near).cloned().collect() }.try_intersection(other, budget)?;
     Ok(common.area() > 1e-3 * other.area())
 }
 

@@ -81,7 +81,8 @@ impl Document<'_> {
         }
         // Periods repeat, whatever is in them.
         let parts = if unrolled.is_some() { Parts::Apart } else { self.options.parts };
-        let mut found = select(&painter, scope.frame, (self.options.method, parts), &scope.roots)?;
+        let mut found =
+            select(&painter, scope.frame, (self.options.method, parts, self.options.large_fills), &scope.roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         let window = scope.window.unwrap_or_else(|| frame::around(&found.items));
         if unrolled.is_some() {
@@ -293,11 +294,14 @@ fn settle(
         ));
     }
     if options.method != Method::Elements {
-        let as_areas = options.large_fills == LargeFills::Areas;
+        let as_areas = options.large_fills.are_areas();
+        let all_alike = options.large_fills == LargeFills::AreasAlike;
         part_outlined(&mut found.items, painter, &window, as_areas)?;
-        follow_bands(source, &mut found.items, &window)?;
+        if !all_alike {
+            follow_bands(source, &mut found.items, &window)?;
+        }
         if as_areas {
-            take_areas(&mut found.items, &window);
+            take_areas(&mut found.items, &window, all_alike);
             take_gradients(source, &mut found.items, &window)?;
             take_backgrounds(found, painter, &window)?;
             window = uncover(&mut found.items, painter, &window)?;

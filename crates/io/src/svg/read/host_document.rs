@@ -73,7 +73,8 @@ impl Document<'_> {
         let page = page.unwrap_or(Page { view: content, unit: Unit::Px, unit_per_user: 1.0 });
         let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
         let roots = [(Surroundings::new(Affine::IDENTITY).without(&self.options.without), root)];
-        let mut found = select(&painter, page.view, (self.options.method, self.options.parts), &roots)?;
+        let mut found =
+            select(&painter, page.view, (self.options.method, self.options.parts, self.options.large_fills), &roots)?;
         found.items.retain(|item| !is_frame_mark(item));
         if self.options.method != Method::Elements {
             self.take_lines(source, &painter, &mut found, &page.view)?;
@@ -118,9 +119,11 @@ impl Document<'_> {
         found: &mut Selection,
         page: &Bounds<2>,
     ) -> Result<()> {
-        follow_bands(source, &mut found.items, page)?;
-        if self.options.large_fills == LargeFills::Areas {
-            take_areas(&mut found.items, page);
+        if self.options.large_fills != LargeFills::AreasAlike {
+            follow_bands(source, &mut found.items, page)?;
+        }
+        if self.options.large_fills.are_areas() {
+            take_areas(&mut found.items, page, self.options.large_fills == LargeFills::AreasAlike);
             take_backgrounds(found, painter, page)?;
         }
         trace(source, &mut found.items, page)

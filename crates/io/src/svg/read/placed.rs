@@ -6,7 +6,7 @@ use kurbo::Affine;
 use crate::{
     svg::{
         drawing::{Drawing, Fragment, KeptStrokes, Page, Placed},
-        options::{Method, ReadOptions},
+        options::{LargeFills, Method, ReadOptions},
         parse::definitions::Definitions,
         read::{
             document::{Document, Opened},
@@ -53,8 +53,8 @@ impl Document<'_> {
                 (false, false) => Method::Auto,
             };
             let root = without_idle_clips(&painter, &root, Affine::IDENTITY, &page.view)?;
-            let found =
-                select(&painter, page.view, (method, drawing.parts), &[(Surroundings::new(Affine::IDENTITY), root)])?;
+            let reading = (method, drawing.parts, LargeFills::Lines);
+            let found = select(&painter, page.view, reading, &[(Surroundings::new(Affine::IDENTITY), root)])?;
             let sorter = Sorter {
                 painter: &painter,
                 matcher: Matcher::new(drawing),

@@ -57,13 +57,47 @@ impl Looks {
             edges.iter().filter(|e| Bounds::around([e.0, e.1]).intersects(other)).copied().collect()
         };
         let (a, b) = (near(a, &box_b), near(b, &box_a));
-        self.0 = self.0.checked_sub(a.len() as u64 * b.len() as u64)?;
-        let boxes: Vec<_> = b.iter().map(|e| Bounds::around([e.0, e.1]).grown(tolerance)).collect();
-        let meets = |p: Edge| {
+        let b = Sorted::new(&b, tolerance);
+        for p in a {
             let own = Bounds::around([p.0, p.1]).grown(tolerance);
-            b.iter().zip(&boxes).any(|(&q, around)| around.intersects(&own) && test(p, q))
-        };
-        Some(a.iter().any(|&p| meets(p)))
+            let near = b.near(&own);
+            self.0 = self.0.checked_sub(near.len() as u64)?;
+            if near.iter().any(|&(q, around)| around.intersects(&own) && test(p, q)) {
+                return Some(true);
+            }
+        }
+        Some(false)
+    }
+}
+
+/// Edges in the order in which they begin along an axis, the one along which they reach farther: of thousands, few are near a place.
+pub(crate) struct Sorted {
+    axis: usize,
+    /// Each with the box around it.
+    edges: Vec<(Edge, Bounds<2>)>,
+    /// How far the longest box reaches along the axis.
+    longest: f64,
+}
+
+impl Sorted {
+    /// Sorts edges, with boxes that are `grown` by a distance on all sides.
+    pub(crate) fn new(edges: &[Edge], grown: f64) -> Self {
+        let size = Bounds::around(edges.iter().flat_map(|e| [e.0, e.1])).size();
+        let axis = usize::from(size[1] > size[0]);
+        let mut edges: Vec<_> = edges.iter().map(|&e| (e, Bounds::around([e.0, e.1]).grown(grown))).collect();
+        edges.sort_by(|(_, a), (_, b)| a.min[axis].total_cmp(&b.min[axis]));
+        let longest = edges.iter().map(|(_, b)| b.size()[axis]).fold(0.0, f64::max);
+        Self { axis, edges, longest }
+    }
+
+    /// Those whose boxes may meet a box, and some more.
+    pub(crate) fn near(&self, around: &Bounds<2>) -> &[(Edge, Bounds<2>)] {
+        let (axis, low, high) = (self.axis, around.min[self.axis] - self.longest, around.max[self.axis]);
+        // Rounding may make a box a little longer than it is told.
+        let slack = 1e-9 * (low.abs() + high.abs() + self.longest);
+        let from = self.edges.partition_point(|(_, b)| b.min[axis] < low - slack);
+        let to = self.edges.partition_point(|(_, b)| b.min[axis] <= high);
+        self.edges.get(from..to).unwrap_or_default()
     }
 }
 
@@ -115,6 +149,25 @@ mod tests {
         )
         .unwrap();
         assert_eq!(pairs, [(0, 1), (1, 2), (2, 3), (3, 4)]);
+    }
+
+    #[test]
+    fn of_many_edges_few_are_near_a_place_and_none_is_missed() {
+        let all: Vec<Edge> = (0..1000)
+            .map(|k| {
+                let (at, slope) = (Vector::xy(f64::from(k), f64::from(k % 7)), f64::from(k % 3) - 1.0);
+                (at, at + Vector::xy(1.5, slope))
+            })
+            .collect();
+        let sorted = Sorted::new(&all, 0.5);
+        for k in 0..200 {
+            let asked =
+                Bounds::around([Vector::xy(5.0 * f64::from(k), 2.0), Vector::xy(5.0 * f64::from(k) + 2.0, 4.0)]);
+            let meet = |e: &&Edge| Bounds::around([e.0, e.1]).grown(0.5).intersects(&asked);
+            let near = sorted.near(&asked);
+            assert!(near.len() < 10, "{}", near.len());
+            assert!(all.iter().filter(meet).all(|e| near.iter().any(|(other, _)| other == e)), "{k}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, DisjointSets, Result};
 
 use crate::svg::{
-    options::Method,
+    options::{LargeFills, Method},
     parse::notes::Note,
     shape::{
         adjacency::{Edge, Looks, edges_meet, meeting},
@@ -26,12 +26,20 @@ const PAIR: u64 = 10;
 pub(crate) const SEAM: f64 = 2e-4;
 
 /// Joins items: pieces of the same colour that touch always, strokes and what they touch when every connected piece is
-/// an element.
-pub(crate) fn join(found: Selection, painter: &Painter<'_, '_>, frame: Bounds<2>, method: Method) -> Result<Selection> {
+/// an element. Lines that seams cut are joined to strokes, unless fills painted alike are areas.
+pub(crate) fn join(
+    found: Selection,
+    painter: &Painter<'_, '_>,
+    frame: Bounds<2>,
+    (method, large_fills): (Method, LargeFills),
+) -> Result<Selection> {
     let Selection { items, background, left_out } = found;
     let tolerance = SEAM * longer(&frame);
-    let items =
-        if method == Method::Elements { items } else { abutting::join_lines(items, painter, frame, tolerance)? };
+    let items = if method == Method::Elements || large_fills == LargeFills::AreasAlike {
+        items
+    } else {
+        abutting::join_lines(items, painter, frame, tolerance)?
+    };
     let colours: Vec<String> = items.iter().map(|item| item.painted.colours_key()).collect();
     let may_join = |i: usize, j: usize| {
         let (a, b) = (items[i].origin, items[j].origin);

@@ -66,18 +66,26 @@ pub(crate) fn trace(source: &Source<'_>, items: &mut [Item], window: &Bounds<2>)
     Ok(())
 }
 
-/// Takes fills that run through the frame for areas.
-pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>) {
+/// Takes fills that run through the frame for areas; and `all_alike`, pieces of compound paths that reach its sides too, and what
+/// else is painted like one of these.
+pub(crate) fn take_areas(items: &mut [Item], window: &Bounds<2>, all_alike: bool) {
+    let mut paints = BTreeSet::new();
     for item in items.iter_mut().filter(|item| is_plain_fill(item)) {
         let is_area = match item.kind {
             Kind::Large => reaches(item, window) >= 2,
             Kind::Element => runs_through(item, window),
-            Kind::Curve | Kind::Area => false,
+            Kind::Curve | Kind::Area => continue,
         };
-        if !is_area {
-            continue;
+        if all_alike && (is_area || item.origin == Origin::Piece && reaches(item, window) > 0) {
+            paints.insert(item.painted.colours_key());
         }
-        (item.kind, item.reason) = (Kind::Area, Reason::Area);
+        if is_area {
+            (item.kind, item.reason) = (Kind::Area, Reason::Area);
+        }
+    }
+    let may_be = |item: &&mut Item| matches!(item.kind, Kind::Large | Kind::Element) && is_plain_fill(item);
+    for item in items.iter_mut().filter(may_be).filter(|item| paints.contains(&item.painted.colours_key())) {
+        (item.kind, item.reason) = (Kind::Area, Reason::AreaAlike);
     }
 }
 

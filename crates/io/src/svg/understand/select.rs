@@ -19,7 +19,7 @@ use kurbo::Affine;
 use roxmltree::NodeId;
 
 use crate::svg::{
-    options::{Method, Parts},
+    options::{LargeFills, Method, Parts},
     parse::{
         geometry::{self, Geometry, Painted},
         guard,
@@ -81,7 +81,7 @@ struct Selector<'a, 's, 'i> {
 pub(crate) fn select(
     painter: &Painter<'_, '_>,
     frame: Bounds<2>,
-    (method, parts): (Method, Parts),
+    (method, parts, large_fills): (Method, Parts, LargeFills),
     roots: &[(Surroundings, Rc<Node>)],
 ) -> Result<Selection> {
     let mut opened: Vec<NodeId> = Vec::new();
@@ -106,7 +106,7 @@ pub(crate) fn select(
                     found.items = sort_strokes(found.items, painter, frame)?;
                 }
                 drop_hidden(&mut found, painter.source)?;
-                let mut found = join(found, painter, frame, method)?;
+                let mut found = join(found, painter, frame, (method, large_fills))?;
                 if parts == Parts::Together && method != Method::Curves {
                     found.items = put_alike_together(found.items, painter, frame)?;
                 }

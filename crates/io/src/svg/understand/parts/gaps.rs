@@ -3,7 +3,7 @@
 use arabesque_core::{Bounds, Budget, DisjointSets, Outline, Result};
 
 use crate::svg::shape::{
-    adjacency::{Edge, edge_distance, meeting},
+    adjacency::{Edge, Sorted, edge_distance, meeting},
     extent::longer,
 };
 
@@ -84,9 +84,11 @@ fn gap(a: &[Edge], b: &[Edge], most: f64) -> (f64, u64) {
         edges.iter().filter(|e| Bounds::around([e.0, e.1]).intersects(other)).copied().collect()
     };
     let (a, b) = (near(a, &around(b)), near(b, &around(a)));
+    let b = Sorted::new(&b, 0.0);
     let (mut least, mut cost) = (f64::INFINITY, 1);
     for &p in &a {
-        for &q in &b {
+        let asked = Bounds::around([p.0, p.1]).grown(most.min(least));
+        for &(q, _) in b.near(&asked) {
             cost += 1;
             least = edge_distance(p, q).min(least);
             if least == 0.0 {

@@ -157,6 +157,7 @@ fn check(
     }
     let by_name = if piped || options.format.is_some() { None } else { Format::of_path(path)? };
     let format = options.format.or(by_name).or(recipe.output.format).unwrap_or_else(|| recipe.usual_format());
+    recipe.check_format(format)?;
     recipe.output.format = Some(format);
     recipe.output.bare |= options.no_recipe;
     let seeds: Vec<u64> = (0..u64::from(options.variations.unwrap_or(1)))

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use arabesque::{Forecast, Progress};
+use arabesque::{Forecast, Limits, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::{
@@ -74,8 +74,11 @@ impl<P> arabesque::Watch<P> for Watch {
             );
             self.bar.suspend(|| say::note(&text));
             if forecast.work > forecast.allowed {
-                let (needed, name) = ((forecast.work / 1e6).ceil(), "--limit work");
-                self.bar.suspend(|| say::note(&format!("the limit of work will not do: give it {name}={needed}")));
+                let needed = (forecast.work / 1e6).ceil();
+                let can_be = Limits::default().set("work", &needed.to_string()).is_ok();
+                let advice =
+                    if can_be { format!("give it --limit work={needed}") } else { "give it less to do".into() };
+                self.bar.suspend(|| say::note(&format!("the limit of work will not do: {advice}")));
             }
         }
     }

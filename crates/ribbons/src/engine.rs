@@ -13,6 +13,7 @@ use crate::{
     constraints::valid::{Grade, Offset, Position},
     exemplar::columns::Columns,
     exemplar::strip::{self, Strip, StripExemplar, sample},
+    forecast::Pace,
     geometry::cage::{Cage, CagePlan},
     objects::{
         find::{self, Objects},
@@ -32,12 +33,6 @@ const LAYING: &str = "laying pieces";
 const ELEMENTS: f64 = 25.0;
 /// Most work of stitching that is still done when somebody asked to stop; pieces that would take more stay unbent.
 const QUICK: u64 = 200_000_000;
-
-/// Share of the pieces after which the work of all of them is foreseen, from what the second half of these took: the first ones pay for what
-/// all of them use.
-const TYPICAL: f64 = 0.1;
-/// The same in pieces, at least and at most.
-const TOLD: [usize; 2] = [4, 64];
 
 /// The result of a run.
 #[derive(Clone, Debug)]
@@ -278,8 +273,7 @@ impl Prepared {
         let mut memory = Memory { basis: Some(basis), ..Memory::default() };
         let mut outcome = RibbonOutcome::new();
         let total: usize = cages.iter().map(Cage::len).sum();
-        let told = ((TYPICAL * total as f64) as usize).clamp(TOLD[0], TOLD[1]);
-        let mut before_half = budget.work();
+        let mut pace = Pace::new(total, budget.work());
         let mut done = 0;
         for (k, (cage, free)) in cages.iter().zip(&free.cages).enumerate() {
             let name = &request.curves[k].0;
@@ -287,12 +281,7 @@ impl Prepared {
             let curve = CurveRun { cage, free, name, request, rows, budget: &budget };
             let finished = &outcome.ribbons;
             let solved = self.solve(&curve, &mut |rows, energy, path| {
-                if done + rows == told / 2 {
-                    before_half = budget.work();
-                }
-                if done + rows == told {
-                    let each = (budget.work() - before_half) as f64 / (told - told / 2) as f64;
-                    let work = each * total.saturating_sub(told) as f64;
+                if let Some(work) = pace.at(done + rows, budget.work()) {
                     watch.foreseen(&Forecast { count: total as f64, work, allowed: budget.allowed() as f64 });
                 }
                 let progress = progress(done + rows, total, energy);

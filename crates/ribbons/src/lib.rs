@@ -44,6 +44,7 @@
 mod constraints;
 mod engine;
 mod exemplar;
+mod forecast;
 mod geometry;
 mod objects;
 mod params;

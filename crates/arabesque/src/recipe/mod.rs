@@ -207,6 +207,14 @@ impl Recipe {
         serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
     }
 
+    /// Refuses a file format that never holds what is made, before anything is read.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for drawings of surfaces, structures and reliefs, which are pictures at best.
+    pub fn check_format(&self, format: Format) -> Result<()> {
+        self.job.check_format(format)
+    }
+
     /// The file format where nobody says which.
     pub fn usual_format(&self) -> Format {
         self.job.usual_format(&self.exemplar)
@@ -250,6 +258,19 @@ fn advice(message: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn drawings_hold_neither_surfaces_nor_points_with_attributes() {
+        let format = |job: &str, format| {
+            let text = format!("[exemplar]\npath = 'a.ply'\n{job}\n");
+            Recipe::from_toml("t.toml", &text).unwrap().check_format(format)
+        };
+        for job in ["[surface]", "[structures]\nsize = '9x9'", "[relief]\nextent = '9x9'"] {
+            assert!(format(job, Format::Svg).unwrap_err().to_string().contains("as svg is not supported"), "{job}");
+            format(job, Format::Ply).unwrap();
+        }
+        format("[fill]\nsize = '9x9'", Format::Svg).unwrap();
+    }
 
     #[test]
     fn a_short_recipe_is_enough() {

@@ -27,6 +27,8 @@ pub use surface::Surface;
 
 pub(super) use parameters::plain_values;
 
+use arabesque_core::{Error, Result};
+
 use crate::recipe::{format::Format, input::Input};
 
 /// What is to be made, one variant a kind of job; each owns the options that it has.
@@ -77,6 +79,21 @@ impl Job {
             Self::Structures(_) if is(exemplar, Format::Csv) => Format::Csv,
             Self::Surface(_) | Self::Structures(_) | Self::Relief(_) => Format::Ply,
         }
+    }
+
+    /// Refuses a file format that never holds what this job makes, whatever is read.
+    pub(crate) fn check_format(&self, format: Format) -> Result<()> {
+        let (what, advice) = match self {
+            Self::Surface(_) => ("a surface", "write ply, obj, glb, json or png"),
+            Self::Structures(_) | Self::Relief(_) => {
+                ("points with attributes", "write ply, csv, obj, glb, json or png")
+            }
+            _ => return Ok(()),
+        };
+        if format != Format::Svg {
+            return Ok(());
+        }
+        Err(Error::Unsupported { what: format!("{what} as {}", format.name()), advice: advice.into() })
     }
 
     /// The same job with the inputs of `prepared` that were put inside that when it was prepared.

@@ -22,8 +22,8 @@ const INSTALMENT: u64 = 1 << 14;
 ///
 /// Every loop that input can lengthen draws on a budget: [`Budget::spend`] for work, [`Budget::hold`] for memory, [`Budget::within`] for
 /// what is counted once. Work is counted, never timed, so that a run ends at the same place on every machine and with any number of
-/// threads: whether a parallel step is over its budget depends on its sum alone (`spend(0)` ends one whose parts have meters), and a step that was cut short is given
-/// up as a whole.
+/// threads: whether a parallel step is over its budget depends on its sum alone (`spend(0)` ends one whose parts have meters), and a step
+/// that was cut short is given up as a whole.
 ///
 /// ```
 /// use arabesque_core::{Budget, Limits};

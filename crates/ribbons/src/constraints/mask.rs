@@ -173,8 +173,11 @@ impl<'a> Search<'a> {
         Self { cages, mask, longest, near: Near::new(&bounds), all, bounds, budget }
     }
 
-    /// The work of all pieces, by that of a few of them.
+    /// The work of all pieces, by that of a few of them, which is done twice; 0 where these would be a good part of all.
     fn foreseen(&self) -> Result<f64> {
+        if self.all.len() < 8 * TRIED {
+            return Ok(0.0);
+        }
         let step = self.all.len().div_ceil(TRIED).max(1);
         let before = self.budget.work();
         let tried = (0..self.all.len()).step_by(step);

@@ -20,8 +20,10 @@ pub(super) const LEAST: usize = 4;
 pub(super) const CELL: f64 = 0.68;
 /// Side of a cell of metaballs where nobody says, in radii of the smaller ones.
 const CELL_OF_BALLS: f64 = 0.4;
-/// Most memory that nodes take of what is allowed, where nobody says how large cells are; and fewest points of which they may take more.
-const AFFORDABLE: (f64, usize) = (0.4, 100_000);
+/// Most memory that nodes take of what is allowed, where nobody says how large cells are.
+const AFFORDABLE: f64 = 0.4;
+/// Memory of the nodes around a point that lies as others do, at most, in bytes: about half of it on spheres.
+const OF_POINT: f64 = 3000.0;
 /// Share of contradicting normals from which all are turned anew.
 const CONTRARY: f64 = 0.2;
 /// Pieces of surface smaller than so many squares of the spacing are crumbs.
@@ -150,10 +152,10 @@ impl Job<'_> {
         radii: &dyn Fn(f64) -> Vec<f64>,
         notes: &mut Notes,
     ) -> Result<f64> {
-        if points.positions.len() < AFFORDABLE.1 {
+        let most = AFFORDABLE * self.budget.limits().memory as f64;
+        if points.positions.len() as f64 * OF_POINT < most {
             return Ok(usual);
         }
-        let most = AFFORDABLE.0 * self.budget.limits().memory as f64;
         let mut cell = usual;
         loop {
             let radii = radii(cell);

@@ -90,6 +90,17 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
             return Ok((apart, known));
         }
     }
+    // What hangs together over the cell of a repeat is cut by the frame here and runs through it there.
+    if let Some(found) = &known
+        && found.lost() > 0
+        && has(&drawing, &[Reason::Piece, Reason::Fill])
+        && drawing.exemplar.period.is_none()
+        && let as_page = (ReadOptions { tiling: svg::Tiling::Page, ..options.clone() })
+        && let Some((alike, Some(other))) = areas_alike(text, &as_page, budget)?
+        && other.lost() < found.lost()
+    {
+        return Ok((alike, Some(other)));
+    }
     // Elements that repeat, or are strewn over one period, are better kept apart.
     if known.is_none()
         && drawing.exemplar.period.is_none()

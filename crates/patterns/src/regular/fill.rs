@@ -17,6 +17,7 @@ use crate::{
         grid::{Grid, Ground, Unfit},
         joints::Cell,
         kept::Kept,
+        lost::lost,
         strokes::Strokes,
     },
     repeat::{
@@ -52,6 +53,8 @@ pub struct Regular {
     others: usize,
     /// Elements out of all proportion to the frame.
     giants: usize,
+    /// Elements that the frame has cut and that the repeat does not show whole.
+    lost: usize,
 }
 
 /// What came of a request.
@@ -102,7 +105,16 @@ impl Regular {
         };
         let unit = RESIDUAL * repeat.lattice.shorter();
         let cells = Cells::new(exemplar, &orbits, unit, budget)?;
-        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants }))
+        let lost = match repeat.extent {
+            Extent::Plane => lost(exemplar, &repeat, (&orbits, cell.as_ref()), budget)?.len(),
+            _ => 0,
+        };
+        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants, lost }))
+    }
+
+    /// How many elements that the frame has cut the repeat does not show, or not whole: they are left out.
+    pub fn lost(&self) -> usize {
+        self.lost
     }
 
     /// A strip that would run past the domain runs through its middle.
@@ -268,6 +280,12 @@ impl Regular {
             warnings.push(Warning::new(
                 format!("elements that fit no place of the repeat left out: {}", self.others),
                 "set repeat=off to treat the pattern as irregular",
+            ));
+        }
+        if self.lost > 0 {
+            warnings.push(Warning::new(
+                format!("elements cut by the frame that the repeat shows nowhere whole left out: {}", self.lost),
+                "show more of the pattern, or draw them whole, reaching over the frame",
             ));
         }
         warnings

@@ -135,3 +135,41 @@ impl Shown<'_> {
         Ok(false)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+    use arabesque_core::{Class, Outline, Similarity};
+
+    use crate::regular::Regular;
+
+    use super::*;
+
+    fn square(x: f64, y: f64, side: f64, role: Role) -> Element<2> {
+        let corners = [(x, y), (x + side, y), (x + side, y + side), (x, y + side)];
+        let outline = Outline { rings: vec![corners.iter().map(|&(x, y)| Vector::xy(x, y)).collect()] };
+        let centre = outline.centroid().unwrap();
+        let (colour, lean) = ([0.0; 3], [Vector::ZERO; 3]);
+        Element { class: 0, centre, pose: Similarity::shift(centre), outline, colour, lean, role }
+    }
+
+    /// How many of the elements that the frame cuts are lost, beside squares at all corners of a lattice.
+    fn lost_of(cut: Vec<Element<2>>) -> usize {
+        let at = |k: u32| square(8.0 + 20.0 * f64::from(k % 5), 8.0 + 20.0 * f64::from(k / 5), 8.0, Role::Source);
+        let elements = (0..25).map(at).chain(cut).collect();
+        let window = Bounds::new(Vector::ZERO, Vector::xy(112.0, 112.0));
+        let exemplar = Exemplar::new("t", elements, vec![Class { name: "a".into() }], window).unwrap();
+        Regular::new(&exemplar, &Budget::default()).unwrap().unwrap().lost()
+    }
+
+    #[test]
+    fn what_the_frame_cuts_is_lost_unless_the_repeat_shows_it_whole() {
+        assert_eq!(lost_of(vec![square(108.0, 28.0, 8.0, Role::Context)]), 0, "at its place");
+        assert_eq!(lost_of(vec![square(-12.0, 28.0, 8.0, Role::Context)]), 0, "beyond the frame");
+        assert_eq!(lost_of(vec![square(98.0, 28.0, 8.0, Role::Context)]), 1, "between its places");
+        let mut red = square(8.0, 108.0, 8.0, Role::Context);
+        red.colour = [1.0, 0.0, 0.0];
+        assert_eq!(lost_of(vec![square(8.0, 98.0, 17.0, Role::Context), red]), 2, "larger, or of another colour");
+    }
+}

@@ -256,7 +256,7 @@ fn half_hull(points: impl Iterator<Item = Vector<2>>) -> Vec<Vector<2>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arabesque_core::FillRule;
+    use arabesque_core::{FillRule, Matrix};
 
     fn meets(a: &Figure, b: &Figure, place: &Similarity<2>) -> Option<bool> {
         a.meets(b, place, &mut Budget::default().meter()).unwrap()
@@ -334,7 +334,8 @@ mod tests {
         let (a, b) = (figure(&[wavy(300)]), figure(&[wavy(170)]));
         for k in 0..20 {
             let turn = 0.3 * f64::from(k);
-            let place = Similarity::about(Vector::ZERO, Vector::xy(turn.cos(), turn.sin()) * 13.5, turn, 1.0);
+            let place =
+                Similarity::about(Vector::ZERO, Vector::xy(turn.cos(), turn.sin()) * 13.5, Matrix::rotation(turn), 1.0);
             let moved = b.outline.transformed(&place);
             let one_way = |points: &Outline<2>, edges: &Outline<2>| {
                 let all = points.points().flat_map(|p| edges.edges().map(move |e| segment::distance(e, p)));

@@ -36,6 +36,9 @@ const RIM: f64 = 0.35;
 /// Residuals that differ by this share of the shorter vector count half as much as different things.
 const RESIDUAL: f64 = 0.1;
 
+/// Things lie off by no more than this share of the shorter vector where a pattern was constructed.
+const EXACT: f64 = 5e-3;
+
 /// Stretching that nobody sees.
 const UNSEEN: f64 = 1e-3;
 
@@ -105,8 +108,10 @@ impl Regular {
         };
         let unit = RESIDUAL * repeat.lattice.shorter();
         let cells = Cells::new(exemplar, &orbits, unit, budget)?;
+        // By hand, and where only places repeat, nothing is where the frame has cut it.
+        let is_exact = repeat.explains == Explains::Everything && repeat.jitter <= EXACT * shorter;
         let lost = match repeat.extent {
-            Extent::Plane => lost(exemplar, &repeat, (&orbits, cell.as_ref()), budget)?.len(),
+            Extent::Plane if is_exact => lost(exemplar, &repeat, (&orbits, cell.as_ref()), budget)?.len(),
             _ => 0,
         };
         Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants, lost }))

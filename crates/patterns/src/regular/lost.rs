@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Places that are looked at in something that is cut, along each side of the box around it.
-const PLACES: usize = 12;
+const PLACES: usize = 10;
 
 /// Share of these that the repeat may leave empty: rounding, and an unsteady hand.
 const EMPTY: f64 = 0.15;
@@ -42,15 +42,29 @@ pub(crate) fn lost(
     let mut lost = Vec::new();
     for (e, element) in exemplar.elements.iter().enumerate().filter(|(_, e)| e.role == Role::Context) {
         let places = shown.places_in(element, budget)?;
-        let mut empty = 0;
+        let (mut empty, mut cover) = (0, Cover::Nothing);
         for &place in &places {
-            empty += usize::from(!shown.is_covered(place, &element.colour, budget)?);
-        }
-        if empty as f64 > EMPTY * places.len() as f64 {
-            lost.push(e);
+            cover = shown.cover(place, &element.colour, cover, budget)?;
+            empty += usize::from(cover == Cover::Nothing);
+            if empty as f64 > EMPTY * places.len() as f64 {
+                lost.push(e);
+                break;
+            }
         }
     }
     Ok(lost)
+}
+
+/// What the repeat shows at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cover {
+    Nothing,
+    Area,
+    Orbit(usize),
+}
+
+fn is_alike(a: &[f64; 3], b: &[f64; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < ALIKE)
 }
 
 struct Shown<'a> {
@@ -75,21 +89,35 @@ impl Shown<'_> {
         Ok((0..PLACES * PLACES).map(at).filter(|&p| element.outline.contains(p)).collect())
     }
 
-    fn is_covered(&self, place: Vector<2>, colour: &[f64; 3], budget: &Budget) -> Result<bool> {
-        let is_alike = |other: &[f64; 3]| colour.iter().zip(other).all(|(a, b)| (a - b).abs() < ALIKE);
+    /// What covers a place in this colour; what covered the `last` one is looked at first.
+    fn cover(&self, place: Vector<2>, colour: &[f64; 3], last: Cover, budget: &Budget) -> Result<Cover> {
+        if let Cover::Orbit(o) = last
+            && self.is_of(place, o, colour, budget)?
+        {
+            return Ok(last);
+        }
         let areas = self.cell.map_or(&[][..], |cell| &cell.areas);
-        for area in areas.iter().filter(|area| is_alike(&self.exemplar.areas[area.source].colour)) {
+        for area in areas.iter().filter(|area| is_alike(&self.exemplar.areas[area.source].colour, colour)) {
             if self.lies_in_area(place, area, budget)? {
-                return Ok(true);
+                return Ok(Cover::Area);
             }
         }
-        for orbit in self.orbits {
-            budget.spend(LOOK.1)?;
-            for instance in orbit.instances.iter().take(FIRST) {
-                let element = &self.exemplar.elements[instance.element as usize];
-                if is_alike(&element.colour) && self.lies_in(place, orbit, instance, budget)? {
-                    return Ok(true);
-                }
+        for o in 0..self.orbits.len() {
+            if self.is_of(place, o, colour, budget)? {
+                return Ok(Cover::Orbit(o));
+            }
+        }
+        Ok(Cover::Nothing)
+    }
+
+    /// Whether an element of this colour of an orbit covers a place.
+    fn is_of(&self, place: Vector<2>, orbit: usize, colour: &[f64; 3], budget: &Budget) -> Result<bool> {
+        budget.spend(LOOK.1)?;
+        let orbit = &self.orbits[orbit];
+        for instance in orbit.instances.iter().take(FIRST) {
+            let element = &self.exemplar.elements[instance.element as usize];
+            if is_alike(&element.colour, colour) && self.lies_in(place, orbit, instance, budget)? {
+                return Ok(true);
             }
         }
         Ok(false)

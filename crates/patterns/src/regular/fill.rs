@@ -1,8 +1,8 @@
 //! Filling a domain from an exemplar that repeats.
 
 use arabesque_core::{
-    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
-    Snapshot, Vector, Warning, Watch,
+    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, Vector,
+    Warning, Watch,
 };
 
 use crate::{
@@ -274,7 +274,7 @@ impl Regular {
         let count = cells * (self.orbits.len() + parts) as f64;
         checks::expected(count, &request.budget)?;
         request.budget.allow_elements(count);
-        watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed: request.budget.allowed() as f64 });
+        watch.foreseen(&request.budget.forecast(count, count * PER_ELEMENT));
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The whole report: what is measured of what, in order.
 
-use arabesque_core::{Budget, Domain, Error, Exemplar, Result};
+use arabesque_core::{Budget, Domain, Error, Exemplar, Limits, Result};
 
 use crate::{
     copies::copies,
@@ -124,7 +124,7 @@ fn check_room<const D: usize>(domain: &Domain<D>, spacing: f64, budget: &Budget)
         what: "size of the page".into(),
         found: format!("room for about {room:.0} elements"),
         limit: format!("{most} elements"),
-        advice: format!("measure a part of it, or raise the limit with --limit output-elements={}", room.ceil()),
+        advice: format!("measure a part of it{}", Limits::raising("output-elements", room)),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Outline, Result, Shape, rounded};
+use arabesque_core::{Bounds, Budget, Domain, Error, Exemplar, Limits, Outline, Result, Shape, rounded};
 use arabesque_io::svg::{self, Drawing, Page, ReadOptions};
 use arabesque_patterns::repeat::Repeat;
 
@@ -146,7 +146,10 @@ pub(crate) fn check_room(exemplar: &Exemplar<2>, domain: &Domain<2>, fits: bool,
             what: "size of the domain".into(),
             found: format!("room for about {expected:.0} elements"),
             limit: format!("{} elements", budget.limits().output_elements),
-            advice: format!("make it smaller{period}; sizes without a unit are in the units of the exemplar"),
+            advice: format!(
+                "make it smaller{period}{}; sizes without a unit are in the units of the exemplar",
+                Limits::raising("output-elements", expected)
+            ),
         });
     }
     if fits || (exemplar.elements.is_empty() && exemplar.curves.is_empty()) {

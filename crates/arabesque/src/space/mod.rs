@@ -25,8 +25,8 @@ mod suiting;
 use std::sync::Arc;
 
 use arabesque_core::{
-    Border, Budget, Domain, Error, Exemplar, Outcome, Progress, Request as EngineRequest, Result, Snapshot, StopReason,
-    Warning, Watch,
+    Border, Budget, Domain, Error, Exemplar, Limits, Outcome, Progress, Request as EngineRequest, Result, Snapshot,
+    StopReason, Warning, Watch,
 };
 use arabesque_io::mesh::scene::Convention;
 use arabesque_patterns::Prepared as Engine;
@@ -322,7 +322,10 @@ fn check_volume(exemplar: &Exemplar<3>, volume: f64, budget: &Budget) -> Result<
             what: "size of the box".into(),
             found: format!("room for about {expected:.0} elements or cells"),
             limit: budget.limits().output_elements.to_string(),
-            advice: "make it smaller; its sides are in the units of the exemplar".into(),
+            advice: format!(
+                "make it smaller{}; its sides are in the units of the exemplar",
+                Limits::raising("output-elements", expected)
+            ),
         });
     }
     if expected < 0.5 {

@@ -242,7 +242,7 @@ impl Budget {
         }
     }
 
-    /// Refuses a count over one of the limits; `limit` is its name.
+    /// Refuses a count over one of the limits; `limit` is its name. Twice the limit is advised at least.
     ///
     /// # Errors
     /// [`Error::Limit`] when `found` is larger.
@@ -250,7 +250,9 @@ impl Budget {
         if found <= limit.1 {
             return Ok(());
         }
-        Err(self.over(what, found.to_string(), limit, found as u64))
+        // What is counted bit by bit may not be all yet.
+        let enough = found.max(limit.1.saturating_mul(2));
+        Err(self.over(what, found.to_string(), limit, enough as u64))
     }
 
     /// Refuses what was worked out, and may be beyond any whole number, where it is over one of the limits.
@@ -269,11 +271,7 @@ impl Budget {
             what: self.named(what),
             found,
             limit: limit.to_string(),
-            advice: if Limits::default().set(name, &enough.to_string()).is_ok() {
-                format!("make it smaller, or raise the limit with --limit {name}={enough}")
-            } else {
-                "make it smaller".into()
-            },
+            advice: format!("make it smaller{}", Limits::raising(name, enough as f64)),
         }
     }
 
@@ -294,11 +292,8 @@ impl Budget {
         let expected = self.account.expected.load(Ordering::Relaxed) as f64 / MILLION as f64;
         // Twice as much in all, or what was foretold, of which the elements bring their share.
         let wanted = limit.saturating_mul(2).max((expected * MARGIN).ceil() as u64);
-        let enough = own.saturating_add(wanted.saturating_sub(limit)).to_string();
-        match Limits::default().set("work", &enough) {
-            Ok(()) => format!("give it less to do, or raise the limit with --limit work={enough}"),
-            Err(_) => "give it less to do".into(),
-        }
+        let enough = own.saturating_add(wanted.saturating_sub(limit));
+        format!("give it less to do{}", Limits::raising("work", enough as f64))
     }
 
     /// What to tell of a result that is the best so far because the work was used up, and what to do about it.

@@ -39,6 +39,18 @@ crate::params! {
     }
 }
 
+impl Limits {
+    /// The end of advice about what is over the limit `name`: `, or raise the limit with --limit name=enough`; nothing where the limit
+    /// cannot be raised so far. `enough` is rounded up to a whole number.
+    pub fn raising(name: &str, enough: f64) -> String {
+        let enough = format!("{:.0}", enough.ceil());
+        match Self::default().set(name, &enough) {
+            Ok(()) => format!(", or raise the limit with --limit {name}={enough}"),
+            Err(_) => String::new(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,5 +63,8 @@ mod tests {
         let error = limits.set("pixel", "7").unwrap_err().to_string();
         assert!(error.contains("did you mean pixels?"), "{error}");
         assert!(limits.set("memory", "-1").is_err());
+        assert_eq!(Limits::raising("depth", 300.2), ", or raise the limit with --limit depth=301");
+        assert_eq!(Limits::raising("depth", 5000.0), "");
+        assert_eq!(Limits::raising("work", f64::INFINITY), "");
     }
 }

@@ -248,7 +248,7 @@ mod tests {
             few.contains("reading: places where edges of outlines cross") && few.contains("--limit crossings="),
             "{few}"
         );
-        assert!(refused(Limits { outline_nodes: 299, ..Limits::default() }, &edges).contains("outline-nodes=300"));
+        assert!(refused(Limits { outline_nodes: 299, ..Limits::default() }, &edges).contains("outline-nodes=598"));
         for wrong in [f64::NAN, f64::INFINITY, -1e30] {
             let told =
                 refused(Limits::default(), &[(Vector::ZERO, Vector::ZERO), (Vector::xy(1.0, wrong), Vector::ZERO)]);

@@ -7,7 +7,7 @@ use std::{
     time::SystemTime,
 };
 
-use arabesque_core::{Budget, Error, Result};
+use arabesque_core::{Budget, Error, Limits, Result};
 
 use super::{
     stream::{is_standard_input, is_stream},
@@ -42,7 +42,7 @@ pub fn read_bytes(path: &str, budget: &Budget) -> Result<Vec<u8>> {
         return take(path, 0, &file, &|| system::wait_for_input(&file), budget);
     }
     if before.len() > budget.limits().file_bytes as u64 {
-        return Err(too_large(path, SIZE, budget));
+        return Err(too_large(path, SIZE, Some(before.len()), budget));
     }
     let bytes = take(path, before.len(), &file, &|| Ok(true), budget)?;
     check_unchanged(path, &before, &file, bytes.len() as u64)?;
@@ -68,7 +68,7 @@ fn take(
         }
         let room = most.saturating_add(1) - bytes.len() as u64;
         if room == 0 {
-            return Err(too_large(name, SIZE, &budget));
+            return Err(too_large(name, SIZE, None, &budget));
         }
         // One call: what comes from a pipe is taken as it comes, so that nothing waits for a whole chunk.
         let old = bytes.len();
@@ -87,14 +87,15 @@ fn take(
     }
 }
 
-/// More bytes of a file, called `what`, than the limit.
-pub(super) fn too_large(name: &str, what: &str, budget: &Budget) -> Error {
+/// More bytes of a file, called `what`, than the limit; `all` of them, where their number is known.
+pub(super) fn too_large(name: &str, what: &str, all: Option<u64>, budget: &Budget) -> Error {
     let most = budget.limits().file_bytes;
+    let enough = all.map_or(2.0 * most as f64, |all| all as f64);
     Error::Limit {
         what: format!("{name}: {what}"),
-        found: format!("more than {most} bytes"),
+        found: all.map_or(format!("more than {most} bytes"), |all| format!("{all} bytes")),
         limit: format!("{most} bytes"),
-        advice: "use a smaller file, or raise the limit with --limit file-bytes=N".into(),
+        advice: format!("use a smaller file{}", Limits::raising("file-bytes", enough)),
     }
 }
 
@@ -137,7 +138,6 @@ fn check_unchanged(path: &str, before: &Metadata, file: &File, read: u64) -> Res
 mod tests {
     use std::fs;
 
-    use arabesque_core::Limits;
 
     use super::*;
 

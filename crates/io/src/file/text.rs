@@ -48,7 +48,7 @@ fn unpacked(place: &str, bytes: &[u8], budget: &Budget) -> Result<Vec<u8>> {
         }
         budget.spend(count as u64)?;
         if out.len() + count > most {
-            return Err(too_large(place, "size of the unpacked file", &budget));
+            return Err(too_large(place, "size of the unpacked file", None, &budget));
         }
         out.extend_from_slice(&chunk[..count]);
     }

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use arabesque_core::{Bounds, Budget, Decimals, Error, Exemplar, Placement, Result, Vector};
+use arabesque_core::{Bounds, Budget, Decimals, Error, Exemplar, Limits, Placement, Result, Vector};
 
 pub use crate::table::records::recipe_of;
 use crate::{
@@ -113,9 +113,10 @@ impl<'a> Table<'a> {
                 what: format!("{name}: number of points"),
                 found: if count < most { rows.len().to_string() } else { format!("more than {limit}") },
                 limit: limit.to_string(),
-                advice:
-                    "keep a smaller part of the pattern as the exemplar, or raise the limit with --limit elements=N"
-                        .into(),
+                advice: format!(
+                    "keep a smaller part of the pattern as the exemplar{}",
+                    Limits::raising("elements", rows.len().max(2 * limit) as f64)
+                ),
             });
         }
         if rows.is_empty() {

@@ -1,6 +1,6 @@
 //! Questions about places near a mesh.
 
-use arabesque_core::{Bounds, Budget, Error, Held, Result, TriangleMesh, Vector};
+use arabesque_core::{Bounds, Budget, Error, Held, Limits, Result, TriangleMesh, Vector};
 use rayon::prelude::*;
 
 use super::{
@@ -329,9 +329,14 @@ pub(crate) fn check(mesh: &TriangleMesh, name: &str, budget: &Budget) -> Result<
                 shown(mesh.positions[v]),
                 l = limits.coordinate
             ),
-            "move the mesh to the origin, or raise the limit with --limit coordinate=N",
+            format!("move the mesh to the origin{}", raising(&mesh.positions[v])),
         )),
     }
+}
+
+/// The end of advice about a place too far away.
+pub(crate) fn raising(p: &Vector<3>) -> String {
+    Limits::raising("coordinate", p.0.iter().fold(0.0, |most: f64, c| most.max(c.abs())))
 }
 
 /// A place as errors show it.

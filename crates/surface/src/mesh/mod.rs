@@ -6,5 +6,6 @@ mod report;
 pub(crate) mod topology;
 mod triangle;
 
+pub(crate) use index::raising;
 pub use index::{Closest, MeshIndex};
 pub use report::{Found, MeshReport};

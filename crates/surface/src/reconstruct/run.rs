@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     cloud::Neighbours,
-    mesh::MeshIndex,
+    mesh::{MeshIndex, raising},
     params::{Method, SurfaceParams},
 };
 
@@ -144,7 +144,7 @@ fn check(points: &PointSet<3>, budget: &Budget) -> Result<()> {
         return Err(Error::input(
             NAME,
             problem,
-            "remove it, move the points to the origin, or raise the limit with --limit coordinate=N",
+            format!("remove it, move the points to the origin{}", raising(&points.positions[k])),
         ));
     }
     let bad = |r: &f64| !(r.is_finite() && *r > 0.0);

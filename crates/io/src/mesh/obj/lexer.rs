@@ -2,7 +2,7 @@
 //!
 //! Nothing here knows what is read of a file: polylines now, and whatever else refers to numbered vertices.
 
-use arabesque_core::{Budget, Error, Result, Vector};
+use arabesque_core::{Budget, Error, Limits, Result, Vector};
 
 use crate::{table::records, text::short::short};
 
@@ -103,8 +103,15 @@ impl Lexer<'_> {
         index.map_or_else(|| self.fail(line, problem(), "correct the number of the vertex"), Ok)
     }
 
-    /// Refuses more of something than the limit.
-    pub(crate) fn check_limit(&self, what: &str, found: usize, limit: usize) -> Result<()> {
+    /// Refuses more of something than `times` the limit of that name.
+    pub(crate) fn check_limit(
+        &self,
+        what: &str,
+        found: usize,
+        (name, each): (&str, usize),
+        times: usize,
+    ) -> Result<()> {
+        let limit = each.saturating_mul(times);
         if found <= limit {
             return Ok(());
         }
@@ -112,7 +119,7 @@ impl Lexer<'_> {
             what: format!("{}: number of {what}", self.name),
             found: found.to_string(),
             limit: limit.to_string(),
-            advice: self.advice.into(),
+            advice: format!("{}{}", self.advice, Limits::raising(name, 2.0 * each as f64)),
         })
     }
 }

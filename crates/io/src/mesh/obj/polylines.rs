@@ -109,7 +109,12 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         // Words are counted before a list of them is made.
-        self.lexer.check_limit("line segments", words.clone().count(), self.lexer.budget.limits().segments)?;
+        self.lexer.check_limit(
+            "line segments",
+            words.clone().count(),
+            ("segments", self.lexer.budget.limits().segments),
+            1,
+        )?;
         let words: Vec<&str> = words.collect();
         match keyword {
             "v" => self.vertex(line, &words),
@@ -124,7 +129,7 @@ impl<'a> Reader<'a> {
 
     fn vertex(&mut self, line: usize, words: &[&str]) -> Result<()> {
         let vertex = self.lexer.vertex(line, words)?;
-        self.lexer.check_limit("vertices", self.vertices.len() + 1, self.lexer.budget.limits().nodes)?;
+        self.lexer.check_limit("vertices", self.vertices.len() + 1, ("nodes", self.lexer.budget.limits().nodes), 1)?;
         self.vertices.push(vertex);
         Ok(())
     }
@@ -135,8 +140,13 @@ impl<'a> Reader<'a> {
             return self.lexer.fail(line, problem, "write at least two, such as l 1 2");
         }
         self.references += words.len();
-        self.lexer.check_limit("line segments", self.references, self.lexer.budget.limits().segments)?;
-        self.lexer.check_limit("lines", self.lines.len() + 1, self.lexer.budget.limits().elements)?;
+        self.lexer.check_limit(
+            "line segments",
+            self.references,
+            ("segments", self.lexer.budget.limits().segments),
+            1,
+        )?;
+        self.lexer.check_limit("lines", self.lines.len() + 1, ("elements", self.lexer.budget.limits().elements), 1)?;
         let vertices =
             words.iter().map(|word| self.lexer.index(line, word, self.vertices.len())).collect::<Result<Vec<_>>>()?;
         let name = self.style.as_deref().unwrap_or(ONLY_STYLE);

@@ -21,7 +21,7 @@ use crate::{
 
 /// Work for each byte.
 const PER_BYTE: u64 = 12;
-const ADVICE: &str = "give a smaller scene, or raise the limit with --limit nodes=N";
+const ADVICE: &str = "give a smaller scene";
 
 /// Reads a scene; `beside` gives the files of materials.
 ///
@@ -95,7 +95,7 @@ impl<'a> Reader<'a> {
         let rest = content.trim_start()[keyword.len()..].trim();
         match keyword {
             "v" | "vt" | "vn" | "f" => {
-                self.lexer.check_limit("numbers in one line", words.clone().count(), limits.nodes)?;
+                self.lexer.check_limit("numbers in one line", words.clone().count(), ("nodes", limits.nodes), 1)?;
                 let words: Vec<&str> = words.collect();
                 match keyword {
                     "v" => self.vertex(line, &words),
@@ -123,7 +123,7 @@ impl<'a> Reader<'a> {
     }
 
     fn room(&self, what: &str, count: usize) -> Result<()> {
-        self.lexer.check_limit(what, count + 1, self.lexer.budget.limits().nodes)
+        self.lexer.check_limit(what, count + 1, ("nodes", self.lexer.budget.limits().nodes), 1)
     }
 
     fn vertex(&mut self, line: usize, words: &[&str]) -> Result<()> {
@@ -171,7 +171,7 @@ impl<'a> Reader<'a> {
             return self.lexer.fail(line, problem, "write at least three, such as f 1 2 3");
         }
         self.corners += words.len();
-        self.lexer.check_limit("corners of faces", self.corners, self.lexer.budget.limits().nodes.saturating_mul(3))?;
+        self.lexer.check_limit("corners of faces", self.corners, ("nodes", self.lexer.budget.limits().nodes), 3)?;
         let mut face = Vec::with_capacity(words.len());
         for word in words {
             let key = self.corner(line, word)?;
@@ -303,7 +303,7 @@ impl<'a> Reader<'a> {
             self.scene.warnings.push(Warning::new(message, "nothing need be done where they say nothing of shapes"));
         }
         let Looks { materials, .. } = &self.scene.looks;
-        self.lexer.check_limit("materials", materials.len(), self.lexer.budget.limits().nodes)?;
+        self.lexer.check_limit("materials", materials.len(), ("nodes", self.lexer.budget.limits().nodes), 1)?;
         self.scene.share_shapes(self.lexer.budget)
     }
 }

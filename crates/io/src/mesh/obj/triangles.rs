@@ -25,7 +25,7 @@ const VERTEX_BYTES: usize = 64;
 /// fewer than three; [`Error::Limit`] for too many vertices or faces or when the work or the memory is used up.
 pub fn read_mesh(name: &str, text: &str, budget: &Budget) -> Result<Geometry> {
     let budget = budget.stage("reading an OBJ file");
-    let lexer = Lexer { name, budget: &budget, advice: "give a smaller mesh, or raise the limit with --limit nodes=N" };
+    let lexer = Lexer { name, budget: &budget, advice: "give a smaller mesh" };
     let mut reader = Reader::new(lexer);
     for (line, content) in logical_lines(text) {
         reader.statement(line, &content)?;
@@ -80,9 +80,9 @@ impl<'a> Reader<'a> {
             "v" | "vn" | "f" | "p" => {
                 // Words are counted before a list of them is made.
                 let count = words.clone().count();
-                self.lexer.check_limit("numbers in one line", count, limits.nodes)?;
+                self.lexer.check_limit("numbers in one line", count, ("nodes", limits.nodes), 1)?;
                 self.uses += count;
-                self.lexer.check_limit("numbers", self.uses, limits.nodes.saturating_mul(16))?;
+                self.lexer.check_limit("numbers", self.uses, ("nodes", limits.nodes), 16)?;
                 let words: Vec<&str> = words.collect();
                 match keyword {
                     "v" => self.vertex(line, &words),
@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
 
     fn vertex(&mut self, line: usize, words: &[&str]) -> Result<()> {
         let position = self.lexer.vertex(line, words)?;
-        self.lexer.check_limit("vertices", self.positions.len() + 1, self.lexer.budget.limits().nodes)?;
+        self.lexer.check_limit("vertices", self.positions.len() + 1, ("nodes", self.lexer.budget.limits().nodes), 1)?;
         if words.len() >= 6 {
             let mut colour = [0.0; 3];
             for (k, share) in colour.iter_mut().enumerate() {
@@ -137,7 +137,7 @@ impl<'a> Reader<'a> {
         for (axis, word) in [x, y, z].into_iter().enumerate() {
             normal[axis] = self.value(line, word, Attribute::Normal(axis))?;
         }
-        self.lexer.check_limit("normals", self.normals.len() + 1, self.lexer.budget.limits().nodes)?;
+        self.lexer.check_limit("normals", self.normals.len() + 1, ("nodes", self.lexer.budget.limits().nodes), 1)?;
         self.normals.push(normal);
         Ok(())
     }
@@ -147,7 +147,7 @@ impl<'a> Reader<'a> {
             let problem = format!("a face of {} vertices", words.len());
             return self.lexer.fail(line, problem, "write at least three, such as f 1 2 3");
         }
-        self.lexer.check_limit("faces", self.polygons.len() + 1, self.lexer.budget.limits().nodes)?;
+        self.lexer.check_limit("faces", self.polygons.len() + 1, ("nodes", self.lexer.budget.limits().nodes), 1)?;
         let mut corners = Vec::with_capacity(words.len());
         for word in words {
             corners.push(self.corner(line, word)?);

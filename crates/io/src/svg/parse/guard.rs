@@ -34,8 +34,9 @@ pub(crate) fn check(text: &str, name: &str, limits: &Limits) -> Result<()> {
 /// A limit that the file exceeds, and that may be raised by its name.
 pub(crate) fn over(what: String, found: impl ToString, (name, limit): (&str, usize)) -> Error {
     let found = found.to_string();
-    let enough = found.parse::<usize>().unwrap_or(limit.saturating_mul(2));
-    let advice = format!("make the file smaller or simpler, or raise the limit with --limit {name}={enough}");
+    // What is counted bit by bit may not be all yet.
+    let enough = found.parse().unwrap_or(0).max(limit.saturating_mul(2));
+    let advice = format!("make the file smaller or simpler{}", Limits::raising(name, enough as f64));
     Error::Limit { what, found, limit: limit.to_string(), advice }
 }
 

@@ -1,6 +1,6 @@
 //! Lengths with units, and the page.
 
-use arabesque_core::{Bounds, Error, Result, Vector, rounded};
+use arabesque_core::{Bounds, Error, Limits, Result, Vector, rounded};
 use roxmltree::Node as Xml;
 use svgtypes::{AspectRatio, Length, LengthUnit, ViewBox};
 
@@ -172,7 +172,8 @@ fn checked(source: &Source<'_>, page: Page) -> Result<Page> {
     if let Some(v) = { extremes }.find(|v| !(0.0..=source.limits.coordinate).contains(&v.abs())) {
         let problem =
             format!("the page reaches beyond {} user units: {}", rounded(source.limits.coordinate), rounded(*v));
-        let advice = "give it a sensible width, height and viewBox, or raise the limit with --limit coordinate=N";
+        let raising = Limits::raising("coordinate", v.abs());
+        let advice = format!("give it a sensible width, height and viewBox{raising}");
         return Err(Error::input(root(), problem, advice));
     }
     if size[0] <= source.limits.extent || size[1] <= source.limits.extent {

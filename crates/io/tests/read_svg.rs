@@ -547,7 +547,7 @@ fn kept_elements_are_matched_back() {
 fn bad_input_says_what_and_where() {
     let cases = [
         ("", "nothing in it"),
-        ("hello", "t.svg:1:1: not well-formed"),
+        ("hello", "t.svg: plain text, where SVG was expected"),
         ("<html/>", "expected <svg>"),
         ("<svg xmlns='http://www.w3.org/2000/svg'><g>", "not well-formed"),
         ("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'/>", "no element and no curve found"),

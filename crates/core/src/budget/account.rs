@@ -421,7 +421,7 @@ mod tests {
         let error = Budget::default().stage("reading").within("leaves.svg: nodes", 9, ("nodes", 8)).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "reading: leaves.svg: nodes: 9 is over the limit of 8; make it smaller, or raise the limit with --limit nodes=9"
+            "reading: leaves.svg: nodes: 9 is over the limit of 8; make it smaller, or raise the limit with --limit nodes=16"
         );
     }
 }

@@ -87,7 +87,34 @@ impl<const D: usize> Things<'_, D> {
             worst = worst.max(found.depth);
             self.add(&mut push, i, &found, found.depth);
         }
+        let (below, looked) = self.below(i);
+        cost += looked;
+        if let Some(found) = below {
+            worst = worst.max(found.depth);
+            self.add(&mut push, i, &found, found.depth);
+        }
         (push, cost, worst)
+    }
+
+    /// The place of a body that lies deepest in the ground, where it does not stand on it.
+    pub(super) fn below(&self, i: usize) -> (Option<Contact<D>>, u64) {
+        let body = &self.bodies[i];
+        let Some(ground) = self.extent.lies_over(self.placements[i].source as u32) else { return (None, 0) };
+        if ground.height(body.centre) >= body.radius {
+            return (None, 50);
+        }
+        let mut worst = (0.0, body.centre);
+        for point in &body.solid.points {
+            let p = body.pose.apply(*point);
+            let height = ground.height(p);
+            if height < worst.0 {
+                worst = (height, p);
+            }
+        }
+        let (height, at) = worst;
+        let way = (ground.at_height(at, 1.0) - ground.at_height(at, 0.0)).unit_or_zero();
+        let cost = 50 * body.solid.points.len() as u64;
+        ((height < 0.0).then_some(Contact { depth: -height, at, way }), cost)
     }
 
     /// The place of a body that lies farthest outside, where the border keeps it inside.

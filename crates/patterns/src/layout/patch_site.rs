@@ -432,3 +432,21 @@ struct Missing {
     /// How often the others, which would be new, were used, relative to the mean.
     usage: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_near_the_ground_comes_from_as_near_the_ground() {
+        let levels = Levels { up: 1, floor: -2.0, reach: 1.0, off: 0.3, top: 4.0 };
+        let at = |y: f64| Vector([5.0, y, 7.0]);
+        assert!(levels.suits(at(-1.5), 0.4) && !levels.suits(at(-1.5), 0.9) && !levels.suits(at(1.0), 0.4));
+        assert!(levels.suits(at(0.5), 9.0) && !levels.suits(at(-1.5), 9.0));
+        assert_eq!(levels.suited(at(1.0), 0.4), at(-1.6));
+        for y in [-2.0, -1.5, -1.1, 1.9] {
+            let high = levels.suited(at(y), 9.0);
+            assert!(levels.suits(high, 9.0) && high[1] <= 2.0, "{high:?}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ use crate::exemplar::library::Library;
 /// Work for each place of a surface that is looked up.
 const LOOK: u64 = 8;
 /// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
-const QUANTILE: f64 = 0.9;
+const QUANTILE: f64 = 0.75;
 /// Overlaps below this share of the inner radius are none.
 const TOUCH: f64 = 0.02;
 

@@ -17,8 +17,8 @@ const CONTACTS: usize = 4;
 /// No more pairs are looked at for one element.
 const MOST: usize = 256;
 
-/// The usual gap between an element and the one nearest to it, as a share of its size ([`crate::Shape::size`]): between 0 and 0.12. It is 0
-/// where elements are in one another; `None` where most of them touch none, so that they are no heap.
+/// The usual gap between an element and those nearest to it that it touches, as a share of its size ([`crate::Shape::size`]): between 0 and
+/// 0.12. It is 0 where elements are in one another; `None` where most of them touch none, so that they are no heap.
 ///
 /// # Errors
 /// [`Error::Input`] where they lie too far apart to be computed with, and those of the budget.

@@ -4,7 +4,7 @@ use arabesque_core::{Border, Budget, Domain, Matrix, Result, Similarity, Vector}
 use rayon::prelude::*;
 
 use super::{
-    contact::{Contact, contact, price},
+    contact::{Contact, contact},
     things::Things,
 };
 
@@ -80,8 +80,9 @@ impl<const D: usize> Things<'_, D> {
         }
         for (j, offset) in around {
             let other = &self.bodies[j];
-            cost += price(body, other);
-            let Some(found) = contact(body, other, offset) else { continue };
+            let (found, looked) = contact(body, other, offset);
+            cost += looked;
+            let Some(found) = found else { continue };
             let over = found.depth - self.allowed.of(self.class(i), self.class(j));
             if over > 0.0 {
                 let share = if self.placements[j].frozen.is_some() { 1.0 } else { 0.5 };

@@ -90,6 +90,17 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
             return Ok((apart, known));
         }
     }
+    // What hangs together over the cell of a repeat is cut by the frame here and runs through it there.
+    if let Some(found) = &known
+        && found.lost() > 0
+        && has(&drawing, &[Reason::Piece, Reason::Fill])
+        && drawing.exemplar.period.is_none()
+        && let as_page = (ReadOptions { tiling: svg::Tiling::Page, ..options.clone() })
+        && let Some((alike, Some(other))) = areas_alike(text, &as_page, budget)?
+        && other.lost() < found.lost()
+    {
+        return Ok((alike, Some(other)));
+    }
     // Elements that repeat, or are strewn over one period, are better kept apart.
     if known.is_none()
         && drawing.exemplar.period.is_none()
@@ -385,5 +396,43 @@ mod tests {
         let cell = regular(&drawing.exemplar, &budget).unwrap().unwrap().repeat().lattice.cell();
         assert!((cell - 2500.0).abs() < 1.0, "{cell}");
         assert!(alike(&rings_in_rings(|row| [0.0, 13.0, 4.0, 21.0][row])).is_none(), "rows that slip");
+    }
+
+    /// Bands across the page with prongs that hang over the next cells of 50 x 50, as one compound path cut at the sides of the page; and what
+    /// they cover.
+    fn prongs() -> (String, f64) {
+        let ring = |corners: &[(f64, f64)]| corners.iter().map(|&(x, y)| Vector::xy(x, y)).collect::<Vec<_>>();
+        let mut rings = Vec::new();
+        for row in 0..4_u32 {
+            let y = 20.0 + 50.0 * f64::from(row);
+            rings.push(ring(&[(-9.0, y), (200.0, y), (200.0, y + 9.0), (-9.0, y + 9.0)]));
+            for column in 0..6_u32 {
+                let x = 50.0 * f64::from(column) - 90.0;
+                rings.push(ring(&[(x, y), (x + 68.0, y - 30.0), (x + 76.0, y - 30.0), (x + 14.0, y)]));
+            }
+        }
+        let page = Outline { rings: vec![ring(&[(0.0, 0.0), (112.0, 0.0), (112.0, 108.0), (0.0, 108.0)])] };
+        let whole = Outline::union(&rings, arabesque_core::FillRule::NonZero).intersection(&page);
+        let mut data = String::new();
+        for ring in &whole.rings {
+            let corners: Vec<_> = ring.iter().map(|p| format!("{} {}", p[0], p[1])).collect();
+            let _ = write!(data, "M{}z", corners.join("L"));
+        }
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg' width='112' height='108'><path d='{data}'/></svg>");
+        (text, whole.area())
+    }
+
+    #[test]
+    fn what_hangs_together_over_the_cell_is_continued_whole() {
+        let (text, covered) = prongs();
+        let alone =
+            ReadOptions { large_fills: LargeFills::Areas, tiling: svg::Tiling::Page, ..ReadOptions::new("t.svg") };
+        let page = svg::read_exemplar(&text, &alone).unwrap();
+        let found = regular(&page.exemplar, &Budget::default()).unwrap().unwrap();
+        assert!(found.lost() > 0, "prongs that the sides of the page have cut off their bands");
+        let Ok(LoadedExemplar::Drawing(drawing, Some(found))) = read("t.svg", text.as_bytes()) else { panic!() };
+        assert_eq!((drawing.exemplar.elements.len(), found.lost()), (0, 0));
+        let ink: f64 = drawing.exemplar.areas.iter().map(|area| area.outline.area()).sum();
+        assert!((ink - covered).abs() < 0.5, "{ink} {covered}");
     }
 }

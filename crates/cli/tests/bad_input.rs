@@ -119,10 +119,10 @@ fn pictures_of_the_wrong_kind() {
     assert!(
         folder
             .fails(3, "fill leaves.svg --size 80x80 --scale ring.svg -o a.svg")
-            .contains("an SVG or XML file where a PNG")
+            .contains("an SVG or XML file, where a PNG")
     );
     assert!(
-        folder.fails(3, "fill leaves.svg --size 80x80 --density photo.png -o a.svg").contains("a JPEG picture where")
+        folder.fails(3, "fill leaves.svg --size 80x80 --density photo.png -o a.svg").contains("a JPEG picture, where")
     );
     assert!(folder.fails(3, "fill leaves.svg --size 80x80 --orient points.csv -o a.svg").contains("points.csv"));
     let whole = folder.read("ramp.png");

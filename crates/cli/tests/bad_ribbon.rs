@@ -37,7 +37,7 @@ fn exemplars_without_a_transparent_background() {
         ("clear.png", "clear.png: every pixel is transparent"),
         ("tiny.png", "tiny.png: 2 x 1 pixels"),
         ("half.png", "half.png: broken PNG"),
-        ("words.png", "words.png: something else where a PNG picture was expected"),
+        ("words.png", "words.png: plain text, where a PNG picture was expected"),
         ("empty.svg", "empty.svg: every pixel is transparent"),
         ("missing.png", "missing.png"),
     ] {

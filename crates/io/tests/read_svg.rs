@@ -355,7 +355,7 @@ fn tiles_that_are_no_lines_together_stay_elements() {
 #[test]
 fn outlines_of_other_networks_are_refused_by_name() {
     let message = error(&outline_of_a_net([21, 9]));
-    assert!(message.contains("outline of a whole network of lines (\"net\")"), "{message}");
+    assert!(message.contains("1 outline that reaches several sides of the frame (\"net\")"), "{message}");
     assert!(message.contains("--method elements"), "{message}");
 }
 

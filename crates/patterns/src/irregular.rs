@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{
-    Budget, Error, Exemplar, Forecast, Numbered, Outcome, Placement, Request, Result, Snapshot, Vector, Warning, Watch,
+    Budget, Error, Exemplar, Numbered, Outcome, Placement, Request, Result, Snapshot, Vector, Warning, Watch,
 };
 
 use crate::{
@@ -138,9 +138,9 @@ where
         let contexts: Vec<_> = levels.iter().enumerate().map(context).collect();
         let evenness = self.evenness.as_ref();
         let run = Run { params: &self.params, request, contexts, evenness, iterations };
-        let forecast = Self::forecast(&run);
-        request.budget.allow_elements(forecast.count);
-        watch.foreseen(&Forecast { allowed: request.budget.allowed() as f64, ..forecast });
+        let (count, work) = Self::forecast(&run);
+        request.budget.allow_elements(count);
+        watch.foreseen(&request.budget.forecast(count, work));
         let mut trace = Vec::new();
         let Made { snapshot: mut found, mut cut_short } = run.synthesise(&mut trace, watch)?;
         if cut_short.is_none() && !found.placements.is_empty() {
@@ -192,8 +192,8 @@ where
         solids::take_out(placements, laps, (&self.exemplar, &sampled.library), &extent)
     }
 
-    /// What a run will take, by what its samples take in each iteration.
-    fn forecast(run: &Run<'_, D>) -> Forecast {
+    /// How many elements and samples there will be, and what a run will take, by what its samples take in each iteration.
+    fn forecast(run: &Run<'_, D>) -> (f64, f64) {
         let of_level = |context: &LevelContext<'_, D>| -> (f64, f64) {
             let (library, base) = (&context.sampled.library, context.sampled.level.base);
             let is_stroke = |c: usize| library.members(c as u32).first().is_some_and(|&e| e >= base);
@@ -203,11 +203,7 @@ where
         };
         let levels: Vec<_> = run.contexts.iter().map(of_level).collect();
         let work: f64 = levels.iter().map(|(_, work)| work).sum();
-        Forecast {
-            count: levels.iter().map(|(count, _)| *count).fold(0.0, f64::max),
-            work: work * run.iterations as f64,
-            allowed: 0.0,
-        }
+        (levels.iter().map(|(count, _)| *count).fold(0.0, f64::max), work * run.iterations as f64)
     }
 
     /// What may be wrong with an exemplar.

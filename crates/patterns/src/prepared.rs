@@ -6,7 +6,7 @@ use std::{
 };
 
 use arabesque_core::{
-    Border, Budget, Drawn, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Role, Snapshot,
+    Border, Budget, Drawn, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Snapshot,
     StopReason, Vector, Warning, Watch, rounded,
 };
 
@@ -204,10 +204,8 @@ where
     ) -> Result<Self> {
         params.check()?;
         let has_lines = !exemplar.curves.is_empty() || !exemplar.areas.is_empty();
-        if !has_lines && exemplar.elements.iter().filter(|e| e.role == Role::Source).count() < 2 {
-            let problem = "one element only, expected at least two";
-            let advice = "repeat the element a few times in the exemplar, so that it shows distances and directions";
-            return Err(Error::input("exemplar", problem, advice));
+        if !has_lines {
+            checks::several(exemplar)?;
         }
         checks::places(exemplar)?;
         checks::strokes(exemplar)?;

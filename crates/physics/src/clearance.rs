@@ -64,7 +64,7 @@ pub fn clearance(bodies: &[Body], budget: &Budget) -> Result<Option<f64>> {
             }
         }
     }
-    let mut gaps: Vec<f64> = nearest.iter().filter_map(|gaps| usual(gaps)).collect();
+    let mut gaps: Vec<f64> = nearest.iter().filter_map(usual).collect();
     if (gaps.len() as f64) < HEAP * bodies.len() as f64 {
         return Ok(None);
     }

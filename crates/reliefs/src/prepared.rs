@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Budget, Error, Forecast, PointSet, Progress, Result, StopReason, Warning, Watch};
+use arabesque_core::{Bounds, Budget, Error, PointSet, Progress, Result, StopReason, Warning, Watch};
 
 use crate::{
     ground::canvas::Canvas,
@@ -159,7 +159,7 @@ impl Prepared {
         budget.within_expected("points of the result", expected, ("output-elements", limits.output_elements))?;
         budget.allow_elements(expected * EACH / 1e6);
         let work = expected * (WORK + beyond);
-        watch.foreseen(&Forecast { count: expected, work, allowed: budget.allowed() as f64 });
+        watch.foreseen(&budget.forecast(expected, work));
         Ok(())
     }
 

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{
-    Budget, Error, Forecast, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch,
-};
+use arabesque_core::{Budget, Error, Patch, Path, Progress, Result, Snapshot, StopReason, Vector, Warning, Watch};
 use rayon::prelude::*;
 
 use crate::{
@@ -167,7 +165,7 @@ impl Prepared {
         }
         let pieces = allow(&cages, &budget);
         let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget, &mut |work| {
-            watch.foreseen(&Forecast { count: pieces as f64, work, allowed: budget.allowed() as f64 });
+            watch.foreseen(&budget.forecast(pieces as f64, work));
         })?;
         let mut outcome = self.lay(&cages, &free, (request, before), watch)?;
         let Some(mask) = mask else { return Ok(outcome) };
@@ -282,7 +280,7 @@ impl Prepared {
             let finished = &outcome.ribbons;
             let solved = self.solve(&curve, &mut |rows, energy, path| {
                 if let Some(work) = pace.at(done + rows, budget.work()) {
-                    watch.foreseen(&Forecast { count: total as f64, work, allowed: budget.allowed() as f64 });
+                    watch.foreseen(&budget.forecast(total as f64, work));
                 }
                 let progress = progress(done + rows, total, energy);
                 let preview = || Snapshot { patches: self.preview(finished, cage, &path()), ..Snapshot::default() };

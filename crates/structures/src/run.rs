@@ -2,9 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{
-    Budget, EnergyPoint, Error, Forecast, PointSet, Progress, Result, StopReason, Vector, Warning, Watch,
-};
+use arabesque_core::{Budget, EnergyPoint, Error, PointSet, Progress, Result, StopReason, Vector, Warning, Watch};
 
 use crate::{
     energy::{
@@ -88,7 +86,7 @@ impl<const D: usize> Prepared<D> {
         let stage = Stage::new(self, request)?;
         let count = stage.layouts[0].expected(self);
         let each = EACH[usize::from(self.repeats() > 2)];
-        watch.foreseen(&Forecast { count, work: count * each, allowed: stage.budget.allowed() as f64 });
+        watch.foreseen(&stage.budget.forecast(count, count * each));
         let start = kept(&self.pattern, &request.kept)?;
         let mut state = State::of(start, Vec::new());
         stage.levels(&mut state, watch)?;

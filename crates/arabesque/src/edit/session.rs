@@ -290,7 +290,7 @@ fn format_of(name: &str, bytes: &[u8]) -> Format {
         [0x89, b'P', b'N', b'G', ..] => Format::Png,
         [b'g', b'l', b'T', b'F', ..] => Format::Glb,
         [b'p', b'l', b'y', b'\n' | b'\r', ..] => Format::Ply,
-        [b'<', ..] => Format::Svg,
+        [b'<', ..] | [0x1F, 0x8B, ..] => Format::Svg,
         [b'{', ..] if by_name == Some(Format::Gltf) => Format::Gltf,
         [b'{', ..] => Format::Json,
         [b'x', b',', ..] => Format::Csv,

@@ -52,7 +52,8 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
         let text = file::decode_text(name, bytes, &Budget::default())?;
         let start = text.trim_start();
         let ending = Format::of_path(name).ok().flatten();
-        if start.starts_with('<') {
+        let kind = file::called(text.as_bytes());
+        if start.starts_with('<') && kind != file::HTML {
             (svg::recipe_of(&text), "a drawing")
         } else if start.starts_with('{') {
             (json::recipe_of(&text).or_else(|| gltf::recipe_of(text.as_bytes())), "a JSON file")
@@ -62,6 +63,9 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
             (csv::recipe_of(&text), "a USD file")
         } else if ending == Some(Format::Obj) || is_of_curves(start.as_bytes()) {
             (obj::recipe_of(&text), "a file of curves")
+        } else if kind != file::TOML && ending != Some(Format::Toml) {
+            let problem = format!("{kind}, where a recipe or a result was expected");
+            return Err(Error::input(name, problem, "give a recipe (TOML) or a result of arabesque"));
         } else {
             return Ok((Recipe::from_toml(name, &text)?, Carrier::Recipe));
         }

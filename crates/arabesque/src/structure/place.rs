@@ -213,7 +213,8 @@ pub(crate) fn directions(source: &mut Option<Direction>, context: &mut RunContex
             let strokes = match curves(input, context)? {
                 Curves::Space(paths) => paths,
                 Curves::Plane(_) => {
-                    return Err(elsewhere("direction", "curves in the plane", "a mesh", "give lines of an OBJ file"));
+                    let problem = "curves in the plane, where curves on the mesh were expected";
+                    return Err(Error::input(input.name(), problem, "give lines of an OBJ file"));
                 }
             };
             Directions::Strokes(strokes.iter().map(|path| path.flatten(CHORD * path.bounds().size().norm())).collect())

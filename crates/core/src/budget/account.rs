@@ -8,6 +8,7 @@ use std::sync::{
 use super::{Limits, Stopper};
 use crate::{
     error::{Error, Result},
+    run::Forecast,
     text::rounded,
 };
 
@@ -15,6 +16,8 @@ use crate::{
 const MILLION: u64 = 1_000_000;
 /// Work that an element of an exemplar allows, as a share of what one of the result does.
 const ANALYSED: f64 = 0.05;
+/// How much more than what was foretold is advised: forecasts are rough.
+const MARGIN: f64 = 1.25;
 /// Work units after which a meter pays.
 const INSTALMENT: u64 = 1 << 14;
 
@@ -52,6 +55,8 @@ struct Account {
     work: AtomicU64,
     /// Work that may be done, in units.
     allowed: AtomicU64,
+    /// Work that there will be in all by the last forecast, in units.
+    expected: AtomicU64,
     memory: AtomicU64,
 }
 
@@ -77,6 +82,7 @@ impl Budget {
             heard,
             work: AtomicU64::new(0),
             allowed: AtomicU64::new((limits.work as u64).saturating_mul(MILLION)),
+            expected: AtomicU64::new(0),
             memory: AtomicU64::new(0),
         };
         Self { account: Arc::new(account), stage: "" }
@@ -144,6 +150,14 @@ impl Budget {
     /// Allows the work that analysing `elements` elements of an exemplar may take beside: a twentieth of what as many of a result may.
     pub fn allow_exemplar(&self, elements: usize) {
         self.allow_elements(elements as f64 * ANALYSED);
+    }
+
+    /// The forecast of a run of `count` elements, samples or pieces that takes `work` more units. Whoever is refused for its work from
+    /// then on is told to allow as much.
+    pub fn forecast(&self, count: f64, work: f64) -> Forecast {
+        let expected = self.work() as f64 + work.max(0.0);
+        self.account.expected.store(expected as u64, Ordering::Relaxed);
+        Forecast { count, work, allowed: self.allowed() as f64 }
     }
 
     /// Whether somebody asked to stop.
@@ -266,23 +280,33 @@ impl Budget {
     fn overworked(&self) -> Error {
         // How much more there was depends on the threads: it is not told.
         let limit = self.account.allowed.load(Ordering::Relaxed) / MILLION;
-        // Twice as much in all, of which the elements bring their share.
-        let work = (self.account.limits.work as u64).saturating_add(limit);
         Error::Limit {
             what: self.stage_name().to_owned(),
             found: format!("more than {limit} million units of work"),
             limit: limit.to_string(),
-            advice: format!("give it less to do, or raise the limit with --limit work={work}"),
+            advice: self.more_work(limit),
+        }
+    }
+
+    /// What to do about work that is over `limit` millions of units in all.
+    fn more_work(&self, limit: u64) -> String {
+        let own = self.account.limits.work as u64;
+        let expected = self.account.expected.load(Ordering::Relaxed) as f64 / MILLION as f64;
+        // Twice as much in all, or what was foretold, of which the elements bring their share.
+        let wanted = limit.saturating_mul(2).max((expected * MARGIN).ceil() as u64);
+        let enough = own.saturating_add(wanted.saturating_sub(limit)).to_string();
+        match Limits::default().set("work", &enough) {
+            Ok(()) => format!("give it less to do, or raise the limit with --limit work={enough}"),
+            Err(_) => "give it less to do".into(),
         }
     }
 
     /// What to tell of a result that is the best so far because the work was used up, and what to do about it.
     pub fn spent(&self) -> (String, String) {
-        let work = self.account.limits.work;
         let allowed = self.allowed() / MILLION;
         let message =
             format!("{}: {allowed} million units of work were used up: this is the best so far", self.stage_name());
-        (message, format!("give it less to do, or raise the limit with --limit work={}", work.saturating_mul(2)))
+        (message, self.more_work(allowed))
     }
 
     fn stage_name(&self) -> &'static str {

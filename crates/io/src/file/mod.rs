@@ -4,6 +4,7 @@
 //! written lies in a file of a random name beside its target until it is complete, and is renamed then.
 
 mod beside;
+mod called;
 mod copy;
 mod identity;
 mod part;
@@ -14,6 +15,8 @@ mod target;
 mod text;
 
 pub use beside::{Beside, Folder, NothingBeside, name_beside};
+pub use called::{HTML, TOML, called};
+pub(crate) use called::{binary, text_called};
 pub use identity::Identity;
 pub use part::abandon_writing;
 pub use read::read_bytes;

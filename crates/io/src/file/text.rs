@@ -5,10 +5,11 @@ use std::io::Read;
 use arabesque_core::{Budget, Error, Result};
 use flate2::read::MultiGzDecoder;
 
-use super::read::too_large;
+use super::{
+    called::{GZIP, binary},
+    read::too_large,
+};
 
-/// How files that are packed with gzip begin, whatever they are called.
-const GZIP: [u8; 2] = [0x1F, 0x8B];
 /// Bytes that are unpacked between two looks at the limits.
 const CHUNK: usize = 1 << 16;
 
@@ -53,20 +54,8 @@ fn unpacked(place: &str, bytes: &[u8], budget: &Budget) -> Result<Vec<u8>> {
     }
 }
 
-/// What is known of files that are not text, by how they begin.
-const OTHERS: [(&[u8], &str); 8] = [
-    (b"\x89PNG\r\n\x1a\n", "a PNG picture"),
-    (b"\xFF\xD8\xFF", "a JPEG picture"),
-    (b"GIF8", "a GIF picture"),
-    (b"RIFF", "a WebP picture or a sound"),
-    (b"II*\0", "a TIFF picture"),
-    (b"%PDF", "a PDF document, as Illustrator files are too"),
-    (b"PK\x03\x04", "a ZIP archive"),
-    (b"glTF", "a GLB scene"),
-];
-
 fn plain_text(place: &str, bytes: &[u8]) -> Result<String> {
-    if let Some((_, kind)) = OTHERS.iter().find(|(begin, _)| bytes.starts_with(begin)) {
+    if let Some(kind) = binary(bytes) {
         let problem = format!("{kind}, where text such as SVG was expected");
         return Err(Error::input(place, problem, "export it as SVG, or give the file that was meant"));
     }

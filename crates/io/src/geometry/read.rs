@@ -4,7 +4,7 @@ use arabesque_core::{Budget, Error, Result};
 
 use super::found::Geometry;
 use crate::{
-    file::decode_text,
+    file::{binary, called, decode_text},
     json,
     mesh::{gltf, obj, ply, stl},
     table::{points, records, xyz},
@@ -87,6 +87,9 @@ fn kind_of_text(head: &str) -> Option<Kind> {
 /// reader of each kind.
 pub fn read_geometry(name: &str, bytes: &[u8], budget: &Budget) -> Result<Geometry> {
     let text = || decode_text(name, bytes, budget);
+    if let Some(kind) = binary(bytes).filter(|_| !gltf::is_gltf(bytes)) {
+        return Err(neither(name, kind));
+    }
     match kind_of(name, bytes) {
         Some(Kind::Ply) => ply::read_ply(name, bytes, budget),
         Some(Kind::Stl) => stl::read_stl(name, bytes, budget),
@@ -94,12 +97,13 @@ pub fn read_geometry(name: &str, bytes: &[u8], budget: &Budget) -> Result<Geomet
         Some(Kind::Obj) => obj::read_mesh(name, &text()?, budget),
         Some(Kind::Csv) => points::read_table(name, &text()?, budget),
         Some(Kind::Xyz) => xyz::read_xyz(name, &text()?, budget),
-        None => Err(Error::input(
-            name,
-            "a file that is neither points nor a mesh",
-            "give a PLY, STL, OBJ, GLB, CSV or XYZ file",
-        )),
+        None => Err(neither(name, called(bytes))),
     }
+}
+
+fn neither(name: &str, kind: &str) -> Error {
+    let advice = "give a mesh or points as PLY, STL, OBJ or GLB; points as CSV or XYZ too";
+    Error::input(name, format!("{kind}, where a mesh or points were expected"), advice)
 }
 
 /// The recipe in a file of points or a mesh that this library wrote.
@@ -155,7 +159,9 @@ mod tests {
             assert_eq!((geometry.points.len(), geometry.is_mesh()), (1, false), "{text}");
         }
         assert!(read("a.gltf", "{}").unwrap_err().to_string().contains("no mesh and no points"));
-        assert!(read("a.svg", "<svg/>").unwrap_err().to_string().contains("neither points nor a mesh"));
+        assert!(
+            read("a.svg", "<svg/>").unwrap_err().to_string().contains("an SVG or XML file, where a mesh or points")
+        );
         assert!(recipe_of(b"x,y\n1,2\n# arabesque recipe:\n# seed = 1\n").is_some());
         assert!(recipe_of(&[0xFF, 0xFE]).is_none());
     }

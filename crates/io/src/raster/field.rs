@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn other_kinds_are_named() {
         let message = |bytes: &[u8]| scalar(bytes).unwrap_err().to_string();
-        assert!(message(&[0xFF, 0xD8, 0xFF]).contains("a JPEG picture where a PNG"));
+        assert!(message(&[0xFF, 0xD8, 0xFF]).contains("a JPEG picture, where a PNG"));
         assert!(message(b"<svg/>").contains("an SVG"));
         assert!(message(b"").contains("an empty file"));
         let whole = encode(2, png::ColorType::Grayscale, png::BitDepth::Eight, &[0, 255]);

@@ -5,7 +5,10 @@ use std::io::Cursor;
 use arabesque_core::{Budget, Error, Held, Result};
 use png::{BitDepth, ColorType, DecodingError, InterlaceInfo, Transformations};
 
-use crate::raster::{palette, png::is_png};
+use crate::{
+    file::called,
+    raster::{palette, png::is_png},
+};
 
 /// Work of decoding one byte of a row and of looking at it.
 const BYTE: u64 = 4;
@@ -120,8 +123,9 @@ fn check_kind(name: &str, bytes: &[u8]) -> Result<()> {
     if is_png(bytes) {
         return Ok(());
     }
-    let problem = format!("{} where a PNG picture was expected", kind_of(bytes));
-    Err(Error::input(name, problem, "save the picture as PNG"))
+    let kind = called(bytes);
+    let advice = if kind.contains("picture") { "save the picture as PNG" } else { "give a PNG picture" };
+    Err(Error::input(name, format!("{kind}, where a PNG picture was expected"), advice))
 }
 
 fn broken(name: &str, error: &DecodingError) -> Error {
@@ -138,17 +142,6 @@ fn broken(name: &str, error: &DecodingError) -> Error {
 
 fn short(name: &str) -> Error {
     Error::input(name, "broken PNG: fewer rows than its header says", "save the picture again")
-}
-
-fn kind_of(bytes: &[u8]) -> &'static str {
-    match bytes {
-        [] => "an empty file",
-        [0xFF, 0xD8, ..] => "a JPEG picture",
-        [b'G', b'I', b'F', ..] => "a GIF picture",
-        [b'R', b'I', b'F', b'F', ..] => "a WebP picture",
-        [b'<', ..] => "an SVG or XML file",
-        _ => "something else",
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Exemplars that nothing can be made of: what is there is told before any work is done.
 
-use arabesque_core::{Budget, Domain, Error, Exemplar, GridIndex, Request, Result, Spread, Warning};
+use arabesque_core::{Budget, Domain, Error, Exemplar, GridIndex, Request, Result, Role, Spread, Warning};
 
 use crate::exemplar::level_exemplar::LevelExemplar;
 
@@ -59,6 +59,29 @@ pub(crate) fn frozen<const D: usize>(exemplar: &Exemplar<D>, request: &Request<D
         Some(p) => Err(Error::parameter("frozen source", p.source, format!("below {known}, the number of elements"))),
         None => Ok(()),
     }
+}
+
+/// Refuses an exemplar of elements of which fewer than two may be copied.
+pub(crate) fn several<const D: usize>(exemplar: &Exemplar<D>) -> Result<()> {
+    let cut = exemplar.elements.iter().filter(|e| e.role == Role::Context).count();
+    if exemplar.elements.len() - cut >= 2 {
+        return Ok(());
+    }
+    let (problem, advice) = match cut {
+        0 => (
+            "one element only, expected at least two".to_owned(),
+            "repeat the element a few times in the exemplar, so that it shows distances and directions",
+        ),
+        1 => (
+            "one whole element only, expected at least two: the frame cuts the other one".to_owned(),
+            "draw it whole, reaching over the frame",
+        ),
+        _ => (
+            format!("one whole element only, expected at least two: the frame cuts the other {cut}"),
+            "draw them whole, reaching over the frame, or show two whole periods of what repeats",
+        ),
+    };
+    Err(Error::input("exemplar", problem, advice))
 }
 
 /// Refuses results of which so many elements are expected.

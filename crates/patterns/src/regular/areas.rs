@@ -1,7 +1,7 @@
 //! Filled areas on a lattice: the part of them in one cell, copied to all cells and united again.
 
 use arabesque_core::{
-    Border, Bounds, Budget, Covered, Domain, Exemplar, FillRule, Outline, Result, Ring, Shape, Vector,
+    Border, Bounds, Budget, Covered, Domain, Exemplar, FillRule, Outline, Result, Ring, Shape, Vector, ring,
 };
 
 use crate::{
@@ -24,7 +24,14 @@ pub(crate) struct CellArea {
     /// The first area of the style, as which it is painted.
     pub(crate) source: usize,
     /// The part in the cell, which is a little larger than the cell.
-    rings: Vec<Ring<2>>,
+    pub(crate) rings: Vec<Ring<2>>,
+}
+
+impl CellArea {
+    /// Whether a place is covered: areas of one style lie apart.
+    pub(crate) fn contains(&self, place: Vector<2>) -> bool {
+        ring::covers(self.rings.iter().flat_map(|r| ring::edges(r)), place)
+    }
 }
 
 /// The areas of a cell of the lattice with its corner at `origin`, style by style in drawing order.

@@ -1,8 +1,8 @@
 //! Filling a domain from an exemplar that repeats.
 
 use arabesque_core::{
-    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Forecast, Outcome, Request, Result, Role,
-    Snapshot, Vector, Warning, Watch,
+    Border, Budget, Covered, Domain, Drawn, Element, Error, Exemplar, Outcome, Request, Result, Role, Snapshot, Vector,
+    Warning, Watch,
 };
 
 use crate::{
@@ -17,6 +17,7 @@ use crate::{
         grid::{Grid, Ground, Unfit},
         joints::Cell,
         kept::Kept,
+        lost::lost,
         strokes::Strokes,
     },
     repeat::{
@@ -35,6 +36,9 @@ const RIM: f64 = 0.35;
 /// Residuals that differ by this share of the shorter vector count half as much as different things.
 const RESIDUAL: f64 = 0.1;
 
+/// Things lie off by no more than this share of the shorter vector where a pattern was constructed.
+const EXACT: f64 = 5e-3;
+
 /// Stretching that nobody sees.
 const UNSEEN: f64 = 1e-3;
 
@@ -52,6 +56,8 @@ pub struct Regular {
     others: usize,
     /// Elements out of all proportion to the frame.
     giants: usize,
+    /// Elements that the frame has cut and that the repeat does not show whole.
+    lost: usize,
 }
 
 /// What came of a request.
@@ -102,7 +108,18 @@ impl Regular {
         };
         let unit = RESIDUAL * repeat.lattice.shorter();
         let cells = Cells::new(exemplar, &orbits, unit, budget)?;
-        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants }))
+        // By hand, and where only places repeat, nothing is where the frame has cut it.
+        let is_exact = repeat.explains == Explains::Everything && repeat.jitter <= EXACT * shorter;
+        let lost = match repeat.extent {
+            Extent::Plane if is_exact => lost(exemplar, &repeat, (&orbits, cell.as_ref()), budget)?.len(),
+            _ => 0,
+        };
+        Ok(Some(Self { repeat, orbits, cells, cell, others: others.len(), giants, lost }))
+    }
+
+    /// How many elements that the frame has cut the repeat does not show, or not whole: they are left out.
+    pub fn lost(&self) -> usize {
+        self.lost
     }
 
     /// A strip that would run past the domain runs through its middle.
@@ -257,7 +274,7 @@ impl Regular {
         let count = cells * (self.orbits.len() + parts) as f64;
         checks::expected(count, &request.budget)?;
         request.budget.allow_elements(count);
-        watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed: request.budget.allowed() as f64 });
+        watch.foreseen(&request.budget.forecast(count, count * PER_ELEMENT));
         Ok(())
     }
 
@@ -268,6 +285,12 @@ impl Regular {
             warnings.push(Warning::new(
                 format!("elements that fit no place of the repeat left out: {}", self.others),
                 "set repeat=off to treat the pattern as irregular",
+            ));
+        }
+        if self.lost > 0 {
+            warnings.push(Warning::new(
+                format!("elements cut by the frame that the repeat shows nowhere whole left out: {}", self.lost),
+                "show more of the pattern, or draw them whole, reaching over the frame",
             ));
         }
         warnings

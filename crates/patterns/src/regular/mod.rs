@@ -16,6 +16,7 @@ pub(crate) mod fill;
 pub(crate) mod grid;
 pub(crate) mod joints;
 pub(crate) mod kept;
+pub(crate) mod lost;
 pub(crate) mod strokes;
 
 pub(crate) use fill::Filled;

@@ -1,7 +1,7 @@
 //! What can be recognised on lines: ends, crossings of straight stretches, and the places where a line passes through
 //! one of a few directions, which on a smooth line are points and on a corner the corner.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use arabesque_core::{Bounds, Budget, Exemplar, Result, Segment, Vector, segment};
 
@@ -26,6 +26,9 @@ const MOST: usize = 60_000;
 /// Straight stretches are looked at for crossings when they are longer than this share of the side of the frame, and
 /// when there are no more of them than this.
 const STRETCH: (f64, usize) = (0.04, 2000);
+
+/// Crossings of one kind that are nearer than this share of the side of the frame are one: as coordinates are rounded at worst.
+const SAME: f64 = 4e-4;
 
 /// Stretches that cross at a smaller angle than this, by its sine, cross nowhere in particular.
 const SLANT: f64 = 0.1;
@@ -100,7 +103,9 @@ impl Lines {
         }
         if lines.stretches.len() <= STRETCH.1 {
             budget.spend(WORK.1 * (lines.stretches.len() as u64).pow(2))?;
-            crossings(&lines.stretches, &mut lines.features);
+            let found = crossings(&lines.stretches);
+            budget.spend(WORK.0 * found.len() as u64)?;
+            lines.features.extend(merged(found, SAME * side));
         }
         lines.features.retain(|(place, _)| seen.contains(*place) && !exemplar.hole.is_some_and(|h| h.contains(*place)));
         lines.features.truncate(MOST);
@@ -185,7 +190,8 @@ fn stretches(track: &Track, least: f64, window: &Bounds<2>, into: &mut Vec<(Segm
     current.into_iter().for_each(close);
 }
 
-fn crossings(stretches: &[(Segment<2>, usize)], into: &mut Vec<(Vector<2>, Feature)>) {
+fn crossings(stretches: &[(Segment<2>, usize)]) -> Vec<(Vector<2>, Feature)> {
+    let mut found = Vec::new();
     for (k, &(a, style)) in stretches.iter().enumerate() {
         let way = (a.1 - a.0).unit_or_zero();
         for &(b, other) in &stretches[k + 1..] {
@@ -197,11 +203,54 @@ fn crossings(stretches: &[(Segment<2>, usize)], into: &mut Vec<(Vector<2>, Featu
                 && (0.0..=1.0).contains(&t)
             {
                 let styles = (style.min(other), style.max(other));
-                into.push((a.0 + (a.1 - a.0) * s, Feature::Crossing(styles.0, styles.1)));
-                if into.len() > 2 * MOST {
-                    return;
+                found.push((a.0 + (a.1 - a.0) * s, Feature::Crossing(styles.0, styles.1)));
+                if found.len() > 2 * MOST {
+                    return found;
                 }
             }
         }
+    }
+    found
+}
+
+/// Features with those of one kind that lie within a distance of the first of them as one, at their mean: where three lines meet, as on
+/// isometric paper, each pair of them crosses, and rounding tells these crossings apart.
+fn merged(features: Vec<(Vector<2>, Feature)>, within: f64) -> Vec<(Vector<2>, Feature)> {
+    let mut known: BTreeMap<(Feature, [i64; 2]), Vec<usize>> = BTreeMap::new();
+    // The first of those that are one, the sum of their places, and how many they are.
+    let mut all: Vec<(Vector<2>, Feature, Vector<2>, f64)> = Vec::new();
+    for (place, feature) in features {
+        let [x, y] = place.0.map(|c| (c / within).floor() as i64);
+        let around = (0..9).flat_map(|k| known.get(&(feature, [x + k % 3 - 1, y + k / 3 - 1])).into_iter().flatten());
+        match around.copied().find(|&n| (all[n].0 - place).norm() <= within) {
+            Some(n) => (all[n].2, all[n].3) = (all[n].2 + place, all[n].3 + 1.0),
+            None => {
+                known.entry((feature, [x, y])).or_default().push(all.len());
+                all.push((place, feature, place, 1.0));
+            }
+        }
+    }
+    all.into_iter().map(|(_, feature, sum, count)| (sum * (1.0 / count), feature)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_meet_in_threes_cross_once() {
+        let at = |x: f64, y: f64| Vector::xy(x, y);
+        let stretches = [
+            ((at(-10.0, 0.001), at(10.0, 0.001)), 0),
+            ((at(-10.0, -10.0), at(10.0, 10.0)), 0),
+            ((at(-10.0, 10.002), at(10.0, -9.998)), 0),
+            ((at(5.0, -10.0), at(5.0, 10.0)), 1),
+        ];
+        let found = crossings(&stretches);
+        assert_eq!(found.len(), 6);
+        let once = merged(found, 0.01);
+        let of = |a: usize, b: usize| once.iter().filter(|(_, f)| *f == Feature::Crossing(a, b)).count();
+        assert_eq!((of(0, 0), of(0, 1)), (1, 3), "and the upright one, in another colour, crosses each by itself");
+        assert!(once[0].0.norm() < 0.002, "{:?}", once[0]);
     }
 }

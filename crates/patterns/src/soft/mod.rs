@@ -24,8 +24,7 @@ mod tests;
 mod wall;
 
 use arabesque_core::{
-    Border, Budget, Error, Exemplar, Forecast, Matrix, Outcome, Placement, Progress, Request, Result, Similarity,
-    Snapshot, Watch,
+    Border, Budget, Error, Exemplar, Matrix, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot, Watch,
 };
 
 use crate::{
@@ -90,8 +89,8 @@ impl<const D: usize> Softness<D> {
         let mut plan = Plan::new(exemplar, &self.forms, &self.natural, request);
         checks::expected(plan.expected(), &request.budget)?;
         request.budget.allow_elements(plan.expected());
-        let (count, allowed) = (plan.expected(), request.budget.allowed() as f64);
-        watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed });
+        let count = plan.expected();
+        watch.foreseen(&request.budget.forecast(count, count * PER_ELEMENT));
         let mut laid = empty(&plan);
         self.keep(&mut laid, request);
         let mut cut_short = self.lay_out(&mut plan, &mut laid, watch).err();

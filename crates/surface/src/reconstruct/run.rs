@@ -1,8 +1,6 @@
 //! The door of the crate for points: all parts, one after another.
 
-use arabesque_core::{
-    Budget, Error, Forecast, MeshPart, PointSet, Progress, Result, StopReason, TriangleMesh, Warning, Watch,
-};
+use arabesque_core::{Budget, Error, MeshPart, PointSet, Progress, Result, StopReason, TriangleMesh, Warning, Watch};
 
 use super::{
     parts::{Name, parts},
@@ -19,6 +17,8 @@ use crate::{
 const NAME: &str = "points";
 /// Work of a point, and of the cells around it where they have the usual size, as measured on spheres.
 const EACH: [f64; 2] = [10_000.0, 12_000.0];
+/// Share of the work foretold that has to be within the limit: forecasts are rough.
+const HOPELESS: f64 = 0.25;
 /// Elements of a result that a point counts as, for the work that each adds.
 const POINT: f64 = 0.01;
 /// Points of fewer have no work worth telling.
@@ -113,7 +113,7 @@ pub fn reconstruct(
     Ok(Reconstruction { mesh, warnings: notes.warnings(), stopped })
 }
 
-/// Tells how much work it will be, about.
+/// Tells how much work it will be, about, and refuses what is far too much.
 fn foresee(job: &Job<'_>, points: &PointSet<3>, watch: &mut dyn Watch<TriangleMesh>) -> Result<()> {
     if points.len() < WORTH_TELLING || job.method(points) == Method::Metaballs {
         return Ok(());
@@ -123,8 +123,9 @@ fn foresee(job: &Job<'_>, points: &PointSet<3>, watch: &mut dyn Watch<TriangleMe
     let finer = job.cell.map_or(1.0, |cell| (usual / cell).powi(2));
     let count = points.len() as f64;
     let work = count * (EACH[0] + EACH[1] * finer);
-    watch.foreseen(&Forecast { count, work, allowed: job.budget.allowed() as f64 });
-    Ok(())
+    watch.foreseen(&job.budget.forecast(count, work));
+    // There is nothing to show before the end: what is hopeless is not begun.
+    job.budget.foresee((work * HOPELESS) as u64)
 }
 
 /// Whether points need others around them to make a surface: balls do not.

@@ -19,7 +19,7 @@ use crate::svg::{
         sheet::rules::{self, Plain},
     },
 };
-use crate::text::short::short;
+use crate::{file::text_called, text::short::short};
 
 /// Work units of reading one path segment.
 const SEGMENT: u64 = 100;
@@ -68,6 +68,7 @@ pub(crate) fn with_source<T>(
     let (name, limits) = (options.name.as_str(), options.budget.limits());
     options.budget.check()?;
     guard::check(text, name, limits)?;
+    check_kind(name, text)?;
     let parsing = ParsingOptions {
         allow_dtd: true,
         nodes_limit: u32::try_from(limits.nodes).unwrap_or(u32::MAX),
@@ -76,7 +77,7 @@ pub(crate) fn with_source<T>(
     let xml = Document::parse_with_options(text, parsing).map_err(|e| unreadable(name, limits, &e))?;
     if xml.root_element().tag_name().name() != "svg" {
         let found = xml.root_element().tag_name().name().to_owned();
-        return Err(Error::input(name, format!("the root is <{found}>, expected <svg>"), "choose an SVG file"));
+        return Err(Error::input(name, format!("the root is <{found}>, expected <svg>"), "give an SVG file"));
     }
     let css = style_text(&xml);
     let Plain { css: plain, values, unknown } = rules::plain(&css);
@@ -118,6 +119,14 @@ fn in_file(file: &str, error: Error) -> Error {
         }
         error => error,
     }
+}
+
+/// Refuses what is no markup by what it is: what the parser says of it helps nobody.
+fn check_kind(name: &str, text: &str) -> Result<()> {
+    if text.trim_start().starts_with('<') {
+        return Ok(());
+    }
+    Err(Error::input(name, format!("{}, where SVG was expected", text_called(text)), "give an SVG file"))
 }
 
 fn unreadable(name: &str, limits: &Limits, error: &roxmltree::Error) -> Error {

@@ -319,7 +319,7 @@ fn settle(
     Ok(window)
 }
 
-/// Refuses lines that the drawing program has turned into one outline, which are too large for an element.
+/// Refuses outlines that are too large for an element and neither lines nor areas that repeat.
 fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> Result<()> {
     let networks: Vec<&Item> = items.iter().filter(|item| is_network(item, window)).collect();
     if networks.is_empty() {
@@ -327,14 +327,21 @@ fn refuse_networks(source: &Source<'_>, items: &[Item], window: &Bounds<2>) -> R
     }
     let named: Vec<_> = networks.iter().take(5).map(|item| item.name(source)).collect();
     let more = if networks.len() > named.len() { ", ..." } else { "" };
-    let (count, s) = (networks.len(), if networks.len() == 1 { "" } else { "s" });
+    let (count, s, does) = match networks.len() {
+        1 => (1, "", "repeats nor is"),
+        count => (count, "s", "repeat nor are"),
+    };
     Err(Error::Unsupported {
-        what: format!("{}: {count} outline{s} of a whole network of lines ({}{more})", source.name, named.join(", ")),
-        advice:
-            "draw the lines as strokes or with one width, use --method elements to treat every connected piece as one \
-             element, or mark \
-                 items with data-arabesque=\"element\" or \"ignore\""
-                .into(),
+        what: format!(
+            "{}: going on with {count} outline{s} that reach{} several sides of the frame ({}{more}), which neither {does} \
+             made of lines of one width",
+            source.name,
+            if count == 1 { "es" } else { "" },
+            named.join(", ")
+        ),
+        advice: "show two whole periods of what repeats, draw lines as strokes, use --method elements to treat every connected \
+                 piece as one element, or mark items with data-arabesque=\"element\" or \"ignore\""
+            .into(),
     })
 }
 

@@ -114,7 +114,27 @@ pub(crate) fn is_possible(units: &Units, pieces: &[Piece], links: &Links, cell: 
         && !is_clipped(units)
         && is_drawn_to_fit(links, cell)
         && !is_heaped(units, cell)
+        && !is_cut_out(pieces, links, cell)
         && (!has_lines || goes_on())
+}
+
+/// Edges at which something ends before a page is a part cut out of something larger.
+const EDGES: usize = 3;
+
+/// Whether a page is a part cut out of something larger: what ends along its edges does so all around, and less of it than not goes on
+/// at the opposite ones. Shapes that were put there end at the ground they stand on, or have sides along the edges alone.
+fn is_cut_out(pieces: &[Piece], links: &Links, cell: &Cell) -> bool {
+    let mut open = [false; 4];
+    for (p, piece) in pieces.iter().enumerate().filter(|(_, piece)| !piece.covers && !is_upright(piece)) {
+        for (gap, link) in piece.gaps.iter().zip(&links.gaps[p]) {
+            open[gap.side] |= link.is_none() && gap.ends != [GapEnd::Corner; 2];
+        }
+    }
+    let [on, all] = [0, 1]
+        .map(|axis| counts(pieces, links, cell, axis))
+        .into_iter()
+        .fold([0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    open.into_iter().filter(|open| *open).count() >= EDGES && (on as f64) < HALF * all as f64
 }
 
 /// How much of what the edges across an axis cut goes on, and how much they cut.

@@ -255,6 +255,17 @@ fn one_thing_alone_is_a_period_and_a_heap_is_none() {
 }
 
 #[test]
+fn a_part_cut_out_of_something_larger_is_no_period() {
+    // Blobs that the edges cut where they like, and the same with each of them going on at the opposite edge.
+    let cut = "<path d='M0 20C12 16 12 36 0 32zM40 0C42 20 60 16 62 0zM100 50C80 46 84 72 100 66zM22 100C24 86 40 84 48 100z'/>";
+    assert_eq!(is_taken([100, 100], cut), [false; 2]);
+    let whole = "<path d='M0 20C12 16 12 36 0 32zM100 20C90 16 90 36 100 32zM40 0C42 20 60 16 62 0zM40 100C42 84 60 86 62 100z'/>";
+    assert!(is_taken([100, 100], whole)[1]);
+    // What stands on the lower edge was put there.
+    assert!(is_taken([100, 100], "<path d='M10 100C24 60 30 60 40 100zM60 100C74 50 80 60 90 100z'/>")[1]);
+}
+
+#[test]
 fn strokes_by_hand_come_to_both_edges_of_any_page() {
     let line =
         |at: f64, off: f64| format!("<path d='M0 {at}Q50 {} 100 {}' fill='none' stroke='red'/>", at + 9.0, at + off);

@@ -190,11 +190,11 @@ impl<'a> Arrangement<'a> {
         Ok(if itself { 0.5 * sum } else { sum })
     }
 
-    /// Smallest distance between the inks of two bodies of an arrangement that is not a torus.
-    pub(crate) fn gap(&self, i: usize, j: usize, meter: &mut Meter<'_>) -> Result<f64> {
+    /// Smallest distance between the inks of two bodies of an arrangement that is not a torus, at most `reach`.
+    pub(crate) fn gap(&self, i: usize, j: usize, reach: f64, meter: &mut Meter<'_>) -> Result<f64> {
         let (a, b) = (&self.bodies[i], &self.bodies[j]);
         let place = a.place.inverse().after(&b.place);
-        Ok(self.figure(a.figure).gap(self.figure(b.figure), &place, meter)? * a.place.scale)
+        Ok(self.figure(a.figure).gap(self.figure(b.figure), &place, reach / a.place.scale, meter)? * a.place.scale)
     }
 
     /// Distance of `p` from the nearest ink of the bodies that `counts` lets through, none of which has moved by more than

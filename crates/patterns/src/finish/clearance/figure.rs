@@ -134,17 +134,23 @@ impl Figure {
         self.outline.rings.iter().map(Vec::len).sum()
     }
 
-    /// Smallest distance between two inks that do not overlap.
-    pub(crate) fn gap(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<f64> {
-        meter.spend(2 * PRICE.1 * (self.corners() as u64).saturating_mul(other.corners() as u64))?;
-        let moved = other.outline.transformed(place);
-        let one_way = |points: &Outline<2>, edges: &Outline<2>| {
-            points
-                .points()
-                .flat_map(|p| edges.edges().map(move |e| (segment::nearest(e, p) - p).norm2()))
-                .fold(f64::INFINITY, f64::min)
-        };
-        Ok(one_way(&self.outline, &moved).min(one_way(&moved, &self.outline)).sqrt())
+    /// Smallest distance between two inks that do not overlap, at most `reach`.
+    pub(crate) fn gap(&self, other: &Self, place: &Similarity<2>, reach: f64, meter: &mut Meter<'_>) -> Result<f64> {
+        meter.spend(PRICE.0 * other.corners() as u64)?;
+        let near = self.bounds.grown(reach);
+        let mut least = reach * reach;
+        for edge in other.placed_edges(place).filter(|edge| touches(&near, edge)) {
+            let (low, high) = (edge.0[1].min(edge.1[1]) - reach, edge.0[1].max(edge.1[1]) + reach);
+            let mine = self.edges.between(low, high);
+            meter.spend(PRICE.1 * mine.len() as u64)?;
+            let beside = Bounds::around([edge.0, edge.1]).grown(reach);
+            // Where two edges do not cross, an end of one of them is nearest to the other.
+            for &mine in mine.iter().filter(|mine| touches(&beside, mine)) {
+                let ends = [(edge, mine.0), (edge, mine.1), (mine, edge.0), (mine, edge.1)];
+                least = ends.iter().map(|&(e, p)| (segment::nearest(e, p) - p).norm2()).fold(least, f64::min);
+            }
+        }
+        Ok(least.sqrt())
     }
 
     fn meeting(&self, other: &Self, place: &Similarity<2>, meter: &mut Meter<'_>) -> Result<Meeting> {
@@ -250,7 +256,7 @@ fn half_hull(points: impl Iterator<Item = Vector<2>>) -> Vec<Vector<2>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arabesque_core::FillRule;
+    use arabesque_core::{FillRule, Matrix};
 
     fn meets(a: &Figure, b: &Figure, place: &Similarity<2>) -> Option<bool> {
         a.meets(b, place, &mut Budget::default().meter()).unwrap()
@@ -309,8 +315,38 @@ mod tests {
     #[test]
     fn gap_between_squares() {
         let s = figure(&[square(0.0, 0.0, 2.0)]);
-        let gap = s.gap(&s, &Similarity::shift(Vector::xy(5.0, 6.0)), &mut Budget::default().meter()).unwrap();
-        assert!((gap - 5.0).abs() < 1e-9);
+        let gap = |reach: f64| {
+            s.gap(&s, &Similarity::shift(Vector::xy(5.0, 6.0)), reach, &mut Budget::default().meter()).unwrap()
+        };
+        assert!((gap(9.0) - 5.0).abs() < 1e-9);
+        assert_eq!(gap(4.0), 4.0, "no nearer than that");
+    }
+
+    #[test]
+    fn the_gap_between_outlines_is_that_of_their_nearest_corners_and_edges() {
+        let wavy = |n: u32| -> Vec<Vector<2>> {
+            let at = |k: u32| {
+                let turn = f64::from(k) / f64::from(n) * std::f64::consts::TAU;
+                Vector::xy(turn.cos(), turn.sin()) * (5.0 + (3.0 * turn).sin() + 0.3 * (17.0 * turn).cos())
+            };
+            (0..n).map(at).collect()
+        };
+        let (a, b) = (figure(&[wavy(300)]), figure(&[wavy(170)]));
+        for k in 0..20 {
+            let turn = 0.3 * f64::from(k);
+            let place =
+                Similarity::about(Vector::ZERO, Vector::xy(turn.cos(), turn.sin()) * 13.5, Matrix::rotation(turn), 1.0);
+            let moved = b.outline.transformed(&place);
+            let one_way = |points: &Outline<2>, edges: &Outline<2>| {
+                let all = points.points().flat_map(|p| edges.edges().map(move |e| segment::distance(e, p)));
+                all.fold(f64::INFINITY, f64::min)
+            };
+            let expected = one_way(&a.outline, &moved).min(one_way(&moved, &a.outline));
+            for reach in [0.5, 3.0, 20.0] {
+                let gap = a.gap(&b, &place, reach, &mut Budget::default().meter()).unwrap();
+                assert!((gap - expected.min(reach)).abs() < 1e-9, "{k} {reach}: {gap} {expected}");
+            }
+        }
     }
 
     #[test]

@@ -306,7 +306,7 @@ fn smallest_gaps(arrangement: &Arrangement, overlaps: &[Overlap], widest: f64) -
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
         let mut gap = widest;
         for &(_, i, j) in pairs.iter().take(MEASURED_PAIRS) {
-            gap = gap.min(arrangement.gap(i, j, &mut meter)?);
+            gap = gap.min(arrangement.gap(i, j, gap, &mut meter)?);
         }
         smallest.insert(classes, gap);
     }

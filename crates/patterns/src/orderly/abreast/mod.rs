@@ -16,8 +16,8 @@ mod styles;
 mod tests;
 
 use arabesque_core::{
-    Border, Budget, Domain, Drawn, Error, Exemplar, Forecast, Matrix, Outcome, Progress, Request, Result, Snapshot,
-    Stage, StopReason, Stream, Vector, Watch,
+    Border, Budget, Domain, Drawn, Error, Exemplar, Matrix, Outcome, Progress, Request, Result, Snapshot, Stage,
+    StopReason, Stream, Vector, Watch,
 };
 
 use crate::{
@@ -104,7 +104,7 @@ impl Abreast {
             }
         };
         let count = page.sheet.rows as f64 * page.sheet.columns as f64;
-        watch.foreseen(&Forecast { count, work: count * PER_PLACE, allowed: request.budget.allowed() as f64 });
+        watch.foreseen(&request.budget.forecast(count, count * PER_PLACE));
         let obstacles = obstacles(request)?;
         let ground = Ground { grid: &grid, request, obstacles: obstacles.as_ref() };
         let curves = self.drawn(&page, exemplar, &ground, budget)?;

@@ -9,8 +9,8 @@ mod lay;
 mod tests;
 
 use arabesque_core::{
-    Border, Budget, Domain, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Similarity,
-    Snapshot, StopReason, Watch,
+    Border, Budget, Domain, Error, Exemplar, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot,
+    StopReason, Watch,
 };
 
 use crate::{
@@ -77,7 +77,7 @@ impl Boards {
         let count = request.domain.measure() / grid.lattice.cell();
         checks::expected(count, &request.budget)?;
         request.budget.allow_elements(count);
-        watch.foreseen(&Forecast { count, work: count * PER_BOARD, allowed: request.budget.allowed() as f64 });
+        watch.foreseen(&request.budget.forecast(count, count * PER_BOARD));
         let budget = &request.budget.stage("laying boards");
         let [along, across] = grid.ranges(&request.domain, [self.courses.along, self.courses.across]);
         let laid = Laying::new(&self.courses).rows(across, along, request.seed, budget)?;

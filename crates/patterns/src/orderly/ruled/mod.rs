@@ -14,8 +14,8 @@ mod star;
 mod tests;
 
 use arabesque_core::{
-    Border, Budget, Domain, Error, Exemplar, Forecast, Outcome, Placement, Progress, Request, Result, Similarity,
-    Snapshot, StopReason, Vector, Warning, Watch,
+    Border, Budget, Domain, Error, Exemplar, Outcome, Placement, Progress, Request, Result, Similarity, Snapshot,
+    StopReason, Vector, Warning, Watch,
 };
 
 use crate::{
@@ -71,7 +71,7 @@ impl Ruled {
         let Ok(grid) = Grid::new(&self.repeat, exemplar, request) else { return Ok(None) };
         let count = request.domain.measure() / grid.lattice.cell();
         checks::expected(count, &request.budget)?;
-        watch.foreseen(&Forecast { count, work: count * PER_NODE, allowed: request.budget.allowed() as f64 });
+        watch.foreseen(&request.budget.forecast(count, count * PER_NODE));
         let progress = |done: usize, count: usize| Progress {
             stage: "drawing on squared paper".into(),
             done,

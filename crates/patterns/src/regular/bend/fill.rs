@@ -1,6 +1,6 @@
 //! Filling a domain with a pattern that repeats, bent by fields.
 
-use arabesque_core::{Border, Domain, Exemplar, Forecast, Outcome, Request, Result, Snapshot, Vector, Warning, Watch};
+use arabesque_core::{Border, Domain, Exemplar, Outcome, Request, Result, Snapshot, Vector, Warning, Watch};
 
 use crate::{
     ending,
@@ -114,7 +114,7 @@ impl Pattern<'_> {
         let count = cells * (self.elements.orbits.len() + parts) as f64;
         checks::expected(count, &request.budget)?;
         request.budget.allow_elements(count);
-        watch.foreseen(&Forecast { count, work: count * PER_ELEMENT, allowed: request.budget.allowed() as f64 });
+        watch.foreseen(&request.budget.forecast(count, count * PER_ELEMENT));
         Ok(())
     }
 }

@@ -11,6 +11,8 @@ use crate::{dimension::Dimension, exemplar::library::Library, obstacles::obstacl
 
 /// An element that stands on the ground may be moved there from a place that is off by this share of its reach.
 const OFF_GROUND: f64 = 0.5;
+/// One that does not may begin below it by this share of its reach, and is then lifted.
+const BELOW_GROUND: f64 = 0.25;
 
 /// The domain together with its border rule.
 pub(crate) struct Extent<'a, const D: usize> {
@@ -145,6 +147,12 @@ impl<'a, const D: usize> Extent<'a, D> {
         {
             return false;
         }
+        if let Some(ground) = self.lies_over(i)
+            && ground.height(p) < reach
+            && self.outline_at(i, p).points().any(|q| ground.height(q) < -BELOW_GROUND * reach)
+        {
+            return false;
+        }
         match self.border(i) {
             Border::Cross => distance >= 0.0,
             Border::Clip if distance >= 0.0 => true,
@@ -166,6 +174,13 @@ impl<'a, const D: usize> Extent<'a, D> {
         let ground = self.request.ground.as_deref()?;
         let height = self.exemplar.heights.get(i as usize).copied().flatten()?;
         Some((height * self.request.fields.scale.at(p), ground))
+    }
+
+    /// The ground below element `i`, where there is one on which others stand.
+    pub(crate) fn lies_over(&self, i: u32) -> Option<&dyn Ground<D>> {
+        let ground = self.request.ground.as_deref()?;
+        let height = self.exemplar.heights.get(i as usize)?;
+        height.is_none().then_some(ground)
     }
 
     /// Where element `i` is when it is put at `p`: on the ground if it stands there.

@@ -12,11 +12,13 @@ const PER_PAIR: u64 = 4_000;
 const NEAR: f64 = 0.12;
 /// The least share of all elements that touch another in a heap.
 const HEAP: f64 = 0.6;
+/// What lies on others touches so many: the narrowest gap alone is narrower than most.
+const CONTACTS: usize = 4;
 /// No more pairs are looked at for one element.
 const MOST: usize = 256;
 
-/// The usual gap between an element and the one nearest to it, as a share of its size ([`crate::Shape::size`]): between 0 and 0.12. It is 0
-/// where elements are in one another; `None` where most of them touch none, so that they are no heap.
+/// The usual gap between an element and those nearest to it that it touches, as a share of its size ([`crate::Shape::size`]): between 0 and
+/// 0.12. It is 0 where elements are in one another; `None` where most of them touch none, so that they are no heap.
 ///
 /// # Errors
 /// [`Error::Input`] where they lie too far apart to be computed with, and those of the budget.
@@ -39,7 +41,7 @@ pub fn clearance(bodies: &[Body], budget: &Budget) -> Result<Option<f64>> {
     }
     let mut order: Vec<usize> = (0..bodies.len()).collect();
     order.sort_by(|&a, &b| seen[a].2.mins.x.total_cmp(&seen[b].2.mins.x));
-    let mut nearest = vec![f64::INFINITY; bodies.len()];
+    let mut nearest = vec![[f64::INFINITY; CONTACTS]; bodies.len()];
     for (at, &a) in order.iter().enumerate() {
         let reach = (NEAR * sizes[a].max(unit) / unit) as f32;
         let mut looked = 0;
@@ -57,17 +59,34 @@ pub fn clearance(bodies: &[Body], budget: &Budget) -> Result<Option<f64>> {
             // Shapes that the library cannot compare touch nothing here.
             if let Ok(Some(contact)) = query::contact(p, &**one, q, &**other, reach) {
                 let gap = f64::from(contact.dist) * unit;
-                nearest[a] = nearest[a].min(gap / sizes[a]);
-                nearest[b] = nearest[b].min(gap / sizes[b]);
+                note(&mut nearest[a], gap / sizes[a]);
+                note(&mut nearest[b], gap / sizes[b]);
             }
         }
     }
-    let mut gaps: Vec<f64> = nearest.into_iter().filter(|gap| *gap <= NEAR).collect();
+    let mut gaps: Vec<f64> = nearest.iter().filter_map(usual).collect();
     if (gaps.len() as f64) < HEAP * bodies.len() as f64 {
         return Ok(None);
     }
     gaps.sort_by(f64::total_cmp);
     Ok(gaps.get(gaps.len() / 2).map(|gap| gap.max(0.0)))
+}
+
+/// Puts a gap among the narrowest.
+fn note(narrowest: &mut [f64; CONTACTS], gap: f64) {
+    let mut gap = gap;
+    for known in narrowest {
+        if gap < *known {
+            std::mem::swap(known, &mut gap);
+        }
+    }
+}
+
+/// The mean of those gaps at which things touch; nothing where they touch nothing.
+fn usual(narrowest: &[f64; CONTACTS]) -> Option<f64> {
+    let touching = || narrowest.iter().filter(|gap| **gap <= NEAR);
+    let sum: f64 = touching().map(|gap| gap.max(0.0)).sum();
+    Some(touching().count()).filter(|count| *count > 0).map(|count| sum / count as f64)
 }
 
 #[cfg(test)]
@@ -99,5 +118,15 @@ mod tests {
         assert!((of(1.05).unwrap() - 0.05 / size).abs() < 1e-3, "{:?}", of(1.05));
         assert_eq!([of(1.5), of(0.9)], [None, Some(0.0)]);
         assert_eq!(clearance(&[], &Budget::default()).unwrap(), None);
+    }
+
+    #[test]
+    fn all_gaps_of_what_touches_count_and_not_the_narrowest_alone() {
+        let mut bodies = row(1.0);
+        let places = [0.0, 1.02, 2.08, 3.1, 4.16];
+        bodies.iter_mut().zip(places).for_each(|(body, x)| body.pose = Similarity::shift(Vector([x, 0.0, 0.0])));
+        let size = (6.0 / std::f64::consts::PI).cbrt();
+        let gap = clearance(&bodies, &Budget::default()).unwrap().unwrap();
+        assert!((gap - 0.04 / size).abs() < 1e-3, "{gap}");
     }
 }

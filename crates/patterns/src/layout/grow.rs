@@ -17,7 +17,7 @@ use crate::{
     exemplar::library::Library,
     layout::{
         coverage::{Cell, Coverage},
-        patch_site::{GrowParams, PatchSite, PatchSource, SLACK},
+        patch_site::{GrowParams, Levels, PatchSite, PatchSource, SLACK},
     },
     output::{canvas::Canvas, draft::Item},
     streams,
@@ -31,6 +31,9 @@ const DISTANCE: u64 = 6;
 
 /// Amplitude of the random part of the cost: patches this close in cost are equally good.
 const NOISE: f64 = 0.02;
+
+/// Height of the lowest sites over the ground, as a share of the distance between sites.
+const LOWEST: f64 = 0.5;
 
 /// Candidates that are priced at a time, at first and then.
 const FIRST_GROUP: usize = 8;
@@ -63,10 +66,12 @@ impl<'a, const D: usize> Grower<'a, D> {
         extent: &'a Extent<'a, D>,
         params: GrowParams,
     ) -> Self {
+        let levels = Levels::new(extent.exemplar(), request, (params.patch, library.spacing));
+        let usage = Numbered::filled(0, library.len());
         Self {
             request,
             budget: request.budget.stage("laying out"),
-            source: PatchSource { library, extent, params, usage: Numbered::filled(0, library.len()), used: 0 },
+            source: PatchSource { library, extent, params, usage, used: 0, levels },
         }
     }
 
@@ -108,9 +113,18 @@ impl<'a, const D: usize> Grower<'a, D> {
         Ok(())
     }
 
-    /// Where the layout begins: at what is there already, else in the middle.
+    /// Where the layout begins: at what is there already, else in the middle, of a heap as near to the ground as sites are to one another.
     fn start(&self, canvas: &Canvas<D>) -> Vector<D> {
-        canvas.items.first().map_or_else(|| self.request.domain.bounds().centre(), |item| item.position)
+        let middle = self.request.domain.bounds().centre();
+        let middle = match (&self.source.levels, &self.request.ground) {
+            (Some(_), Some(ground)) => {
+                let step = site_step::<D>(self.source.params.patch * self.smallest_scale());
+                let low = ground.at_height(middle, LOWEST * step);
+                if self.request.domain.contains(low) { low } else { middle }
+            }
+            _ => middle,
+        };
+        canvas.items.first().map_or(middle, |item| item.position)
     }
 
     /// Sites in rounds: those of one round are too far apart to see one another.
@@ -268,10 +282,14 @@ impl<'a, const D: usize> Grower<'a, D> {
     }
 }
 
+/// Balls of this radius on a square or cubic grid of this step leave no gap.
+fn site_step<const D: usize>(radius: f64) -> f64 {
+    2.0 * radius / (D as f64).sqrt() * 0.95
+}
+
 /// Sites for patches of `radius`: a grid over the open cells, from `start` outwards.
 fn site_order<const D: usize>(coverage: &Coverage<D>, start: Vector<D>, radius: f64) -> Vec<Vector<D>> {
-    // Balls of this radius on a square or cubic grid of this step leave no gap.
-    let step = 2.0 * radius / (D as f64).sqrt() * 0.95;
+    let step = site_step::<D>(radius);
     let mut open: Vec<Vector<D>> = coverage.open().map(|c| coverage.centre(c)).collect();
     if open.is_empty() {
         return open;

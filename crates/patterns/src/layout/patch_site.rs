@@ -6,7 +6,7 @@
 //! are in step: disorder starts at the seams, and iterations that see no farther than a neighbourhood do not bring two
 //! parts into step again.
 
-use arabesque_core::{Frame, Meter, Numbered, Result, Stream, Vector};
+use arabesque_core::{Exemplar, Frame, Meter, Numbered, Request, Result, Stream, Vector};
 
 use crate::{
     border::Extent,
@@ -71,7 +71,67 @@ pub(crate) struct PatchSource<'a, const D: usize> {
     pub(crate) usage: Numbered<u32>,
     /// The sum of these.
     pub(crate) used: u64,
+    /// Where a heap lies on the ground.
+    pub(crate) levels: Option<Levels>,
 }
+
+/// A heap on the ground: what is near it comes from as near the ground of the exemplar, as [Ma 2011 §4.4] has it for borders.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Levels {
+    /// The axis along which heights are.
+    up: usize,
+    /// Where the ground of the exemplar is.
+    floor: f64,
+    /// Up to this height places are told apart by it, exemplar units.
+    pub(crate) reach: f64,
+    /// By how much heights may differ.
+    off: f64,
+    /// Height of the window of the exemplar over its ground.
+    top: f64,
+}
+
+impl Levels {
+    /// `None` without a ground, and where all stand on it, so that there is only one height.
+    pub(crate) fn new<const D: usize>(
+        exemplar: &Exemplar<D>,
+        request: &Request<D>,
+        (patch, spacing): (f64, f64),
+    ) -> Option<Self> {
+        request.ground.as_ref()?;
+        if exemplar.heights.iter().all(Option::is_some) {
+            return None;
+        }
+        let up = exemplar.up.min(D - 1);
+        let mut standing = exemplar.elements.iter().zip(&exemplar.heights);
+        let floor = standing.find_map(|(e, height)| Some(e.centre[up] - (*height)?))?;
+        let top = exemplar.window.max[up] - floor;
+        Some(Self { up, floor, reach: patch.min(SHOWN * top), off: LEVEL * spacing, top })
+    }
+
+    /// Whether a place of the exemplar may come to lie at a height.
+    fn suits<const D: usize>(&self, place: Vector<D>, height: f64) -> bool {
+        let own = place[self.up] - self.floor;
+        if height < self.reach { (own - height).abs() <= self.off } else { own >= self.reach }
+    }
+
+    /// The place over or under one of the exemplar that suits a height.
+    fn suited<const D: usize>(&self, mut place: Vector<D>, height: f64) -> Vector<D> {
+        if height < self.reach {
+            place[self.up] = self.floor + height;
+        } else if !self.suits(place, height) {
+            // Spread over what is higher.
+            let share = (place[self.up] - self.floor).max(0.0) / self.reach;
+            place[self.up] = self.floor + self.reach + share.min(1.0) * (self.top - self.reach).max(0.0);
+        }
+        place
+    }
+}
+
+/// Of the height of the exemplar, the share near the ground that may be told apart.
+const SHOWN: f64 = 0.4;
+
+/// By how many spacings a place may lie higher or lower than in the exemplar.
+const LEVEL: f64 = 0.3;
 
 /// What is around one site.
 pub(crate) struct PatchSite<'a, const D: usize> {
@@ -83,6 +143,8 @@ pub(crate) struct PatchSite<'a, const D: usize> {
     around: Vec<Around<D>>,
     /// The sum of their weights.
     weights: f64,
+    /// Height of the site over the ground, where that matters, exemplar units.
+    height: Option<(Levels, f64)>,
 }
 
 /// An element near a site.
@@ -113,7 +175,9 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         });
         around.sort_by(|a, b| a.offset.norm2().total_cmp(&b.offset.norm2()));
         let weights = around.iter().map(|a| a.weight).fold(1e-9, |sum, weight| sum + weight);
-        (Self { source, site, frame, coverage, around, weights }, looked)
+        let height = source.levels.zip(source.extent.request().ground.as_ref());
+        let height = height.map(|(levels, ground)| (levels, ground.height(site) / frame.element_scale));
+        (Self { source, site, frame, coverage, around, weights, height }, looked)
     }
 
     /// Exemplar points that could land on the site.
@@ -123,7 +187,10 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         let mut centres = Vec::new();
         for Around { element, offset, .. } in self.anchors(anchors) {
             let members = library.members(library.class[element]);
-            let usable = |i: &u32| library.view.contains(library.centre[*i] - offset);
+            let usable = |i: &u32| {
+                let centre = library.centre[*i] - offset;
+                library.view.contains(centre) && self.height.is_none_or(|(levels, height)| levels.suits(centre, height))
+            };
             if element < base || members.len() <= MEMBERS {
                 let tried = members.iter().step_by(members.len().div_ceil(ELEMENTS).max(1));
                 centres.extend(tried.filter(|i| usable(i)).map(|&i| library.centre[i] - offset));
@@ -135,7 +202,8 @@ impl<'a, const D: usize> PatchSite<'a, D> {
         }
         let wanted = if anchors == 0 { 1 } else { FREE_CANDIDATES };
         while centres.len() < wanted {
-            centres.push(library.any_place(random));
+            let place = library.any_place(random);
+            centres.push(self.height.map_or(place, |(levels, height)| levels.suited(place, height)));
         }
         centres
     }
@@ -285,7 +353,11 @@ impl<'a, const D: usize> PatchSite<'a, D> {
                 weights += weight;
             }
         }
-        Ok(centre + shift * (1.0 / weights))
+        let centre = centre + shift * (1.0 / weights);
+        Ok(match self.height {
+            Some((levels, height)) if height < levels.reach => levels.suited(centre, height),
+            _ => centre,
+        })
     }
 
     /// Patch elements for the open part, with their places.
@@ -359,4 +431,22 @@ struct Missing {
     weights: f64,
     /// How often the others, which would be new, were used, relative to the mean.
     usage: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_near_the_ground_comes_from_as_near_the_ground() {
+        let levels = Levels { up: 1, floor: -2.0, reach: 1.0, off: 0.3, top: 4.0 };
+        let at = |y: f64| Vector([5.0, y, 7.0]);
+        assert!(levels.suits(at(-1.5), 0.4) && !levels.suits(at(-1.5), 0.9) && !levels.suits(at(1.0), 0.4));
+        assert!(levels.suits(at(0.5), 9.0) && !levels.suits(at(-1.5), 9.0));
+        assert_eq!(levels.suited(at(1.0), 0.4), at(-1.6));
+        for y in [-2.0, -1.5, -1.1, 1.9] {
+            let high = levels.suited(at(y), 9.0);
+            assert!(levels.suits(high, 9.0) && high[1] <= 2.0, "{high:?}");
+        }
+    }
 }

@@ -1,11 +1,14 @@
 //! How many elements of each class the output should have.
 
-use arabesque_core::{Border, Exemplar, Numbered, Request, Result};
+use arabesque_core::{Border, Bounds, Exemplar, Numbered, Request, Result};
 
 use crate::{border::Extent, exemplar::library::Library};
 
 /// Cells along the longest side of the grid that measures the output.
 const CELLS: f64 = 96.0;
+
+/// Share of its half width that an element at a wall keeps from it.
+const PRESSED: f64 = 0.5;
 
 /// Numbers of elements of each class: their intensity in the exemplar's window times the usable measure of the output,
 /// each place counted by its local scale and density.
@@ -20,7 +23,7 @@ pub(crate) fn class_targets<const D: usize>(
 ) -> Result<Numbered<f64>> {
     let budget = request.budget.stage("measuring what is to be filled");
     let mut meter = budget.meter();
-    let reach = border_reach(library, request.border, base);
+    let reach = border_reach(library, extent.exemplar(), request.border, base);
     let bounds = match request.domain.period() {
         Some(_) => request.domain.bounds(),
         None => request.domain.bounds().grown(extent.margin),
@@ -90,12 +93,13 @@ fn slab<const D: usize>(exemplar: &Exemplar<D>, library: &Library<D>) -> Option<
     Some(Slab { thickness, share: (within / (high - low)).clamp(0.02, if everything { 1.0 } else { 0.98 }), stands })
 }
 
-/// How far inside the border the centres of each class lie; negative outside.
-fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32) -> Vec<f64> {
+/// How far inside the border the centres of each class lie in the mean; negative outside.
+fn border_reach<const D: usize>(library: &Library<D>, exemplar: &Exemplar<D>, border: Border, base: u32) -> Vec<f64> {
     (0..library.classes() as u32)
         .map(|c| {
             let members = library.members(c);
-            let mean = members.iter().map(|&e| library.radius[e]).sum::<f64>() / members.len().max(1) as f64;
+            let reach = |e: u32| to_wall(exemplar, e).unwrap_or(library.radius[e]);
+            let mean = members.iter().map(|&e| reach(e)).sum::<f64>() / members.len().max(1) as f64;
             let is_stroke = members.first().is_some_and(|&e| e >= base);
             match if is_stroke { Border::Clip } else { border } {
                 Border::Inside | Border::Turn => mean,
@@ -104,6 +108,14 @@ fn border_reach<const D: usize>(library: &Library<D>, border: Border, base: u32)
             }
         })
         .collect()
+}
+
+/// How near to a wall the centre of a solid element comes, in the mean: long ones lie along it, and what lies in a heap is pressed to it, so
+/// that it is nearer than half of its mean width.
+fn to_wall<const D: usize>(exemplar: &Exemplar<D>, element: u32) -> Option<f64> {
+    let element = exemplar.elements.get(element as usize).filter(|_| !exemplar.solids.is_empty())?;
+    let size = Bounds::around(element.outline.points()).size();
+    Some(PRESSED * 0.5 * size.0.into_iter().sum::<f64>() / D as f64)
 }
 
 /// Elements of each class per measure of the exemplar's window.

@@ -6,8 +6,10 @@ use crate::exemplar::library::Library;
 
 /// Work for each place of a surface that is looked up.
 const LOOK: u64 = 8;
+/// Work for two bodies of which the boxes say that they are apart.
+const APART: u64 = 80;
 /// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
-const QUANTILE: f64 = 0.9;
+const QUANTILE: f64 = 0.75;
 /// Overlaps below this share of the inner radius are none.
 const TOUCH: f64 = 0.02;
 
@@ -93,25 +95,30 @@ impl<'a, const D: usize> Body<'a, D> {
     }
 }
 
-/// How two bodies overlap; `offset` is the way between their centres, around the back on a torus.
-pub(super) fn contact<const D: usize>(a: &Body<'_, D>, b: &Body<'_, D>, offset: Vector<D>) -> Option<Contact<D>> {
+/// How two bodies overlap, and what it cost to find out; `offset` is the way between their centres, around the back on a torus.
+pub(super) fn contact<const D: usize>(
+    a: &Body<'_, D>,
+    b: &Body<'_, D>,
+    offset: Vector<D>,
+) -> (Option<Contact<D>>, u64) {
     if offset.norm() >= a.radius + b.radius {
-        return None;
+        return (None, APART);
     }
     let shift = a.centre + offset - b.centre;
     let (to_a, to_b) = (a.pose.inverse(), b.pose.inverse());
     let (of_b_in_a, of_a_in_b) = (to_a.after(&b.pose), to_b.after(&a.pose));
     let shifted = |to: &Similarity<D>, by: Vector<D>| to.rotation.apply(by) * to.scale;
     if a.misses(b, &of_b_in_a, shifted(&to_a, shift)) || b.misses(a, &of_a_in_b, shifted(&to_b, -shift)) {
-        return None;
+        return (None, APART);
     }
     let of_b = a.deepest(b, shift).map(|c| Contact { way: -c.way, ..c });
     let back = -shift;
     let of_a = b.deepest(a, back).map(|c| Contact { at: c.at + shift, ..c });
-    match (of_a, of_b) {
+    let deepest = match (of_a, of_b) {
         (Some(x), Some(y)) => Some(if x.depth >= y.depth { x } else { y }),
         (one, other) => one.or(other),
-    }
+    };
+    (deepest, LOOK * (a.solid.points.len() + b.solid.points.len()) as u64)
 }
 
 /// How deep elements of two classes may lie in one another.
@@ -140,8 +147,9 @@ impl Allowed {
             let mut near = Vec::new();
             index.within(a.centre, a.radius + widest, |j, offset| near.push((j, offset)));
             for (j, offset) in near.into_iter().filter(|(j, _)| *j > i) {
-                meter.spend(LOOK * (a.solid.points.len() + bodies[j].solid.points.len()) as u64)?;
-                if let Some(contact) = contact(a, &bodies[j], offset) {
+                let (found_here, cost) = contact(a, &bodies[j], offset);
+                meter.spend(cost)?;
+                if let Some(contact) = found_here {
                     let (a, b) = (library.class[i as u32] as usize, library.class[j as u32] as usize);
                     found[a.min(b) * classes + a.max(b)].push(contact.depth);
                 }
@@ -173,9 +181,4 @@ impl Allowed {
 fn inner<const D: usize>(exemplar: &Exemplar<D>, element: u32) -> f64 {
     let e = element as usize;
     exemplar.solids[e].inradius() * exemplar.elements[e].pose.scale
-}
-
-/// What looking for the contact of two bodies costs.
-pub(super) fn price<const D: usize>(a: &Body<'_, D>, b: &Body<'_, D>) -> u64 {
-    LOOK * (a.solid.points.len() + b.solid.points.len()) as u64
 }

@@ -3,7 +3,7 @@
 use arabesque_core::{Buckets, Budget, Matrix, Numbered, Placement, Result, Stage, Stream, Vector};
 
 use super::{
-    contact::{Body, contact, price},
+    contact::{Body, contact},
     things::Things,
 };
 
@@ -112,8 +112,9 @@ impl<const D: usize> Things<'_, D> {
     fn wish(&self, body: &Body<'_, D>, class: u32, near: &Buckets<D>) -> (Vector<D>, f64, u64) {
         let (mut push, mut worst, mut cost) = (Vector::ZERO, 0.0_f64, 500);
         for (j, offset) in self.met(near, body) {
-            cost += price(body, &self.bodies[j]);
-            let Some(found) = contact(body, &self.bodies[j], offset) else { continue };
+            let (found, looked) = contact(body, &self.bodies[j], offset);
+            cost += looked;
+            let Some(found) = found else { continue };
             let over = found.depth - self.allowed.of(class, self.class(j));
             if over > 0.0 {
                 worst = worst.max(over);

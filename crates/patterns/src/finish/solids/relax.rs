@@ -1,10 +1,10 @@
 //! Taking solids apart, each moved and turned as little as possible.
 
-use arabesque_core::{Border, Budget, Matrix, Result, Similarity, Vector};
+use arabesque_core::{Border, Budget, Domain, Matrix, Result, Similarity, Vector};
 use rayon::prelude::*;
 
 use super::{
-    contact::{Contact, contact, price},
+    contact::{Contact, contact},
     things::Things,
 };
 
@@ -18,6 +18,14 @@ const STILL: f64 = 0.001;
 const RATE: f64 = 0.9;
 /// How far a body may go from where it was, in spacings.
 const FAR: f64 = 0.6;
+/// Work for a place of a surface; for one whose distance from the border is asked, read off a grid, or worked out where it is less than
+/// this share of the domain's longest side.
+const PER_PLACE: u64 = 10;
+const WITHIN: u64 = 60;
+const AT_RIM: u64 = 1500;
+const RIM: f64 = 0.025;
+/// A box thicker than this many radii of the widest body has an inside.
+const THICK: f64 = 4.0;
 /// Radius of gyration relative to the radius.
 const GYRATION: f64 = 0.5;
 
@@ -72,8 +80,9 @@ impl<const D: usize> Things<'_, D> {
         }
         for (j, offset) in around {
             let other = &self.bodies[j];
-            cost += price(body, other);
-            let Some(found) = contact(body, other, offset) else { continue };
+            let (found, looked) = contact(body, other, offset);
+            cost += looked;
+            let Some(found) = found else { continue };
             let over = found.depth - self.allowed.of(self.class(i), self.class(j));
             if over > 0.0 {
                 let share = if self.placements[j].frozen.is_some() { 1.0 } else { 0.5 };
@@ -87,7 +96,34 @@ impl<const D: usize> Things<'_, D> {
             worst = worst.max(found.depth);
             self.add(&mut push, i, &found, found.depth);
         }
+        let (below, looked) = self.below(i);
+        cost += looked;
+        if let Some(found) = below {
+            worst = worst.max(found.depth);
+            self.add(&mut push, i, &found, found.depth);
+        }
         (push, cost, worst)
+    }
+
+    /// The place of a body that lies deepest in the ground, where it does not stand on it.
+    pub(super) fn below(&self, i: usize) -> (Option<Contact<D>>, u64) {
+        let body = &self.bodies[i];
+        let Some(ground) = self.extent.lies_over(self.placements[i].source as u32) else { return (None, 0) };
+        if ground.height(body.centre) >= body.radius {
+            return (None, 50);
+        }
+        let mut worst = (0.0, body.centre);
+        for point in &body.solid.points {
+            let p = body.pose.apply(*point);
+            let height = ground.height(p);
+            if height < worst.0 {
+                worst = (height, p);
+            }
+        }
+        let (height, at) = worst;
+        let way = (ground.at_height(at, 1.0) - ground.at_height(at, 0.0)).unit_or_zero();
+        let cost = 50 * body.solid.points.len() as u64;
+        ((height < 0.0).then_some(Contact { depth: -height, at, way }), cost)
     }
 
     /// The place of a body that lies farthest outside, where the border keeps it inside.
@@ -107,15 +143,22 @@ impl<const D: usize> Things<'_, D> {
         if !inside {
             return (back(body.centre, depth), 4000);
         }
-        let mut worst = (0.0, body.centre);
+        let (mut worst, mut cost) = ((0.0, body.centre), 4000);
+        let rim = domain.bounds().size().0.into_iter().fold(0.0, f64::max) * RIM;
         for point in &body.solid.points {
             let p = body.pose.apply(*point);
+            cost += PER_PLACE;
+            // Distances differ by no more than places do.
+            if depth - (p - body.centre).norm() > margin {
+                continue;
+            }
             let out = domain.signed_distance(p) - margin;
+            cost += if out.abs() < rim { AT_RIM } else { WITHIN };
             if out < worst.0 {
                 worst = (out, p);
             }
         }
-        (if worst.0 < 0.0 { back(worst.1, worst.0) } else { None }, 2000 * body.solid.points.len() as u64)
+        (if worst.0 < 0.0 { back(worst.1, worst.0) } else { None }, cost)
     }
 
     /// Adds what a contact wants: a shift and a turn that take it apart by `amount`.
@@ -149,7 +192,7 @@ impl<const D: usize> Things<'_, D> {
             to = start + gone * (far / gone.norm());
         }
         let source = self.placements[i].source as u32;
-        let to = self.extent.grounded(source, to);
+        let to = self.extent.grounded(source, self.confined(to, (start, body.radius)));
         let rotation = rotation::<D>(push.turn.map(|v| v * weight));
         let step = Similarity::about(body.centre, domain.wrap(to), rotation, 1.0);
         let placement = &mut self.placements[i];
@@ -158,6 +201,22 @@ impl<const D: usize> Things<'_, D> {
         self.bodies[i] = self.body(source, &transform);
         let turned = push.turn.iter().map(|v| v * v).sum::<f64>().sqrt() * weight;
         push.shift.norm() * weight + turned * body.radius
+    }
+}
+
+impl<const D: usize> Things<'_, D> {
+    /// What lies at a side of a box over which it may reach, with nothing beyond to hold it, goes no farther out than from where it started:
+    /// otherwise the inside would give way to the outside and grow sparse.
+    fn confined(&self, mut to: Vector<D>, (start, radius): (Vector<D>, f64)) -> Vector<D> {
+        let request = self.extent.request();
+        let (Border::Cross, Domain::Box(bounds)) = (request.border, &request.domain) else { return to };
+        let size = bounds.size();
+        for k in (0..D).filter(|k| size[*k] > THICK * self.widest) {
+            let low = bounds.min[k] + (start[k] - bounds.min[k]).clamp(0.0, radius);
+            let high = bounds.max[k] - (bounds.max[k] - start[k]).clamp(0.0, radius);
+            to[k] = to[k].clamp(low.min(high), high.max(low));
+        }
+        to
     }
 }
 

@@ -2,7 +2,7 @@
 
 use arabesque_core::{Budget, Exemplar, GridIndex, Numbered, Placement, Result, Similarity, Vector};
 
-use super::contact::{Allowed, Body, contact, price};
+use super::contact::{Allowed, Body, contact};
 use crate::{border::Extent, exemplar::library::Library};
 
 /// An overlap deeper than allowed by this share of the inner radius is too deep to stay.
@@ -89,8 +89,9 @@ impl<'a, const D: usize> Things<'a, D> {
         for i in 0..self.bodies.len() {
             let a = &self.bodies[i];
             for (j, offset) in self.around(&index, a, i).into_iter().filter(|(j, _)| *j > i) {
-                meter.spend(price(a, &self.bodies[j]))?;
-                let Some(found) = contact(a, &self.bodies[j], offset) else { continue };
+                let (found, cost) = contact(a, &self.bodies[j], offset);
+                meter.spend(cost)?;
+                let Some(found) = found else { continue };
                 let over = found.depth - self.allowed.of(self.class(i), self.class(j));
                 if over > 0.0 {
                     sums[i] += over;
@@ -121,8 +122,9 @@ impl<'a, const D: usize> Things<'a, D> {
             // What was taken out already is in nobody's way.
             let mut now = 0.0;
             for (j, offset) in self.around(&index, body, i).into_iter().filter(|(j, _)| !gone[*j]) {
-                meter.spend(price(body, &self.bodies[j]))?;
-                if let Some(found) = contact(body, &self.bodies[j], offset) {
+                let (found, cost) = contact(body, &self.bodies[j], offset);
+                meter.spend(cost)?;
+                if let Some(found) = found {
                     now += (found.depth - self.allowed.of(class, self.class(j))).max(0.0);
                 }
             }

@@ -138,7 +138,6 @@ fn check_unchanged(path: &str, before: &Metadata, file: &File, read: u64) -> Res
 mod tests {
     use std::fs;
 
-
     use super::*;
 
     fn refused(path: &Path) -> String {

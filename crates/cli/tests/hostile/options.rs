@@ -18,7 +18,7 @@ pub(crate) fn cases() -> Vec<Case> {
         fill("--size 90x90 --limit pixels", USAGE),
         fill("--size 90x90 --limit memory=-1", USAGE),
         fill("--size 90x90 --limit elements=5", &[3]),
-        fill("--size 90x90 --set repeat=off --limit memory=1048576", &[3]),
+        fill("--size 1900x1900 --set repeat=off --limit memory=1048576", &[3]),
         // To continue a repeat takes next to no memory.
         fill("--size 90x90 --limit memory=1048576", &[0, 3]),
         fill("--size 90x90 --threads 0", USAGE),

@@ -121,7 +121,7 @@ fn what_cannot_be_measured_is_told() {
     folder.write("broken.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9");
     folder.write("tiny.svg", svg("9", "9", "0 0 9 9", "<circle cx=\"4\" cy=\"4\" r=\"3\" fill=\"#c22\"/>"));
     let dots = "<circle cx=\"40\" cy=\"40\" r=\"3\" fill=\"#c22\"/><circle cx=\"60\" cy=\"40\" r=\"3\" fill=\"#c22\"/>";
-    folder.write("huge.svg", svg("90000000", "90000000", "0 0 90000000 90000000", dots));
+    folder.write("huge.svg", svg("900000", "900000", "0 0 900000 900000", dots));
     let cases = [
         (3, "measure leaves.svg empty.svg", "empty.svg: no element and no curve found"),
         (3, "measure leaves.svg broken.svg", "broken.svg"),

@@ -156,7 +156,11 @@ fn knobs_at_their_largest_end_with_a_warning() {
     let limits = Limits { work: 300, work_per_element: 0, ..Limits::default() };
     let outcome = filled(&prepared, limits).unwrap();
     assert_eq!(outcome.stopped, StopReason::Limit);
-    assert!(outcome.warnings.iter().any(|w| w.advice.contains("raise the limit with --limit work=")), "{:?}", outcome.warnings);
+    assert!(
+        outcome.warnings.iter().any(|w| w.advice.contains("raise the limit with --limit work=")),
+        "{:?}",
+        outcome.warnings
+    );
     assert!((15..40).contains(&outcome.placements.len()));
 }
 

@@ -1,13 +1,13 @@
 //! Where two elements meet, and how deep they may.
 
-use arabesque_core::{Budget, Domain, Exemplar, GridIndex, Result, Similarity, Solid, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Similarity, Solid, Vector};
 
 use crate::exemplar::library::Library;
 
 /// Work for each place of a surface that is looked up.
-const LOOK: u64 = 8;
+const LOOK: u64 = 10;
 /// Work for two bodies of which the boxes say that they are apart.
-const APART: u64 = 80;
+const APART: u64 = 200;
 /// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
 const QUANTILE: f64 = 0.75;
 /// Overlaps below this share of the inner radius are none.
@@ -52,24 +52,26 @@ impl<'a, const D: usize> Body<'a, D> {
         ((at - p).norm(), at)
     }
 
-    /// Whether the box of `other` lies beside the one of this along one of its axes: long bodies side by side mostly do.
-    fn misses(&self, other: &Self, both: &Similarity<D>, moved: Vector<D>) -> bool {
-        let (own, its) = (&self.solid.bounds, &other.solid.bounds);
-        let away = both.apply(its.centre()) + moved - own.centre();
-        let (half, its_half) = (own.size() * 0.5, its.size() * (0.5 * both.scale));
-        (0..D).any(|k| {
-            let reach: f64 = (0..D).map(|l| both.rotation.0[k][l].abs() * its_half[l]).sum();
-            away[k].abs() > half[k] + reach
-        })
+    /// A box in the coordinates of this one around the box of `other`, which `both` and `moved` bring there.
+    fn around(other: &Self, both: &Similarity<D>, moved: Vector<D>) -> Bounds<D> {
+        let its = &other.solid.bounds;
+        let (centre, half) = (both.apply(its.centre()) + moved, its.size() * (0.5 * both.scale));
+        let mut reach = Vector::ZERO;
+        for k in 0..D {
+            reach[k] = (0..D).map(|l| both.rotation.0[k][l].abs() * half[l]).sum();
+        }
+        Bounds { min: centre - reach, max: centre + reach }
     }
 
-    /// The deepest place of the surface of `other` in this one, with the way out of it.
-    fn deepest(&self, other: &Self, shift: Vector<D>) -> Option<Contact<D>> {
+    /// The deepest place of the surface of `other` in this one, with the way out of it; `own_box` is that of this one in the coordinates
+    /// of the other.
+    fn deepest(&self, other: &Self, shift: Vector<D>, own_box: &Bounds<D>) -> Option<Contact<D>> {
         let to_own = self.pose.inverse();
         let both = to_own.after(&other.pose);
         let moved = to_own.rotation.apply(shift) * to_own.scale;
         let mut best: Option<(f64, Vector<D>)> = None;
-        for &point in &other.solid.points {
+        // Most of a surface is far from a body beside it.
+        for &point in other.solid.points.iter().filter(|point| own_box.contains(**point)) {
             let own = both.apply(point) + moved;
             let depth = self.solid.depth(own) * self.pose.scale;
             if depth > 0.0 && best.is_none_or(|(most, _)| depth > most) {
@@ -108,12 +110,15 @@ pub(super) fn contact<const D: usize>(
     let (to_a, to_b) = (a.pose.inverse(), b.pose.inverse());
     let (of_b_in_a, of_a_in_b) = (to_a.after(&b.pose), to_b.after(&a.pose));
     let shifted = |to: &Similarity<D>, by: Vector<D>| to.rotation.apply(by) * to.scale;
-    if a.misses(b, &of_b_in_a, shifted(&to_a, shift)) || b.misses(a, &of_a_in_b, shifted(&to_b, -shift)) {
+    // Long bodies side by side lie beside one another's boxes mostly.
+    let b_in_a = Body::around(b, &of_b_in_a, shifted(&to_a, shift));
+    let a_in_b = Body::around(a, &of_a_in_b, shifted(&to_b, -shift));
+    if !b_in_a.intersects(&a.solid.bounds) || !a_in_b.intersects(&b.solid.bounds) {
         return (None, APART);
     }
-    let of_b = a.deepest(b, shift).map(|c| Contact { way: -c.way, ..c });
+    let of_b = a.deepest(b, shift, &a_in_b).map(|c| Contact { way: -c.way, ..c });
     let back = -shift;
-    let of_a = b.deepest(a, back).map(|c| Contact { at: c.at + shift, ..c });
+    let of_a = b.deepest(a, back, &b_in_a).map(|c| Contact { at: c.at + shift, ..c });
     let deepest = match (of_a, of_b) {
         (Some(x), Some(y)) => Some(if x.depth >= y.depth { x } else { y }),
         (one, other) => one.or(other),

@@ -55,10 +55,8 @@ impl FieldSources<'_> {
 /// The directions of a picture or of strokes over `bounds`.
 pub(crate) fn orientation(input: &Input, bounds: &Bounds<2>, files: &Files) -> Result<OrientationField<2>> {
     let bytes = files.read(input)?;
-    let is_drawing = [&b"<"[..], &[0xEF, 0xBB, 0xBF, b'<'], &[0x1F, 0x8B]]
-        .iter()
-        .any(|start| bytes.trim_ascii_start().starts_with(start));
-    if !is_drawing {
+    let is_text = bytes.trim_ascii_start().starts_with(b"<") || bytes.starts_with(&[0xEF, 0xBB, 0xBF, b'<']);
+    if !is_text && !file::is_packed(&bytes) {
         return Picture::new(input.name(), &bytes, files.budget()).orientation_field(*bounds);
     }
     let strokes = svg::read_flow(&file::decode_text(input.name(), &bytes, files.budget())?, &options(input, files))?;

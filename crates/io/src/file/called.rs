@@ -1,7 +1,7 @@
 //! What files of the wrong kind are called in messages.
 
 /// How files that are packed with gzip begin, whatever they are called.
-pub(super) const GZIP: [u8; 2] = [0x1F, 0x8B];
+const GZIP: [u8; 2] = [0x1F, 0x8B];
 
 /// Files of bytes, by how they begin.
 const BINARY: [(&[u8], &str); 12] = [
@@ -26,6 +26,11 @@ pub const TOML: &str = "a recipe or another TOML file";
 
 /// Bytes of a text that are looked at.
 const HEAD: usize = 4096;
+
+/// Whether a file is packed with gzip, as `.svgz` is.
+pub fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(&GZIP)
+}
 
 /// What a file is that begins as files of bytes do, as a noun with its article; `None` for all others.
 pub(crate) fn binary(bytes: &[u8]) -> Option<&'static str> {

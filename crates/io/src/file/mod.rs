@@ -15,7 +15,7 @@ mod target;
 mod text;
 
 pub use beside::{Beside, Folder, NothingBeside, name_beside};
-pub use called::{HTML, TOML, called};
+pub use called::{HTML, TOML, called, is_packed};
 pub(crate) use called::{binary, text_called};
 pub use identity::Identity;
 pub use part::abandon_writing;

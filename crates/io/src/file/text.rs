@@ -6,7 +6,7 @@ use arabesque_core::{Budget, Error, Result};
 use flate2::read::MultiGzDecoder;
 
 use super::{
-    called::{GZIP, binary},
+    called::{binary, is_packed},
     read::too_large,
 };
 
@@ -20,11 +20,11 @@ const CHUNK: usize = 1 << 16;
 /// [`Error::Input`] naming `place` when it is none of these; [`Error::Limit`] when it unpacks to more than
 /// [`arabesque_core::Limits::file_bytes`] bytes; those of [`Budget::check`].
 pub fn decode_text(place: &str, bytes: &[u8], budget: &Budget) -> Result<String> {
-    if !bytes.starts_with(&GZIP) {
+    if !is_packed(bytes) {
         return plain_text(place, bytes);
     }
     let unpacked = unpacked(place, bytes, budget)?;
-    if unpacked.starts_with(&GZIP) {
+    if is_packed(&unpacked) {
         let problem = "a file that was compressed twice (gzip), where text was expected";
         return Err(Error::input(place, problem, "unpack it once, or save it as plain SVG"));
     }

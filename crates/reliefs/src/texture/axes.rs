@@ -48,7 +48,7 @@ impl Axes {
             heights[heights.len() - 1 - stray] - heights[stray]
         };
         // Half way round there is no shortest turn.
-        if lying.is_empty() || normal[2] < 1e-3 || height(normal) > LEANS * height(up) {
+        if lying.is_empty() || normal[2] < 1e-3 || height(normal) >= LEANS * height(up) {
             return self;
         }
         Self { turn: Some(shortest_turn(normal, up)), ..self }
@@ -137,7 +137,8 @@ mod tests {
     #[test]
     fn what_lies_and_what_rises_step_by_step_is_left_as_it_is() {
         let steps: Vec<_> = humps().iter().map(|p| Vector([p[0], p[1], 0.6 * (0.6 * p[1]).fract()])).collect();
-        for points in [humps(), leaning(&humps(), 0.5), steps] {
+        let flat = humps().iter().map(|p| Vector([p[0], p[1], 0.0])).collect();
+        for points in [humps(), leaning(&humps(), 0.5), steps, flat] {
             let axes = Axes::across(2).levelled(&points);
             assert_eq!((axes, axes.lean()), (Axes::across(2), 0.0));
         }

@@ -146,11 +146,11 @@ impl<const D: usize> Lattice<D> {
         let (mut step, mut at) = ([0_usize; D], from);
         loop {
             let (mut start, mut stride, mut is_held) = (0, held, true);
-            for k in 1..D {
-                let i = self.numbered(k, at[k]);
-                is_held &= i < self.held[k];
+            for (k, (&at, &held)) in at.iter().zip(&self.held).enumerate().skip(1) {
+                let i = self.numbered(k, at);
+                is_held &= i < held;
                 start += i * stride;
-                stride *= self.held[k];
+                stride *= held;
             }
             if is_held {
                 let mut place: [isize; D] = std::array::from_fn(|k| low[k].wrapping_add(step[k] as isize));

@@ -63,6 +63,11 @@ impl<const D: usize> Form<D> {
         Self { soft: Arc::clone(soft), class, links, pieces, reach, thickest, longest, copyable }
     }
 
+    /// Whether its samples are places of a line.
+    pub(super) fn is_line(&self) -> bool {
+        self.soft.build == Build::Strand && self.soft.samples.len() > 1
+    }
+
     pub(super) fn len(&self) -> usize {
         self.soft.samples.len()
     }

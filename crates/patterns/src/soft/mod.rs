@@ -36,17 +36,19 @@ use bodies::{Bodies, Laid};
 use form::{Form, forms};
 use layout::{Plan, empty, holding};
 use natural::Natural;
-use relax::{BETWEEN, ROUNDS, Relaxation};
+use relax::{BETWEEN, ROUNDS, Relaxation, SURE};
 
 /// Work that an element takes, about.
 const PER_ELEMENT: f64 = 8e6;
 /// Share of the progress that the layout counts for.
 const LAYOUT_SHARE: f64 = 0.6;
+/// An element that should lie inside is taken that is as near to the border as it may be, and nearer by rounding; where nothing has moved
+/// it there, when every sample is so far away, in its radii.
+const OF_SURE: f64 = 0.999;
+const WITHIN: f64 = 0.97;
 /// Elements are laid out so often at most, and no more once so small a share of them is missing.
 const REFILLS: u64 = 4;
 const ENOUGH: f64 = 0.02;
-/// An element that should lie inside does so when every sample is so far from the border, in its radii.
-const WITHIN: f64 = 0.97;
 
 /// An exemplar of elements that bend, prepared for any number of runs.
 #[derive(Clone, Debug)]
@@ -194,8 +196,9 @@ impl<const D: usize> Softness<D> {
             }
             let is_in = match request.border {
                 Border::Inside => {
-                    let mut all = samples.iter().zip(&form.soft.radii);
-                    all.all(|(p, r)| request.domain.signed_distance(*p) >= WITHIN * r * body.scale)
+                    let radii = if self.is_relaxed { OF_SURE * SURE } else { WITHIN };
+                    let least = |k: usize| radii * form.soft.radii[k] * body.scale;
+                    wall::holds(request, (samples, form.is_line()), least)
                 }
                 _ => request.domain.contains(form.soft.middle(samples)),
             };

@@ -26,10 +26,12 @@ const SELF: f64 = 4.0;
 const TOUCH: f64 = 0.0;
 /// What lies deeper in something else than this share of the thinner one's radius, and more than in the exemplar, is taken out.
 const DEEP: f64 = 0.35;
-/// So many radii elements stay away from walls: smooth lines go a little beyond their samples.
-const CLEAR: f64 = 1.08;
-/// How often lengths and walls are looked after in turn at the end.
-const AT_WALLS: usize = 10;
+/// So many radii elements stay away from walls, and no fewer than so many in the end: a surface of six sides lies a tenth beyond its mean.
+const CLEAR: f64 = 1.16;
+pub(super) const SURE: f64 = 1.1;
+/// How often lengths and walls are looked after in turn at the end, at most, and work of a sample then.
+const AT_WALLS: usize = 60;
+const AT_WALL: u64 = 3000;
 /// Work of a pair, and of a link.
 const PAIR: u64 = 60;
 const LINK: u64 = 15;
@@ -83,11 +85,39 @@ impl<const D: usize> Relaxation<'_, D> {
         for n in (0..bodies.list.len()).filter(|n| bodies.list[*n].frozen.is_none()).collect::<Vec<_>>() {
             self.stretch(bodies, n);
             for _ in 0..again {
+                budget.spend(AT_WALL * self.forms[bodies.list[n].source].len() as u64)?;
+                if self.is_within(bodies, n) {
+                    break;
+                }
                 self.confine(bodies, n);
+                self.bend_in(bodies, n);
                 self.stretch(bodies, n);
             }
         }
         Ok(())
+    }
+
+    /// Whether an element lies within the border and above the ground.
+    fn is_within(&self, bodies: &Bodies<D>, n: usize) -> bool {
+        let body = bodies.list[n];
+        let form = &self.forms[body.source];
+        let radius = |k: usize| SURE * form.soft.radii[k] * body.scale;
+        wall::holds(self.request, (bodies.samples(&body, form), form.is_line()), radius)
+    }
+
+    /// Keeps the line between the samples of a strand within, as [`Relaxation::confine`] keeps these.
+    fn bend_in(&self, bodies: &mut Bodies<D>, n: usize) {
+        let body = bodies.list[n];
+        let form = &self.forms[body.source];
+        if !form.is_line() {
+            return;
+        }
+        let middles: Vec<Vector<D>> = wall::middles(bodies.samples(&body, form)).collect();
+        for (k, p) in middles.into_iter().enumerate() {
+            let by = wall::within(self.request, p, CLEAR * form.soft.radii[k] * body.scale) - p;
+            bodies.points[body.first + k] += by;
+            bodies.points[body.first + k + 1] += by;
+        }
     }
 
     /// Takes out what lies too deep in something else, the deepest first.

@@ -5,7 +5,7 @@ use arabesque_core::{
     Placement, Region, Request, Role, Similarity, Soft, Unobserved, Vector, polyline_length,
 };
 
-use super::bodies::nearest;
+use super::{bodies::nearest, wall::middles};
 use crate::{Params, Prepared};
 
 const RADIUS: f64 = 0.1;
@@ -64,6 +64,10 @@ fn request(min: [f64; 3], side: f64) -> Request<3> {
 fn run(exemplar: &Exemplar<3>, request: &Request<3>) -> Outcome<3> {
     let prepared = Prepared::new(exemplar.clone(), &Params::default(), &Budget::default()).unwrap();
     prepared.run(request, &mut Unobserved).unwrap()
+}
+
+fn source_of(exemplar: &Exemplar<3>, placement: &Placement<3>) -> Vec<Vector<3>> {
+    exemplar.softs[placement.source].samples.clone()
 }
 
 fn line(placement: &Placement<3>) -> Vec<Vector<3>> {
@@ -142,7 +146,11 @@ fn in_a_ball_strands_go_along_the_wall_and_lie_inside() {
     let outcome = run(&strands(), &request);
     assert!(outcome.placements.len() > 20, "{}", outcome.placements.len());
     for placement in &outcome.placements {
-        assert!(line(placement).iter().all(|p| p.norm() <= 2.0 - 0.8 * RADIUS));
+        // The smooth line through the samples, and a skin of six sides around it.
+        let to = line(placement);
+        assert!(to.iter().copied().chain(middles(&to)).all(|p| p.norm() <= 2.0 - 1.09 * RADIUS));
+        let own = polyline_length(&source_of(&strands(), placement));
+        assert!((polyline_length(&to) / own - 1.0).abs() < 1e-6);
     }
 }
 

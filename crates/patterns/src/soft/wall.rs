@@ -28,6 +28,26 @@ pub(super) fn beyond<const D: usize>(request: &Request<D>, p: Vector<D>, radius:
     (1.0 - room / radius.max(f64::MIN_POSITIVE)).max(0.0)
 }
 
+/// The middle of each stretch between two samples of a smooth line, in the order of the stretches [Catmull 1974].
+pub(super) fn middles<const D: usize>(samples: &[Vector<D>]) -> impl Iterator<Item = Vector<D>> {
+    (1..samples.len()).map(|k| {
+        let (b, c) = (samples[k - 1], samples[k]);
+        let a = if k > 1 { samples[k - 2] } else { b * 2.0 - c };
+        let d = samples.get(k + 1).copied().unwrap_or(c * 2.0 - b);
+        ((b + c) * 9.0 - a - d) * (1.0 / 16.0)
+    })
+}
+
+/// Whether balls around samples lie within the border and above the ground, and those around the middles between them where these are a line.
+pub(super) fn holds<const D: usize>(
+    request: &Request<D>,
+    (samples, is_line): (&[Vector<D>], bool),
+    radius: impl Fn(usize) -> f64,
+) -> bool {
+    let holds = |(k, p): (usize, Vector<D>)| beyond(request, p, radius(k)) <= 0.0;
+    samples.iter().copied().enumerate().all(holds) && (!is_line || middles(samples).enumerate().all(holds))
+}
+
 /// Whether anything keeps elements within.
 pub(super) fn is_there<const D: usize>(request: &Request<D>) -> bool {
     request.border == Border::Inside || request.ground.is_some()

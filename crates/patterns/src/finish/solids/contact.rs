@@ -4,8 +4,9 @@ use arabesque_core::{Bounds, Budget, Domain, Exemplar, GridIndex, Result, Simila
 
 use crate::exemplar::library::Library;
 
-/// Work for each place of a surface that is looked up.
-const LOOK: u64 = 10;
+/// Work for each place of a surface that is looked up, and for one that is passed by.
+const LOOK: u64 = 12;
+const PASSED: u64 = 2;
 /// Work for two bodies of which the boxes say that they are apart.
 const APART: u64 = 200;
 /// Overlaps of the exemplar that a pair may have: this share of those that touch are no deeper.
@@ -24,13 +25,39 @@ pub(super) struct Body<'a, const D: usize> {
 }
 
 /// The deepest place of two solids in one another.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Contact<const D: usize> {
     pub(super) depth: f64,
     /// Where it is.
     pub(super) at: Vector<D>,
     /// Which way the first one has to go, of length 1.
     pub(super) way: Vector<D>,
+}
+
+/// What is known of two bodies beside one another since they were last compared.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Pair<const D: usize> {
+    /// They lie no deeper in one another than they may until both together have gone so far since the beginning.
+    Apart(f64),
+    /// The first one lies too deep in the second, by so much.
+    Over(Contact<D>, f64),
+}
+
+/// How two bodies lie to one another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting<const D: usize> {
+    /// Their overlap, if they do.
+    pub(super) contact: Option<Contact<D>>,
+    /// How far they are apart at least, 0 where they overlap.
+    pub(super) gap: f64,
+    /// What it cost to find out.
+    pub(super) cost: u64,
+}
+
+impl<const D: usize> Meeting<D> {
+    fn apart(gap: f64) -> Self {
+        Self { contact: None, gap: gap.max(0.0), cost: APART }
+    }
 }
 
 impl<'a, const D: usize> Body<'a, D> {
@@ -52,6 +79,19 @@ impl<'a, const D: usize> Body<'a, D> {
         ((at - p).norm(), at)
     }
 
+    /// A distance that `p` is away from it at least, 0 within the box around it.
+    pub(super) fn beyond_box(&self, p: Vector<D>) -> f64 {
+        let own = self.pose.inverse().apply(p);
+        (self.solid.bounds.clamp(own) - own).norm() * self.pose.scale
+    }
+
+    /// How far from its surface depths are known all around, in its own coordinates.
+    fn known(&self) -> f64 {
+        let (grid, own) = (&self.solid.distance.bounds, &self.solid.bounds);
+        let (low, high) = (own.min - grid.min, grid.max - own.max);
+        low.0.into_iter().chain(high.0).fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
     /// A box in the coordinates of this one around the box of `other`, which `both` and `moved` bring there.
     fn around(other: &Self, both: &Similarity<D>, moved: Vector<D>) -> Bounds<D> {
         let its = &other.solid.bounds;
@@ -63,17 +103,26 @@ impl<'a, const D: usize> Body<'a, D> {
         Bounds { min: centre - reach, max: centre + reach }
     }
 
-    /// The deepest place of the surface of `other` in this one, with the way out of it; `own_box` is that of this one in the coordinates
-    /// of the other.
-    fn deepest(&self, other: &Self, shift: Vector<D>, own_box: &Bounds<D>) -> Option<Contact<D>> {
+    /// The deepest place of the surface of `other` in this one, with the way out of it; else how far the surface is away at least, as far
+    /// as `known`, and how many places were looked up. `own_box` is that of this one in the coordinates of the other.
+    fn deepest(
+        &self,
+        other: &Self,
+        shift: Vector<D>,
+        (own_box, known): (&Bounds<D>, f64),
+    ) -> (Option<Contact<D>>, f64, u64) {
         let to_own = self.pose.inverse();
         let both = to_own.after(&other.pose);
         let moved = to_own.rotation.apply(shift) * to_own.scale;
         let mut best: Option<(f64, Vector<D>)> = None;
+        let (mut highest, mut looked) = (-known, 0);
         // Most of a surface is far from a body beside it.
-        for &point in other.solid.points.iter().filter(|point| own_box.contains(**point)) {
+        let near = own_box.grown(known / other.pose.scale.max(f64::MIN_POSITIVE));
+        for &point in other.solid.points.iter().filter(|point| near.contains(**point)) {
+            looked += 1;
             let own = both.apply(point) + moved;
             let depth = self.solid.depth(own) * self.pose.scale;
+            highest = highest.max(depth);
             if depth > 0.0 && best.is_none_or(|(most, _)| depth > most) {
                 best = Some((depth, own));
             }
@@ -81,19 +130,20 @@ impl<'a, const D: usize> Body<'a, D> {
         // What lies at one place hardly shows in surfaces: the ball in the middle of the other one has to come out as well.
         let middle = to_own.apply(other.centre + shift);
         let depth = self.solid.depth(middle) * self.pose.scale;
+        highest = highest.max(depth);
         if depth > 0.0 {
             let whole = depth + other.solid.inradius() * other.pose.scale;
             if best.is_none_or(|(most, _)| whole > most) {
                 best = Some((whole, middle));
             }
         }
-        let (depth, own) = best?;
+        let Some((depth, own)) = best else { return (None, (-highest).max(0.0), looked) };
         let mut way = self.pose.rotation.apply(self.solid.outwards(own));
         if way == Vector::ZERO {
             // In the very middle any way leads out.
             way[0] = 1.0;
         }
-        Some(Contact { depth, at: self.pose.apply(own), way })
+        (Some(Contact { depth, at: self.pose.apply(own), way }), 0.0, looked)
     }
 }
 
@@ -103,8 +153,15 @@ pub(super) fn contact<const D: usize>(
     b: &Body<'_, D>,
     offset: Vector<D>,
 ) -> (Option<Contact<D>>, u64) {
-    if offset.norm() >= a.radius + b.radius {
-        return (None, APART);
+    let found = meeting(a, b, offset);
+    (found.contact, found.cost)
+}
+
+/// How two bodies lie to one another; `offset` is the way between their centres, around the back on a torus.
+pub(super) fn meeting<const D: usize>(a: &Body<'_, D>, b: &Body<'_, D>, offset: Vector<D>) -> Meeting<D> {
+    let between = offset.norm() - (a.radius + b.radius);
+    if between >= 0.0 {
+        return Meeting::apart(between);
     }
     let shift = a.centre + offset - b.centre;
     let (to_a, to_b) = (a.pose.inverse(), b.pose.inverse());
@@ -113,17 +170,28 @@ pub(super) fn contact<const D: usize>(
     // Long bodies side by side lie beside one another's boxes mostly.
     let b_in_a = Body::around(b, &of_b_in_a, shifted(&to_a, shift));
     let a_in_b = Body::around(a, &of_a_in_b, shifted(&to_b, -shift));
-    if !b_in_a.intersects(&a.solid.bounds) || !a_in_b.intersects(&b.solid.bounds) {
-        return (None, APART);
+    let aside = beside(&b_in_a, &a.solid.bounds) * a.pose.scale;
+    let aside = aside.max(beside(&a_in_b, &b.solid.bounds) * b.pose.scale);
+    if aside > 0.0 {
+        return Meeting::apart(aside);
     }
-    let of_b = a.deepest(b, shift, &a_in_b).map(|c| Contact { way: -c.way, ..c });
-    let back = -shift;
-    let of_a = b.deepest(a, back, &b_in_a).map(|c| Contact { at: c.at + shift, ..c });
-    let deepest = match (of_a, of_b) {
+    let known = (a.known() * a.pose.scale).min(b.known() * b.pose.scale);
+    let (of_b, gap, looked) = a.deepest(b, shift, (&a_in_b, known));
+    let (of_a, other_gap, also) = b.deepest(a, -shift, (&b_in_a, known));
+    let of_b = of_b.map(|c| Contact { way: -c.way, ..c });
+    let of_a = of_a.map(|c| Contact { at: c.at + shift, ..c });
+    let contact = match (of_a, of_b) {
         (Some(x), Some(y)) => Some(if x.depth >= y.depth { x } else { y }),
         (one, other) => one.or(other),
     };
-    (deepest, LOOK * (a.solid.points.len() + b.solid.points.len()) as u64)
+    let all = (a.solid.points.len() + b.solid.points.len()) as u64;
+    let gap = if contact.is_some() { 0.0 } else { gap.min(other_gap) };
+    Meeting { contact, gap, cost: APART + PASSED * all + LOOK * (looked + also) }
+}
+
+/// How far two boxes are apart along the axis along which they are most; negative where they overlap.
+fn beside<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> f64 {
+    (0..D).map(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k])).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How deep elements of two classes may lie in one another.
@@ -186,4 +254,74 @@ impl Allowed {
 fn inner<const D: usize>(exemplar: &Exemplar<D>, element: u32) -> f64 {
     let e = element as usize;
     exemplar.solids[e].inradius() * exemplar.elements[e].pose.scale
+}
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Grid, Matrix, Stage, Stream};
+
+    use super::*;
+
+    const HALF: [f64; 3] = [0.8, 0.3, 0.2];
+
+    /// A box whose distances are known all around it.
+    fn block() -> Solid<3> {
+        let half = Vector(HALF);
+        let bounds = Bounds::new(-half, half);
+        let around = bounds.grown(0.3);
+        let mut distance = Grid { bounds: around, nodes: [45, 25, 21], values: vec![0.0; 45 * 25 * 21] };
+        let depth = |p: Vector<3>| {
+            let off: Vector<3> = Vector(std::array::from_fn(|k| p[k].abs() - HALF[k]));
+            let outside = off.map(|v| v.max(0.0)).norm();
+            -outside - off[0].max(off[1]).max(off[2]).min(0.0)
+        };
+        distance.values = (0..distance.values.len()).map(|n| depth(distance.node(n))).collect();
+        let sides = |n: usize| {
+            let cell = [n % 9, n / 9 % 5, n / 45];
+            Vector(std::array::from_fn(|k| HALF[k] * (cell[k] as f64 / [4.0, 2.0, 1.0][k] - 1.0)))
+        };
+        Solid::new(distance, bounds, (0..135).map(sides).collect(), Vector::ZERO)
+    }
+
+    fn turned(stream: &mut Stream) -> Matrix<3> {
+        let mut m = Matrix::<3>::identity();
+        m.0.iter_mut().flatten().for_each(|v| *v += stream.range(-2.0, 2.0));
+        m.nearest_rotation()
+    }
+
+    #[test]
+    fn what_is_apart_does_not_touch_until_it_has_gone_as_far() {
+        let solid = block();
+        let mut stream = Stream::new(11, Stage::TEST, 0);
+        let (mut apart, mut known) = (0, 0);
+        for _ in 0..400 {
+            let place = Vector(std::array::from_fn(|_| stream.range(-1.2, 1.2)));
+            let pose = Similarity::about(Vector::ZERO, place, turned(&mut stream), 1.0);
+            let (a, b) = (Body::new(&solid, Similarity::identity()), Body::new(&solid, pose));
+            let found = meeting(&a, &b, b.centre - a.centre);
+            if found.contact.is_some() {
+                assert_eq!(found.gap, 0.0);
+                continue;
+            }
+            apart += 1;
+            known += usize::from(found.gap > 0.05);
+            // Straight on towards the other one, which is the worst that it can do.
+            let step = (a.centre - b.centre).unit_or_zero() * (0.99 * found.gap);
+            let nearer = Body::new(&solid, Similarity::shift(step).after(&pose));
+            let then = meeting(&a, &nearer, nearer.centre - a.centre);
+            assert!(then.contact.is_none_or(|c| c.depth < 0.03), "{found:?} {then:?}");
+        }
+        assert!(apart > 100 && known * 2 > apart, "{apart} {known}");
+    }
+
+    #[test]
+    fn overlaps_look_the_same_from_both_sides() {
+        let solid = block();
+        let a = Body::new(&solid, Similarity::identity());
+        let b = Body::new(&solid, Similarity::shift(Vector([0.1, 0.55, 0.05])));
+        let (one, other) = (meeting(&a, &b, b.centre - a.centre), meeting(&b, &a, a.centre - b.centre));
+        let (Some(one), Some(other)) = (one.contact, other.contact) else { panic!("they overlap") };
+        assert!((one.depth - 0.05).abs() < 0.02 && (one.depth - other.depth).abs() < 1e-9, "{one:?} {other:?}");
+        assert!((one.way + other.way).norm() < 0.05 && one.way[1] < -0.9, "{one:?} {other:?}");
+    }
 }

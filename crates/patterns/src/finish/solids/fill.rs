@@ -14,8 +14,9 @@ const TRIES: usize = 40;
 const SOURCES: usize = 6;
 /// Steps by which a candidate moves to where it fits.
 const STEPS: usize = 8;
-/// A candidate fits where it lies too deep by no more than this share of its inner radius.
-const FITS: f64 = 0.08;
+/// A candidate fits where it lies too deep by no more than this share of its inner radius: at first where there is room; then what is around makes room
+/// for it, so that a dense heap gets what it is short of; at last where there is room again.
+const FITS: [f64; 4] = [0.08, 0.5, 0.3, 0.08];
 
 impl<const D: usize> Things<'_, D> {
     /// Puts elements of the classes that are short where there is most room.
@@ -28,6 +29,7 @@ impl<const D: usize> Things<'_, D> {
             return Ok(());
         }
         let mut random = Stream::new(self.extent.request().seed, PLACES, round);
+        let fits = FITS[(round as usize).min(FITS.len() - 1)];
         let mut roomy = self.roomy(TRIES * missing, &mut random, budget)?;
         roomy.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut short = short;
@@ -37,12 +39,10 @@ impl<const D: usize> Things<'_, D> {
             if short[class] <= 0.0 {
                 break;
             }
-            if let Some(placement) = self.fitting((class as u32, place), &near, &mut random, budget)? {
+            if let Some(placement) = self.fitting((class as u32, place, fits), &near, &mut random, budget)? {
                 let body = self.body(placement.source, &placement.transform);
                 near.insert(self.bodies.len() as u32, body.centre);
-                self.bodies.push(body);
-                self.placements.push(placement);
-                self.moved.push(true);
+                self.put(placement, body);
                 short[class] -= 1.0;
             }
         }
@@ -76,10 +76,10 @@ impl<const D: usize> Things<'_, D> {
         Ok(found)
     }
 
-    /// An element of a class that fits at a place, moved a little where that helps.
+    /// An element of a class that fits at a place, too deep by `fits` of its inner radius at most, moved a little where that helps.
     fn fitting(
         &self,
-        (class, place): (u32, Vector<D>),
+        (class, place, fits): (u32, Vector<D>, f64),
         near: &Buckets<D>,
         random: &mut Stream,
         budget: &Budget,
@@ -98,7 +98,7 @@ impl<const D: usize> Things<'_, D> {
                 let (push, over, cost) = self.wish(&body, class, near);
                 meter.spend(cost)?;
                 let inner = body.solid.inradius() * body.pose.scale;
-                if over <= FITS * inner && self.extent.admits(source, at) {
+                if over <= fits * inner && self.extent.admits(source, at) {
                     let placement = Placement { source: source as usize, transform, control: Vec::new(), frozen: None };
                     return Ok(Some(placement));
                 }

@@ -6,6 +6,7 @@
 
 mod contact;
 mod fill;
+mod pairs;
 mod relax;
 mod things;
 mod voids;

@@ -3,10 +3,7 @@
 use arabesque_core::{Border, Budget, Domain, Matrix, Result, Similarity, Vector};
 use rayon::prelude::*;
 
-use super::{
-    contact::{Contact, contact},
-    things::Things,
-};
+use super::{contact::Contact, things::Things};
 
 /// Overlaps beyond what is allowed by less than this share of the spacing are left.
 const ENOUGH: f64 = 0.008;
@@ -44,6 +41,21 @@ impl<const D: usize> Push<D> {
     }
 }
 
+/// What the border and the ground want of a body.
+struct Held<const D: usize> {
+    contacts: [Option<Contact<D>>; 2],
+    /// How far it may go before it can reach the border, where that is known.
+    inside: Option<f64>,
+    cost: u64,
+}
+
+impl<const D: usize> Held<D> {
+    /// Nothing.
+    fn free() -> Self {
+        Self { contacts: [None; 2], inside: None, cost: 10 }
+    }
+}
+
 impl<const D: usize> Things<'_, D> {
     /// Moves and turns bodies until none lies too deep in another, or for so many steps.
     pub(super) fn relax(&mut self, steps: usize, budget: &Budget) -> Result<()> {
@@ -52,11 +64,30 @@ impl<const D: usize> Things<'_, D> {
         for _ in 0..steps {
             budget.check()?;
             let index = self.index();
-            let pushes: Vec<(Push<D>, u64, f64)> =
-                (0..self.bodies.len()).into_par_iter().map(|i| self.push(i, &index)).collect();
-            budget.spend(pushes.iter().map(|p| p.1).sum())?;
-            let worst = pushes.iter().map(|p| p.2).fold(0.0, f64::max);
-            for (i, (push, _, _)) in pushes.iter().enumerate() {
+            let (is_awake, cost) = self.look(&index);
+            budget.spend(cost)?;
+            let found: Vec<_> = (0..self.bodies.len())
+                .into_par_iter()
+                .map(|i| if is_awake[i] && self.placements[i].frozen.is_none() { self.held(i) } else { Held::free() })
+                .collect();
+            budget.spend(found.iter().map(|held| held.cost).sum())?;
+            let mut pushes = vec![Push::none(); self.bodies.len()];
+            let mut worst = 0.0_f64;
+            for overlap in self.overlaps() {
+                let i = overlap.body;
+                if is_awake[i] && self.placements[i].frozen.is_none() {
+                    worst = worst.max(overlap.over);
+                    self.add(&mut pushes[i], i, &overlap.contact, overlap.amount);
+                }
+            }
+            for (i, held) in found.into_iter().enumerate() {
+                self.inside[i] = held.inside.map_or(self.inside[i], |more| self.gone[i] + more);
+                for contact in held.contacts.into_iter().flatten() {
+                    worst = worst.max(contact.depth);
+                    self.add(&mut pushes[i], i, &contact, contact.depth);
+                }
+            }
+            for (i, push) in pushes.iter().enumerate() {
                 self.moved[i] = self.apply(i, push, starts[i], FAR * spacing) > STILL * spacing;
             }
             if worst < ENOUGH * spacing {
@@ -66,43 +97,11 @@ impl<const D: usize> Things<'_, D> {
         Ok(())
     }
 
-    /// What the contacts and the border want of a body; what it cost, and the worst of it.
-    fn push(&self, i: usize, index: &arabesque_core::GridIndex<D>) -> (Push<D>, u64, f64) {
-        let body = &self.bodies[i];
-        let mut push = Push::none();
-        let (mut cost, mut worst) = (100, 0.0_f64);
-        if self.placements[i].frozen.is_some() {
-            return (push, cost, worst);
-        }
-        let around = self.around(index, body, i);
-        if !self.moved[i] && around.iter().all(|(j, _)| !self.moved[*j]) {
-            return (push, cost, worst);
-        }
-        for (j, offset) in around {
-            let other = &self.bodies[j];
-            let (found, looked) = contact(body, other, offset);
-            cost += looked;
-            let Some(found) = found else { continue };
-            let over = found.depth - self.allowed.of(self.class(i), self.class(j));
-            if over > 0.0 {
-                let share = if self.placements[j].frozen.is_some() { 1.0 } else { 0.5 };
-                worst = worst.max(over);
-                self.add(&mut push, i, &found, share * over);
-            }
-        }
-        let (at_border, looked) = self.beyond(i);
-        cost += looked;
-        if let Some(found) = at_border {
-            worst = worst.max(found.depth);
-            self.add(&mut push, i, &found, found.depth);
-        }
-        let (below, looked) = self.below(i);
-        cost += looked;
-        if let Some(found) = below {
-            worst = worst.max(found.depth);
-            self.add(&mut push, i, &found, found.depth);
-        }
-        (push, cost, worst)
+    /// What the border and the ground want of a body.
+    fn held(&self, i: usize) -> Held<D> {
+        let (at_border, inside, looked) = if self.gone[i] < self.inside[i] { (None, None, 0) } else { self.beyond(i) };
+        let (below, also) = self.below(i);
+        Held { contacts: [at_border, below], inside, cost: 100 + looked + also }
     }
 
     /// The place of a body that lies deepest in the ground, where it does not stand on it.
@@ -126,30 +125,33 @@ impl<const D: usize> Things<'_, D> {
         ((height < 0.0).then_some(Contact { depth: -height, at, way }), cost)
     }
 
-    /// The place of a body that lies farthest outside, where the border keeps it inside.
-    fn beyond(&self, i: usize) -> (Option<Contact<D>>, u64) {
+    /// The place of a body that lies farthest outside, where the border keeps it inside; else how far it may go before one can; and the cost.
+    fn beyond(&self, i: usize) -> (Option<Contact<D>>, Option<f64>, u64) {
         let (body, request) = (&self.bodies[i], self.extent.request());
         let domain = &request.domain;
         let depth = domain.signed_distance(body.centre);
         let inside = matches!(request.border, Border::Inside | Border::Turn);
         let margin = MARGIN * self.library.spacing;
-        if depth >= if inside { body.radius + margin } else { 0.0 } {
-            return (None, 2000);
+        let room = depth - if inside { body.radius + margin } else { 0.0 };
+        if room >= 0.0 {
+            return (None, Some(room), 2000);
         }
         let back = |p: Vector<D>, depth: f64| {
             let way = domain.nearest_inside(p) - p;
             (way.norm() > 0.0).then(|| Contact { depth: -depth, at: p, way: way.unit_or_zero() })
         };
         if !inside {
-            return (back(body.centre, depth), 4000);
+            return (back(body.centre, depth), None, 4000);
         }
-        let (mut worst, mut cost) = ((0.0, body.centre), 4000);
+        let (mut worst, mut cost) = ((f64::INFINITY, body.centre), 4000);
         let rim = domain.bounds().size().0.into_iter().fold(0.0, f64::max) * RIM;
         for point in &body.solid.points {
             let p = body.pose.apply(*point);
             cost += PER_PLACE;
             // Distances differ by no more than places do.
-            if depth - (p - body.centre).norm() > margin {
+            let least = depth - (p - body.centre).norm() - margin;
+            if least > 0.0 {
+                worst = if least < worst.0 { (least, p) } else { worst };
                 continue;
             }
             let out = domain.signed_distance(p) - margin;
@@ -158,7 +160,7 @@ impl<const D: usize> Things<'_, D> {
                 worst = (out, p);
             }
         }
-        (if worst.0 < 0.0 { back(worst.1, worst.0) } else { None }, cost)
+        if worst.0 < 0.0 { (back(worst.1, worst.0), None, cost) } else { (None, Some(worst.0), cost) }
     }
 
     /// Adds what a contact wants: a shift and a turn that take it apart by `amount`.
@@ -200,7 +202,9 @@ impl<const D: usize> Things<'_, D> {
         let (source, transform) = (placement.source, placement.transform);
         self.bodies[i] = self.body(source, &transform);
         let turned = push.turn.iter().map(|v| v * v).sum::<f64>().sqrt() * weight;
-        push.shift.norm() * weight + turned * body.radius
+        let went = domain.offset(body.centre, self.bodies[i].centre).norm() + turned * body.radius;
+        self.gone[i] += went;
+        went
     }
 }
 

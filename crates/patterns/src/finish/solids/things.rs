@@ -2,7 +2,7 @@
 
 use arabesque_core::{Budget, Exemplar, GridIndex, Numbered, Placement, Result, Similarity, Vector};
 
-use super::contact::{Allowed, Body, contact};
+use super::contact::{Allowed, Body, Pair, contact};
 use crate::{border::Extent, exemplar::library::Library};
 
 /// An overlap deeper than allowed by this share of the inner radius is too deep to stay.
@@ -21,6 +21,11 @@ pub(super) struct Things<'a, const D: usize> {
     pub(super) bodies: Vec<Body<'a, D>>,
     /// Whether each has moved since those around it looked.
     pub(super) moved: Vec<bool>,
+    /// How far the places of each have gone at most, in sum, and how far that may be before it has to look for the border again.
+    pub(super) gone: Vec<f64>,
+    pub(super) inside: Vec<f64>,
+    /// What is known of each with those of higher numbers around it, by these numbers; nothing once numbers change.
+    pub(super) pairs: Vec<Vec<(u32, Pair<D>)>>,
     /// Largest radius of a body of the exemplar at the largest scale.
     pub(super) widest: f64,
 }
@@ -41,6 +46,9 @@ impl<'a, const D: usize> Things<'a, D> {
             placements: placements.to_vec(),
             bodies: Vec::new(),
             moved: vec![true; placements.len()],
+            gone: vec![0.0; placements.len()],
+            inside: vec![0.0; placements.len()],
+            pairs: Vec::new(),
             widest: 0.0,
         };
         let bodies: Vec<_> = placements.iter().map(|p| things.body(p.source, &p.transform)).collect();
@@ -148,12 +156,31 @@ impl<'a, const D: usize> Things<'a, D> {
                 left[class] -= 1.0;
             }
         }
-        let mut keep = gone.iter().map(|g| !g);
-        self.placements.retain(|_| keep.next().unwrap_or(true));
-        let mut keep = gone.iter().map(|g| !g);
-        self.bodies.retain(|_| keep.next().unwrap_or(true));
-        let mut keep = gone.iter().map(|g| !g);
-        self.moved.retain(|_| keep.next().unwrap_or(true));
+        self.keep(&gone.iter().map(|g| !g).collect::<Vec<_>>());
         Ok(())
+    }
+
+    /// Takes out those that are not to be kept.
+    fn keep(&mut self, kept: &[bool]) {
+        fn only<T>(list: &mut Vec<T>, kept: &[bool]) {
+            let mut keep = kept.iter();
+            list.retain(|_| keep.next().copied().unwrap_or(true));
+        }
+        only(&mut self.placements, kept);
+        only(&mut self.bodies, kept);
+        only(&mut self.moved, kept);
+        only(&mut self.gone, kept);
+        only(&mut self.inside, kept);
+        self.pairs.clear();
+    }
+
+    /// Puts an element in.
+    pub(super) fn put(&mut self, placement: Placement<D>, body: Body<'a, D>) {
+        self.bodies.push(body);
+        self.placements.push(placement);
+        self.moved.push(true);
+        self.gone.push(0.0);
+        self.inside.push(0.0);
+        self.pairs.clear();
     }
 }

@@ -65,6 +65,11 @@ impl<const D: usize> Between<'_, D> {
             }
             let body = &self.bodies[j];
             let seen = body.centre - offset;
+            // Long bodies reach far along their length alone.
+            if body.beyond_box(seen) >= room {
+                cost += 10;
+                continue;
+            }
             let depth = body.depth(seen);
             if depth > 0.0 {
                 return (0.0, cost);

@@ -163,7 +163,8 @@ fn remove<const D: usize>(
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut gone = vec![0.0; n];
     // Of mixtures, the continuous part says how many there are.
-    let own = if level.pattern.gaps.usual().is_some() { own_share(level) } else { 0.0 };
+    let gaps = &level.pattern.gaps;
+    let own = if gaps.usual().is_some() && !gaps.is_mixed() { own_share(level) } else { 0.0 };
     for (_, i) in order {
         if removed[i] {
             continue;

@@ -36,6 +36,7 @@
 //!
 //! Where it departs from the paper:
 //!
+//! - A texture that leans from the axes of its file is laid flat, and patches come from within the convex hull of its points.
 //! - The search is a cross-correlation by Fourier transforms where that takes less work, else a sum in rows; what comes out near the best is
 //!   summed again, so that both answer alike. Differences below a floor count as none, so that ε has something to be a share of.
 //! - A place that goes on from a neighbour's in the texture is not taken: otherwise the result is the texture itself up to its border, and then a seam.

@@ -110,7 +110,7 @@ impl Prepared {
         self.texture.bounds.size().0
     }
 
-    /// How the axes of the file go with the plane.
+    /// How the axes of the file go with the plane, and how far the texture leans from it.
     pub fn axes(&self) -> Axes {
         self.texture.axes
     }
@@ -263,7 +263,12 @@ impl Prepared {
     /// Samples as points with the attributes of the texture.
     fn points_of(&self, samples: &[Sample], is_flat: bool) -> (PointSet<3>, Vec<usize>) {
         let texture = &*self.texture;
-        let place = |v| if is_flat { texture.axes.stand(v) } else { v };
+        // What closes a gap lies where the gap is; a larger texture lies flat.
+        let place = |v| match (is_flat, &texture.gap) {
+            (true, Some(_)) => texture.axes.back(v),
+            (true, None) => texture.axes.stand(v),
+            (false, _) => v,
+        };
         let sources: Vec<usize> = samples.iter().map(|s| s.source as usize).collect();
         let points = PointSet {
             positions: samples.iter().map(|s| place(s.at)).collect(),

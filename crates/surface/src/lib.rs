@@ -55,7 +55,9 @@ pub use directions::{Bend, Curvature, DirectionField, Directions, SurfaceFrame, 
 pub use flexible::{Skin, Tube, balls};
 pub use lattice::{Axes, LatticePlace, RowSite, SurfaceLattice};
 pub use mesh::{Closest, Found, MeshIndex, MeshReport};
-pub use oriented::{EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of};
+pub use oriented::{
+    EstimatedNormals, Foot, OrientedPoints, clusters, estimated_normals, spacing_of, thinnest_direction,
+};
 pub use params::{Method, Normals, Parts, SurfaceParams};
 pub use reconstruct::{Reconstruction, reconstruct};
 pub use spread::{inside_grid, scatter, shell_grid};

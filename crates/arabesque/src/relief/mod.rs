@@ -6,7 +6,7 @@ mod read;
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Unobserved, Vector, Warning, Watch};
+use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Unobserved, Vector, Warning, Watch, rounded};
 use arabesque_reliefs::{Ground, Prepared as Engine, ReliefOutcome, ReliefRequest};
 use arabesque_surface::{DirectionField, MeshReport, reconstruct};
 
@@ -78,13 +78,17 @@ impl Ready for Texture {
     fn understood(&self) -> String {
         let engine = &self.engine;
         let [w, d, h] = engine.size();
+        let lean = match engine.axes().lean() {
+            0.0 => String::new(),
+            lean => format!(", from which it leans by {lean:.1} degrees"),
+        };
         let across = ["x", "y", "z"][engine.axes().across_axis()];
         let repeats = match engine.repetition() {
             Some(length) => format!("repeats after {length:.4} ({:.0} %)", 100.0 * engine.regularity()),
             None => "does not repeat".to_owned(),
         };
         format!(
-            "exemplar: a relief of {} points ({}), {:.4} apart, across {across}; its box is {w:.4} by {d:.4} and {h:.4} high; it {repeats}; patches of {:.4}",
+            "exemplar: a relief of {} points ({}), {:.4} apart, across {across}{lean}; its box is {w:.4} by {d:.4} and {h:.4} high; it {repeats}; patches of {:.4}",
             engine.points(),
             self.kind,
             engine.spacing(),
@@ -145,11 +149,26 @@ impl Texture {
             context.warnings.extend(field.warnings().iter().cloned());
             return Ok(Ground::Mesh(Arc::new(index), Arc::new(field), job.scale.unwrap_or(1.0)));
         }
-        match job.extent.as_ref().map(sides).transpose()? {
+        let extent = job.extent.as_ref().map(sides).transpose()?;
+        context.warnings.extend(extent.and_then(|size| self.crumb(size)));
+        match extent {
             Some(size) if job.tile => Ok(Ground::Tile(size)),
             Some(size) => Ok(Ground::Plane(size)),
             None => Ok(Ground::Hole),
         }
+    }
+
+    /// What to say where so little is wanted that it does not show what the texture is.
+    fn crumb(&self, size: [f64; 2]) -> Option<Warning> {
+        let ([w, d, _], patch) = (self.engine.size(), self.engine.patch());
+        let message = || {
+            let [wanted, other, w, d, patch] = [size[0], size[1], w, d, patch].map(rounded);
+            format!(
+                "the extent {wanted}x{other} is smaller than one patch of {patch}; the texture itself is {w} by {d}"
+            )
+        };
+        let advice = "give the extent in the units of the texture: of a height field in pixels";
+        (size.iter().any(|s| *s > 0.0 && *s < patch)).then(|| Warning::new(message(), advice))
     }
 }
 

@@ -67,9 +67,9 @@ impl<const D: usize> GridIndex<D> {
     pub fn within(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, Vector<D>)) -> u64 {
         let mut looked = 0;
         let most = radius * radius;
-        self.lattice.around(p, radius, |cell, _| {
-            let (start, end) = (self.starts[cell] as usize, self.starts[cell + 1] as usize);
-            looked += 1 + (end - start) as u64;
+        self.lattice.rows(p, radius, |cells, _| {
+            let (start, end) = (self.starts[cells.start] as usize, self.starts[cells.end] as usize);
+            looked += (cells.len() + end - start) as u64;
             for (&i, &point) in self.order[start..end].iter().zip(&self.points[start..end]) {
                 let offset = periodic::offset(p, point, self.period);
                 if offset.norm2() <= most {
@@ -83,7 +83,7 @@ impl<const D: usize> GridIndex<D> {
     /// Number of points that [`GridIndex::within`] would look at: at least those within `radius` of `p`.
     pub fn load(&self, p: Vector<D>, radius: f64) -> u64 {
         let mut looked = 0;
-        self.lattice.around(p, radius, |cell, _| looked += u64::from(self.starts[cell + 1] - self.starts[cell]));
+        self.lattice.rows(p, radius, |cells, _| looked += u64::from(self.starts[cells.end] - self.starts[cells.start]));
         looked
     }
 

@@ -1,5 +1,7 @@
 //! Equal cells over a box, and the walk through those around a point.
 
+use std::ops::Range;
+
 use crate::space::{Bounds, Vector, cell_index, cell_place};
 
 /// A box cut into equal cells, numbered with the first coordinate fastest. Where the coordinates have a period, the box is one
@@ -124,33 +126,54 @@ impl<const D: usize> Lattice<D> {
     /// where the cell comes to lie around the back.
     #[inline]
     pub fn around(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(usize, [isize; D])) {
+        self.rows(p, radius, |cells, mut place| {
+            for cell in cells {
+                visit(cell, place);
+                place[0] = place[0].wrapping_add(1);
+            }
+        });
+    }
+
+    /// The cells of [`Lattice::around`] in the same order, as many at once as have numbers that follow one another; `place` is that of the first.
+    #[inline]
+    pub fn rows(&self, p: Vector<D>, radius: f64, mut visit: impl FnMut(Range<usize>, [isize; D])) {
         let (low, count) = self.touched(p, radius);
-        let (row, held) = (self.counts[0], self.held[0]);
-        let first = self.numbered(0, low[0].rem_euclid(row as isize) as usize);
-        'rows: for step in 0..count.iter().skip(1).product() {
-            let (mut rest, mut start, mut stride) = (step, 0, held);
-            let mut place = low;
+        // Without a period the first cell is one of the box.
+        let wrapped = |k: usize| if self.is_periodic { low[k].rem_euclid(self.counts[k] as isize) } else { low[k] };
+        let from: [usize; D] = std::array::from_fn(|k| wrapped(k) as usize);
+        let (row, held, first) = (self.counts[0], self.held[0], self.numbered(0, from[0]));
+        let before_end = count[0].min(row - first);
+        let (mut step, mut at) = ([0_usize; D], from);
+        loop {
+            let (mut start, mut stride, mut is_held) = (0, held, true);
             for k in 1..D {
-                place[k] = place[k].wrapping_add((rest % count[k]) as isize);
-                rest /= count[k];
-                let at = self.numbered(k, place[k].rem_euclid(self.counts[k] as isize) as usize);
-                if at >= self.held[k] {
-                    continue 'rows;
-                }
-                start += at * stride;
+                let i = self.numbered(k, at[k]);
+                is_held &= i < self.held[k];
+                start += i * stride;
                 stride *= self.held[k];
             }
-            let mut x = first;
-            for _ in 0..count[0] {
-                if x < held {
-                    visit(start + x, place);
+            if is_held {
+                let mut place: [isize; D] = std::array::from_fn(|k| low[k].wrapping_add(step[k] as isize));
+                if first < held {
+                    visit(start + first..start + (first + before_end).min(held), place);
                 }
-                place[0] = place[0].wrapping_add(1);
-                x += 1;
-                // Around the back, where there is a period; else this was the last one.
-                if x == row {
-                    x = 0;
+                // Around the back, where there is a period.
+                if before_end < count[0] {
+                    place[0] = place[0].wrapping_add(before_end as isize);
+                    visit(start..start + (count[0] - before_end).min(held), place);
                 }
+            }
+            let mut k = 1;
+            loop {
+                if k >= D {
+                    return;
+                }
+                (step[k], at[k]) = (step[k] + 1, if at[k] + 1 == self.counts[k] { 0 } else { at[k] + 1 });
+                if step[k] < count[k] {
+                    break;
+                }
+                (step[k], at[k]) = (0, from[k]);
+                k += 1;
             }
         }
     }
@@ -190,6 +213,26 @@ mod tests {
                 prop_assert_eq!(lattice.at(lattice.centre_at(place)), Some(index));
                 prop_assert_eq!(met.iter().filter(|m| m.0 == index).count(), 1);
             }
+        }
+
+        #[test]
+        fn in_space_a_walk_meets_every_cell_of_the_box_around_the_ball_once_and_row_by_row(
+            p in prop::array::uniform3(-6.0..12.0), radius in 0.0..9.0, is_periodic: bool,
+        ) {
+            let bounds = Bounds::new(Vector([-1.0, 2.0, 0.0]), Vector([7.0, 5.0, 5.0]));
+            let (lattice, p) = (Lattice::new(bounds, [4, 3, 5], is_periodic), Vector(p));
+            let mut met = Vec::new();
+            lattice.around(p, radius, |index, place| met.push((index, place)));
+            let (low, count) = lattice.touched(p, radius);
+            prop_assert_eq!(met.len(), count.iter().product::<usize>());
+            for (n, &(index, place)) in met.iter().enumerate() {
+                let step = [n % count[0], n / count[0] % count[1], n / count[0] / count[1]];
+                prop_assert_eq!(place, std::array::from_fn(|k| low[k] + step[k] as isize));
+                prop_assert_eq!(lattice.at(lattice.centre_at(place)), Some(index));
+            }
+            let mut rows = Vec::new();
+            lattice.rows(p, radius, |cells, _| rows.extend(cells));
+            prop_assert_eq!(rows, met.iter().map(|m| m.0).collect::<Vec<_>>());
         }
 
         #[test]

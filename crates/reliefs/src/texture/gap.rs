@@ -1,4 +1,5 @@
-//! The gap in a scan: where nothing lies over more of the plane than anywhere else.
+//! The gap in a scan: where nothing lies over more of the plane than anywhere else. Also what a scan leaves bare of its box: the corners of one that
+//! does not lie straight in it, or that is round.
 
 use arabesque_core::{Bounds, Budget, Error, Result, Vector};
 
@@ -8,28 +9,27 @@ use crate::distance::distances;
 const CELL: f64 = 1.0;
 /// How much wider than the others a gap is.
 const WIDER: f64 = 1.5;
+/// What is bare of a box is at least so wide, as a share of its shorter side: what is less is beside the texture proper anyway.
+const BARE: f64 = 0.02;
 /// Share of the empty places that are usual.
 const USUAL: f64 = 0.9;
 /// Cells at most.
 const MOST: f64 = 16e6;
 
-/// The cells of a gap.
-#[derive(Clone, Debug)]
-pub(crate) struct Gap {
-    origin: [f64; 2],
+/// How far places are from all points.
+struct Empty {
     cell: f64,
     width: usize,
     height: usize,
-    is_gap: Vec<bool>,
-    /// Cells of the gap below and left of each corner.
-    sums: Vec<u32>,
-    /// The smallest box around the gap.
-    pub(crate) bounds: [[f64; 2]; 2],
+    /// For each cell the distance from the nearest that holds a point, in cells; beyond the box all do.
+    far: Vec<f64>,
+    /// How far the middle of the widest empty place is, and that of a wide one of those that are usual.
+    widest: f64,
+    usual: f64,
 }
 
-impl Gap {
-    /// Looks for gaps that are wider than what is usual between the points.
-    pub(crate) fn find(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Self> {
+impl Empty {
+    fn new(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Self> {
         let size = all.size();
         let cell = (CELL * spacing).max((size[0] * size[1] / MOST).sqrt());
         let (width, height) = ((size[0] / cell) as usize + 1, (size[1] / cell) as usize + 1);
@@ -55,6 +55,74 @@ impl Gap {
         // With few empty places the widest is usual only if another one is as wide.
         let usual = if tops.len() < 10 { 1.5 } else { usual.max(1.5) };
         let widest = tops.last().copied().unwrap_or(0.0);
+        Ok(Self { cell, width, height, far, widest, usual })
+    }
+}
+
+/// The cells within the convex hull of those that hold a point.
+fn hull(empty: &Empty) -> Vec<bool> {
+    let Empty { width, height, far, .. } = empty;
+    let ends = |x: usize| {
+        let is_there = |y: &usize| far[y * width + x] == 0.0;
+        Some(((0..*height).find(is_there)? as f64, (0..*height).rfind(is_there)? as f64))
+    };
+    let columns: Vec<(f64, f64, f64)> = (0..*width).filter_map(|x| ends(x).map(|(a, b)| (x as f64, a, b))).collect();
+    let low = lower_hull(columns.iter().map(|c| [c.0, c.1]));
+    let high = lower_hull(columns.iter().map(|c| [c.0, -c.2]));
+    let mut is_within = vec![false; width * height];
+    for x in 0..*width {
+        let (Some(from), Some(to)) = (at(&low, x as f64), at(&high, x as f64)) else { continue };
+        let (from, to) = (from.floor().max(0.0) as usize, (-to).ceil() as usize);
+        (from..=to.min(height - 1)).for_each(|y| is_within[y * width + x] = true);
+    }
+    is_within
+}
+
+/// The lower side of the convex hull of points in the order of x.
+fn lower_hull(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let mut hull: Vec<[f64; 2]> = Vec::new();
+    for p in points {
+        while let [.., a, b] = hull[..] {
+            if (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0.0 {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push(p);
+    }
+    hull
+}
+
+/// The height of a line of points in the order of x, between its ends.
+fn at(line: &[[f64; 2]], x: f64) -> Option<f64> {
+    let k = line.partition_point(|p| p[0] < x);
+    let b = line.get(k)?;
+    if k == 0 || b[0] == x {
+        return (b[0] == x).then_some(b[1]);
+    }
+    let a = line[k - 1];
+    Some(a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]))
+}
+
+/// The cells of a gap.
+#[derive(Clone, Debug)]
+pub(crate) struct Gap {
+    origin: [f64; 2],
+    cell: f64,
+    width: usize,
+    height: usize,
+    is_gap: Vec<bool>,
+    /// Cells of the gap below and left of each corner.
+    sums: Vec<u32>,
+    /// The smallest box around the gap.
+    pub(crate) bounds: [[f64; 2]; 2],
+}
+
+impl Gap {
+    /// Looks for gaps that are wider than what is usual between the points.
+    pub(crate) fn find(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Self> {
+        let empty = Empty::new(points, all, spacing, budget)?;
+        let Empty { usual, widest, cell, .. } = empty;
         if widest < WIDER * usual + 1.0 {
             let problem = format!(
                 "no gap: the widest empty place is {:.4} wide, and {:.4} is usual",
@@ -63,16 +131,31 @@ impl Gap {
             );
             return Err(Error::input("the texture", problem, "leave fill_hole out, or give a scan with a gap"));
         }
+        Self::of(&empty, WIDER * usual, all, budget)
+    }
+
+    /// What of its box lies outside the convex hull of the points, if that is more than a border: a texture may be as open as it likes within.
+    pub(crate) fn bare(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Option<Self>> {
+        let mut empty = Empty::new(points, all, spacing, budget)?;
+        let is_within = hull(&empty);
+        empty.far = distances(&is_within, (empty.width, empty.height), true);
+        let widest = empty.far.iter().copied().fold(0.0, f64::max);
+        let least = BARE * empty.width.min(empty.height) as f64;
+        Ok(if widest < least.max(2.0) { None } else { Some(Self::of(&empty, 0.0, all, budget)?) })
+    }
+
+    /// The places that are farther from all points than `least`, with what is as near to them.
+    fn of(empty: &Empty, least: f64, all: &Bounds<3>, budget: &Budget) -> Result<Self> {
         let mut gap = Self {
             origin: [all.min[0], all.min[1]],
-            cell,
-            width,
-            height,
-            is_gap: vec![false; width * height],
+            cell: empty.cell,
+            width: empty.width,
+            height: empty.height,
+            is_gap: vec![false; empty.far.len()],
             sums: Vec::new(),
             bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
         };
-        gap.mark(&far, WIDER * usual, budget)?;
+        gap.mark(&empty.far, least, budget)?;
         Ok(gap)
     }
 
@@ -173,5 +256,20 @@ mod tests {
         let whole = find(&sheet(|_, _| false)).unwrap_err().to_string();
         assert!(whole.contains("no gap"), "{whole}");
         assert!(find(&sheet(|x, y| x as u32 % 4 == 1 && y as u32 % 4 == 1)).is_err());
+    }
+
+    #[test]
+    fn the_corners_of_a_sheet_that_is_turned_or_round_are_bare_and_holes_are_not() {
+        let holes = |x: f64, y: f64| x as u32 % 4 == 1 && y as u32 % 4 == 1;
+        let bay = |x: f64, y: f64| holes(x, y) || (x - 25.0).hypot(y) < 9.0;
+        let bare = |points: &[Vector<3>]| {
+            Gap::bare(points, &Bounds::around(points.iter().copied()), 1.0, &Budget::default()).unwrap()
+        };
+        assert!(bare(&sheet(|_, _| false)).is_none() && bare(&sheet(bay)).is_none());
+        let turned = bare(&sheet(|x, y| (x - 24.5).abs() + (y - 24.5).abs() > 24.0 || holes(x, y))).unwrap();
+        let round = bare(&sheet(|x, y| (x - 24.5).hypot(y - 24.5) > 24.0)).unwrap();
+        for (x, y, is_bare) in [(2.0, 2.0, true), (46.0, 3.0, true), (24.0, 24.0, false), (24.0, 4.0, false)] {
+            assert_eq!((turned.contains(x, y), round.contains(x, y)), (is_bare, is_bare), "{x} {y}");
+        }
     }
 }

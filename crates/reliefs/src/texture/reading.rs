@@ -1,6 +1,6 @@
 //! What is checked of the points of a texture, and made of them before it is understood.
 
-use arabesque_core::{Budget, Error, PointSet, Result, Vector, Warning};
+use arabesque_core::{Bounds, Budget, Error, PointSet, Result, Vector, Warning};
 use arabesque_surface::{OrientedPoints, estimated_normals};
 
 use crate::{params::Plane, texture::axes::Axes};
@@ -76,14 +76,28 @@ pub(super) fn told(share: f64) -> Result<Option<Warning>> {
     Ok((share > TOLD).then(|| Warning::new(message(), advice)))
 }
 
-/// The axis across the plane.
-pub(super) fn axes(points: &PointSet<3>, plane: Plane, warnings: &mut Vec<Warning>) -> Result<Axes> {
-    let size = points.bounds().size();
+/// The axis across the plane, and how the texture leans from it. Where the plane or its box are given, it is taken as it lies.
+pub(super) fn axes(
+    points: &PointSet<3>,
+    (plane, has_box, has_gap): (Plane, bool, bool),
+    warnings: &mut Vec<Warning>,
+) -> Result<Axes> {
     let thinnest = Axes::of(points, Plane::Auto).across_axis();
     let axes = Axes::of(points, plane);
+    let level = axes.levelled(&points.positions);
     let axis = axes.across_axis();
-    let flat = axes.lie(size);
     let name = ["x", "y", "z"][axis];
+    let is_taken = plane == Plane::Auto && !has_box;
+    if level != axes && !has_gap {
+        let leans = format!("the texture leans by {:.1} degrees from the plane across {name}", level.lean());
+        warnings.push(if is_taken {
+            Warning::new(format!("{leans}: laid flat"), format!("give --plane {name} if it is to be taken as it lies"))
+        } else {
+            Warning::new(leans, "leave --plane and --box out if it is to be laid flat, or turn it before")
+        });
+    }
+    let axes = if is_taken { level } else { axes };
+    let flat = Bounds::around(points.positions.iter().map(|&p| axes.level(p))).size();
     if flat[0].min(flat[1]) <= COLLAPSED * flat[2] || flat[0].min(flat[1]) <= 0.0 {
         return Err(fail(
             format!("the points have no extent across {name}"),

@@ -29,6 +29,8 @@ const ROWS: f64 = 10.0;
 const NODES: usize = 4_000_000;
 /// Places that are enough to choose from beside a gap.
 const ENOUGH: usize = 12;
+/// How much smaller patches become at most where parts of the box are bare.
+const SMALLEST: f64 = 0.5;
 /// Share of a patch that overlaps the next: least, and most.
 const OVERLAP: (f64, f64) = (0.1, 0.2);
 /// The same at most of a sheet that is high.
@@ -81,6 +83,8 @@ pub(crate) struct Texture {
     pub(crate) pieces: Pieces,
     /// The gap, where there is one to be filled.
     pub(crate) gap: Option<Gap>,
+    /// What of its box is bare, so that no patch is taken from there.
+    bare: Option<Gap>,
     pub(crate) warnings: Vec<Warning>,
     _held: Held,
 }
@@ -95,11 +99,11 @@ impl Texture {
     ) -> Result<Self> {
         let mut warnings = Vec::new();
         let scattered = checked(points, budget)?;
-        let axes = axes(scattered, params.plane, &mut warnings)?;
+        let axes = axes(scattered, (params.plane, bounds.is_some(), has_gap), &mut warnings)?;
         let set = oriented(scattered, budget, &mut warnings)?;
         let held = budget.hold("the texture", set.len() * 160)?;
-        let positions: Vec<_> = set.positions.iter().map(|&p| axes.lie(p)).collect();
-        let normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.lie(n)).collect();
+        let positions: Vec<_> = set.positions.iter().map(|&p| axes.level(p)).collect();
+        let normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.level(n)).collect();
         let spacing = spacing_of(&positions, budget)?;
         if !(spacing.is_finite() && spacing > 0.0) {
             return Err(fail("most points lie in one place", "give points that are spread over a surface"));
@@ -147,11 +151,14 @@ impl Texture {
             places: Vec::new(),
             pieces: Pieces::default(),
             gap: None,
+            bare: None,
             warnings,
             _held: held,
         };
         if has_gap {
             texture.gap = Some(Gap::find(texture.points.positions(), &all, spacing, budget)?);
+        } else if bounds.is_none() {
+            texture.bare = Gap::bare(texture.points.positions(), &all, spacing, budget)?;
         }
         let given = bounds.map(|b| Bounds::around([axes.lie(b.min), axes.lie(b.max)]));
         texture.settle(&all, given, params)?;
@@ -171,7 +178,7 @@ impl Texture {
         Ok(if wants { Some(Searcher::new(&self.field, budget)?) } else { None })
     }
 
-    /// Settles the patch: the usual one, or a smaller one where there is a gap.
+    /// Settles the patch: the usual one, or a smaller one where there is a gap, or where much of the box is bare.
     fn settle(&mut self, all: &Bounds<3>, given: Option<Bounds<3>>, params: &ReliefParams) -> Result<()> {
         let mut shrink = 1.0;
         loop {
@@ -181,11 +188,20 @@ impl Texture {
             }
             // Beside a gap there may be room for smaller patches only.
             let side = self.patch_side();
-            let is_least = params.patch.is_some() || 0.85 * side < 10.0 * self.lattice.cell;
-            if is_least && self.places.len() >= ENOUGH {
+            let (is_given, cell) = (params.patch.is_some(), self.lattice.cell);
+            if (is_given || 0.85 * side < 10.0 * cell) && self.places.len() >= ENOUGH {
                 break;
             }
-            if params.patch.is_some() || 0.85 * side < 6.0 * self.lattice.cell {
+            if is_given || 0.85 * side < 6.0 * cell || self.bare.is_some() && shrink < SMALLEST {
+                if self.bare.take().is_some() {
+                    let message = "parts of its box are bare, and beside them there is no room for patches";
+                    self.warnings.push(Warning::new(
+                        message,
+                        "say with --box which part of it is the texture, or give a smaller --patch",
+                    ));
+                    shrink = 1.0;
+                    continue;
+                }
                 return Err(fail(
                     format!("beside the gap there is no room for patches of {side:.4}"),
                     "give a smaller patch, or a larger scan",
@@ -295,7 +311,7 @@ impl Texture {
 
     /// Leaves out the places whose patches meet the gap; whether enough are left.
     fn beside_gap(&mut self) -> bool {
-        let Some(gap) = &self.gap else { return true };
+        let Some(gap) = self.gap.as_ref().or(self.bare.as_ref()) else { return true };
         let side = self.patch_side();
         let is_whole = |place: &[u32; 2]| {
             let corner = self.corner(*place);
@@ -304,7 +320,8 @@ impl Texture {
         let places: Vec<_> = self.places.iter().filter(|p| is_whole(p)).copied().collect();
         self.places = places;
         // There has to be a place for every way in which what repeats may meet the gap.
-        let repeats = self.repetition.length.map_or(0.0, |length| 1.5 * length * length);
+        let is_gap = self.gap.is_some();
+        let repeats = self.repetition.length.filter(|_| is_gap).map_or(0.0, |length| 1.5 * length * length);
         self.places.len() >= ENOUGH.max(repeats as usize)
     }
 

@@ -9,3 +9,4 @@ mod variation;
 pub use clusters::clusters;
 pub use estimate::{EstimatedNormals, estimated_normals, spacing_of};
 pub use points::{Foot, OrientedPoints};
+pub use variation::thinnest_direction;

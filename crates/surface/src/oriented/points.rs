@@ -46,7 +46,7 @@ impl OrientedPoints {
     pub fn new(positions: Vec<Vector<3>>, normals: Vec<Vector<3>>, radius: f64, budget: &Budget) -> Result<Self> {
         let held = budget.hold("points of a surface", positions.len() * 130)?;
         budget.spend(positions.len() as u64 * 30)?;
-        let grid = Grid::new(&positions, 0.5 * radius);
+        let grid = Grid::new(&positions, 0.75 * radius);
         let packed = grid.order().iter().map(|&i| (positions[i as usize], normals[i as usize])).collect();
         Ok(Self { positions, normals, radius, grid, packed, _held: held })
     }

@@ -11,6 +11,11 @@ pub(super) fn variation(points: &[Vector<3>]) -> f64 {
     if sum > 0.0 { least / sum } else { 0.0 }
 }
 
+/// The direction along which points spread least, of length 1: across their plane, where they lie near one.
+pub fn thinnest_direction(points: &[Vector<3>]) -> Vector<3> {
+    eigen(covariance(points.iter().copied()).1)[0].1
+}
+
 /// Mean and covariance, as xx, xy, xz, yy, yz, zz.
 pub(super) fn covariance(points: impl Iterator<Item = Vector<3>> + Clone) -> (Vector<3>, [f64; 6]) {
     let (count, sum) = points.clone().fold((0.0, Vector::ZERO), |(n, sum), p| (n + 1.0, sum + p));

@@ -9,15 +9,15 @@ use arabesque_io::{
     svg::{self, Dashes, Drawing, Fragment, Job, LargeFills, Layer, PALETTE, Page, Parts, ReadOptions, Reason, Unit},
     table::csv::{self, Points},
 };
-use arabesque_patterns::{Regular, regular, repeat::Extent};
+use arabesque_patterns::{Known, regular, repeat::Extent};
 
 use crate::recipe::{Input, Reading};
 
 /// An exemplar as it was read.
 #[derive(Clone, Debug)]
 pub enum LoadedExemplar {
-    /// An SVG drawing, and how it repeats, where that was looked for and found.
-    Drawing(Box<Drawing>, Option<Arc<Regular>>),
+    /// An SVG drawing, and what was found out of how it repeats.
+    Drawing(Box<Drawing>, Known),
     /// Points of the plane.
     Points(Exemplar<2>),
     /// Points or curves of space, and what was noticed while reading.
@@ -79,8 +79,8 @@ impl LoadedExemplar {
 }
 
 /// Reads a drawing as what can be continued best, and how it repeats, where that is found out on the way.
-fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
-    let (drawing, known) = read_parts(text, options.clone(), budget)?;
+fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Known)> {
+    let (drawing, mut known) = read_parts(text, options.clone(), budget)?;
     if has_recurring_parts(&drawing) {
         // What a repeat keeps in place needs not be put together.
         let apart = read_parts(text, ReadOptions { parts: Parts::Apart, ..options.clone() }, budget);
@@ -91,24 +91,24 @@ fn read_drawing(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Dr
         }
     }
     // What hangs together over the cell of a repeat is cut by the frame here and runs through it there.
-    if let Some(found) = &known
+    if let Some(found) = known.repeat()
         && found.lost() > 0
         && has(&drawing, &[Reason::Piece, Reason::Fill])
         && drawing.exemplar.period.is_none()
         && let as_page = (ReadOptions { tiling: svg::Tiling::Page, ..options.clone() })
-        && let Some((alike, Some(other))) = areas_alike(text, &as_page, budget)?
-        && other.lost() < found.lost()
+        && let Some((alike, other)) = areas_alike(text, &as_page, budget)?
+        && other.repeat().is_some_and(|other| other.lost() < found.lost())
     {
-        return Ok((alike, Some(other)));
+        return Ok((alike, other));
     }
     // Elements that repeat, or are strewn over one period, are better kept apart.
-    if known.is_none()
-        && drawing.exemplar.period.is_none()
-        && has(&drawing, &[Reason::Piece])
-        && regular(&drawing.exemplar, budget)?.is_none()
-        && let Some(alike) = areas_alike(text, &options, budget)?
-    {
-        return Ok(alike);
+    if known.repeat().is_none() && drawing.exemplar.period.is_none() && has(&drawing, &[Reason::Piece]) {
+        known = Known::Found(known.or_find(&drawing.exemplar, budget)?);
+        if known.repeat().is_none()
+            && let Some(alike) = areas_alike(text, &options, budget)?
+        {
+            return Ok(alike);
+        }
     }
     Ok((drawing, known))
 }
@@ -129,54 +129,52 @@ pub(crate) fn repeats(drawing: &Drawing, budget: &Budget) -> Result<bool> {
 }
 
 /// Reads a drawing with its loose parts as the options say.
-fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
+fn read_parts(text: &str, options: ReadOptions, budget: &Budget) -> Result<(Drawing, Known)> {
     let (drawing, mut known) = match options.tiling {
         svg::Tiling::Auto => page_or_period(text, &options, budget)?,
-        _ => (svg::read_exemplar(text, &options)?, None),
+        _ => (svg::read_exemplar(text, &options)?, Known::Unasked),
     };
     let is_dashed = drawing.strokes.iter().flatten().any(|stroke| !stroke.dashes.is_empty());
-    if known.is_none() && (!drawing.exemplar.areas.is_empty() || is_dashed && options.large_fills == LargeFills::Areas)
-    {
-        known = regular(&drawing.exemplar, budget)?;
+    if !drawing.exemplar.areas.is_empty() || is_dashed && options.large_fills == LargeFills::Areas {
+        known = Known::Found(known.or_find(&drawing.exemplar, budget)?);
     }
     let is_shifted = drawing.strokes.iter().flatten().any(|stroke| stroke.dash_offset != 0.0);
-    if known.is_none() && is_shifted && options.large_fills == LargeFills::Areas {
+    if known.repeat().is_none() && is_shifted && options.large_fills == LargeFills::Areas {
         // Lines that repeat but for where their dashes begin are taken for lines alike.
         let shifted = ReadOptions { dashes: Dashes::Shifted, ..options.clone() };
         let other = svg::read_exemplar(text, &shifted)?;
-        known = regular(&other.exemplar, budget)?;
-        if known.is_some() {
-            return Ok((other, known));
+        if let Some(found) = regular(&other.exemplar, budget)? {
+            return Ok((other, Known::Found(Some(found))));
         }
     }
-    if is_dashed && known.is_some() {
+    if is_dashed && known.repeat().is_some() {
         // Where the dashes repeat too, each has its place.
         let apart = ReadOptions { dashes: Dashes::Apart, ..options.clone() };
         if let Ok(dashes) = svg::read_exemplar(text, &apart)
             && let Some(found) = regular(&dashes.exemplar, budget)?
         {
-            return Ok((dashes, Some(found)));
+            return Ok((dashes, Known::Found(Some(found))));
         }
     }
     let is_asked = options.tiling != svg::Tiling::Auto || shown(&drawing) > SMALL;
-    if known.is_none()
+    if known.repeat().is_none()
         && is_asked
         && has(&drawing, &THROUGH)
         && let Some(alike) = areas_alike(text, &options, budget)?
     {
         return Ok(alike);
     }
-    if drawing.exemplar.areas.is_empty() || known.is_some() {
+    if drawing.exemplar.areas.is_empty() || known.repeat().is_some() {
         return Ok((drawing, known));
     }
     // Without a repeat, lines are all that can be made of areas.
     let options = ReadOptions { large_fills: LargeFills::Lines, ..options };
-    Ok((svg::read_exemplar(text, &options)?, None))
+    Ok((svg::read_exemplar(text, &options)?, Known::Unasked))
 }
 
 /// A drawing whose fills repeat once all that are painted like those at the frame are areas: contour lines turned into
 /// outlines, of which some close in the frame and lie in one another.
-fn areas_alike(text: &str, options: &ReadOptions, budget: &Budget) -> Result<Option<(Drawing, Option<Arc<Regular>>)>> {
+fn areas_alike(text: &str, options: &ReadOptions, budget: &Budget) -> Result<Option<(Drawing, Known)>> {
     if options.large_fills != LargeFills::Areas {
         return Ok(None);
     }
@@ -185,7 +183,7 @@ fn areas_alike(text: &str, options: &ReadOptions, budget: &Budget) -> Result<Opt
     if other.exemplar.areas.is_empty() {
         return Ok(None);
     }
-    Ok(regular(&other.exemplar, budget)?.map(|found| (other, Some(found))))
+    Ok(regular(&other.exemplar, budget)?.map(|found| (other, Known::Found(Some(found)))))
 }
 
 /// Why fills that run through the frame are taken for what they are.
@@ -197,7 +195,7 @@ const FEW: usize = 6;
 const SMALL: usize = 1000;
 
 /// Reads a drawing of which nobody says whether it is a page or one period of a pattern, with its repeat where that was looked for.
-fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<(Drawing, Option<Arc<Regular>>)> {
+fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<(Drawing, Known)> {
     let read = |tiling| svg::read_exemplar(text, &ReadOptions { tiling, ..options.clone() });
     let (page, period) = match read(svg::Tiling::Auto) {
         Ok(drawing) if drawing.exemplar.period.is_some() => (read(svg::Tiling::Page), Some(drawing)),
@@ -205,15 +203,15 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
     };
     // What is too large, or was stopped, is not read once more.
     if matches!(page, Err(Error::Limit { .. } | Error::Stopped { .. })) {
-        return page.map(|page| (page, None));
+        return page.map(|page| (page, Known::Unasked));
     }
-    let found = match &page {
-        Ok(page) if period.is_some() || shown(page) <= SMALL => regular(&page.exemplar, budget)?,
-        _ => None,
+    let known = match &page {
+        Ok(page) if period.is_some() || shown(page) <= SMALL => Known::Found(regular(&page.exemplar, budget)?),
+        _ => Known::Unasked,
     };
     // A page that repeats by itself is no period, even if what its edges cut fits together by chance.
-    if found.is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
-        return page.map(|page| (page, found));
+    if known.repeat().is_some() || matches!(&page, Ok(page) if shown(page) > SMALL && period.is_none()) {
+        return page.map(|page| (page, known));
     }
     let as_page = ReadOptions { tiling: svg::Tiling::Page, ..options.clone() };
     if matches!(&page, Ok(page) if has(page, &THROUGH))
@@ -222,12 +220,12 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
         return Ok(alike);
     }
     if options.method != svg::Method::Auto && period.is_none() {
-        return page.map(|page| (page, None));
+        return page.map(|page| (page, known));
     }
     // Strokes fit too easily to be taken for a period where they show enough as they are.
     let is_net = matches!(&page, Ok(page) if !page.exemplar.curves.is_empty());
     if let Some(period) = period.filter(|_| !is_net) {
-        return Ok((period, None));
+        return Ok((period, Known::Unasked));
     }
     // Areas need a repeat, and a handful of elements shows no arrangement.
     let is_enough = |Exemplar { elements, curves, areas, .. }: &Exemplar<2>| {
@@ -237,9 +235,14 @@ fn page_or_period(text: &str, options: &ReadOptions, budget: &Budget) -> Result<
         Ok(page) if is_enough(&page.exemplar) => svg::Tiling::Likely,
         _ => svg::Tiling::Possible,
     };
+    // To find out that there is no period takes far less than to read the drawing once more.
+    let as_period = ReadOptions { tiling, ..options.clone() };
+    if page.is_ok() && !matches!(svg::shows_period(text, &as_period), Ok(true)) {
+        return page.map(|page| (page, known));
+    }
     match read(tiling) {
-        Ok(period) if period.exemplar.period.is_some() => Ok((period, None)),
-        _ => page.map(|page| (page, None)),
+        Ok(period) if period.exemplar.period.is_some() => Ok((period, Known::Unasked)),
+        _ => page.map(|page| (page, known)),
     }
 }
 
@@ -392,7 +395,9 @@ mod tests {
             areas_alike(text, &options, &budget).unwrap()
         };
         let (drawing, found) = alike(&rings_in_rings(|_| 0.0)).unwrap();
-        assert!(drawing.exemplar.elements.is_empty() && found.is_some_and(|f| f.repeat().extent == Extent::Plane));
+        assert!(
+            drawing.exemplar.elements.is_empty() && found.repeat().is_some_and(|f| f.repeat().extent == Extent::Plane)
+        );
         let cell = regular(&drawing.exemplar, &budget).unwrap().unwrap().repeat().lattice.cell();
         assert!((cell - 2500.0).abs() < 1.0, "{cell}");
         assert!(alike(&rings_in_rings(|row| [0.0, 13.0, 4.0, 21.0][row])).is_none(), "rows that slip");
@@ -430,7 +435,9 @@ mod tests {
         let page = svg::read_exemplar(&text, &alone).unwrap();
         let found = regular(&page.exemplar, &Budget::default()).unwrap().unwrap();
         assert!(found.lost() > 0, "prongs that the sides of the page have cut off their bands");
-        let Ok(LoadedExemplar::Drawing(drawing, Some(found))) = read("t.svg", text.as_bytes()) else { panic!() };
+        let Ok(LoadedExemplar::Drawing(drawing, Known::Found(Some(found)))) = read("t.svg", text.as_bytes()) else {
+            panic!()
+        };
         assert_eq!((drawing.exemplar.elements.len(), found.lost()), (0, 0));
         let ink: f64 = drawing.exemplar.areas.iter().map(|area| area.outline.area()).sum();
         assert!((ink - covered).abs() < 0.5, "{ink} {covered}");

@@ -12,6 +12,7 @@ use arabesque_io::{
     raster::png::{RenderJob, Resolution, write_png},
     svg::{Drawing, Understood, write_survey},
 };
+use arabesque_patterns::Known;
 use serde::Serialize;
 
 use crate::{
@@ -199,7 +200,7 @@ pub(crate) fn of_other(
         }
         LoadedExemplar::Points(exemplar) => {
             let drawing = points_as_drawing(&exemplar);
-            let repeat = RepeatReport::of(&exemplar, None, &budget)?;
+            let repeat = RepeatReport::of(&exemplar, Known::Unasked, &budget)?;
             Report { drawing: Some(drawing), repeat, ..describe(input, "points", &exemplar) }
         }
         LoadedExemplar::Space(exemplar, warnings) => {

@@ -80,5 +80,5 @@ pub use orderly::Orderly;
 pub use params::{Attributes, Clearance, Deform, Existence, Initialisation, Matching, Params, Repeats, Search, Switch};
 #[doc(hidden)]
 pub use prepared::Compiled;
-pub use prepared::{Prepared, regular};
+pub use prepared::{Known, Prepared, regular};
 pub use regular::Regular;

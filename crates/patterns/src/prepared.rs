@@ -114,6 +114,37 @@ pub fn regular(exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Arc<Reg
     Ok(Regular::new(exemplar, budget)?.map(Arc::new))
 }
 
+/// What is known already of how an exemplar repeats.
+#[derive(Clone, Debug, Default)]
+pub enum Known {
+    /// Nothing: nobody looked.
+    #[default]
+    Unasked,
+    /// What [`regular`] found: how it repeats, or that it is irregular.
+    Found(Option<Arc<Regular>>),
+}
+
+impl Known {
+    /// How it repeats, where that is known.
+    pub fn repeat(&self) -> Option<&Arc<Regular>> {
+        match self {
+            Self::Unasked | Self::Found(None) => None,
+            Self::Found(Some(found)) => Some(found),
+        }
+    }
+
+    /// How `exemplar`, of which this is known, repeats: as found, or by looking for it.
+    ///
+    /// # Errors
+    /// As [`regular`].
+    pub fn or_find(self, exemplar: &Exemplar<2>, budget: &Budget) -> Result<Option<Arc<Regular>>> {
+        match self {
+            Self::Unasked => regular(exemplar, budget),
+            Self::Found(found) => Ok(found),
+        }
+    }
+}
+
 /// The engine for one dimension, compiled in this crate: left generic, it would be compiled again in every crate that calls it.
 #[doc(hidden)]
 pub trait Compiled<const D: usize>: Dimension<D> {
@@ -121,12 +152,7 @@ pub trait Compiled<const D: usize>: Dimension<D> {
     ///
     /// # Errors
     /// As there.
-    fn analysed(
-        exemplar: &Arc<Exemplar<D>>,
-        params: &Params,
-        known: Option<Arc<Regular>>,
-        budget: &Budget,
-    ) -> Result<Prepared<D>>;
+    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, known: Known, budget: &Budget) -> Result<Prepared<D>>;
 
     /// See [`Prepared::run`].
     ///
@@ -141,7 +167,7 @@ macro_rules! compiled {
             fn analysed(
                 exemplar: &Arc<Exemplar<$dimension>>,
                 params: &Params,
-                known: Option<Arc<Regular>>,
+                known: Known,
                 budget: &Budget,
             ) -> Result<Prepared<$dimension>> {
                 Prepared::analysed(exemplar, params, known, budget)
@@ -177,17 +203,17 @@ where
     where
         Vector<D>: Compiled<D>,
     {
-        Vector::<D>::analysed(&exemplar.into(), params, None, budget)
+        Vector::<D>::analysed(&exemplar.into(), params, Known::Unasked, budget)
     }
 
-    /// The same for an exemplar whose repeat is known already.
+    /// The same for an exemplar of which it is known already how it repeats, or that it does not.
     ///
     /// # Errors
     /// As [`Prepared::new`].
     pub fn knowing(
         exemplar: impl Into<Arc<Exemplar<D>>>,
         params: &Params,
-        known: Option<Arc<Regular>>,
+        known: Known,
         budget: &Budget,
     ) -> Result<Self>
     where
@@ -196,12 +222,7 @@ where
         Vector::<D>::analysed(&exemplar.into(), params, known, budget)
     }
 
-    fn analysed(
-        exemplar: &Arc<Exemplar<D>>,
-        params: &Params,
-        known: Option<Arc<Regular>>,
-        budget: &Budget,
-    ) -> Result<Self> {
+    fn analysed(exemplar: &Arc<Exemplar<D>>, params: &Params, known: Known, budget: &Budget) -> Result<Self> {
         params.check()?;
         let has_lines = !exemplar.curves.is_empty() || !exemplar.areas.is_empty();
         if !has_lines {
@@ -218,8 +239,7 @@ where
             ));
         }
         let regular = match Vector::<D>::plane_exemplar(exemplar) {
-            Some(_) if params.repeat != Repeats::Off && known.is_some() => known,
-            Some(plane) if params.repeat != Repeats::Off => self::regular(plane, budget)?,
+            Some(plane) if params.repeat != Repeats::Off => known.or_find(plane, budget)?,
             _ => None,
         };
         if regular.is_none() && params.repeat == Repeats::Exact {
@@ -296,8 +316,8 @@ where
     fn layers_of(&self, found: &apart::Layer, budget: &Budget) -> Result<Option<Layers<D>>> {
         let not = |kept: &[bool]| kept.iter().map(|kept| !kept).collect::<Vec<bool>>();
         let numbers = |kept: &[bool]| (0..kept.len()).filter(|&k| kept[k]).collect::<Vec<usize>>();
-        let layer = |elements: &[bool], curves: &[bool], known: Option<Arc<Regular>>| -> Result<Layer<D>> {
-            let params = if known.is_some() {
+        let layer = |elements: &[bool], curves: &[bool], known: Known| -> Result<Layer<D>> {
+            let params = if known.repeat().is_some() {
                 self.params.clone()
             } else {
                 Params { repeat: Repeats::Off, ..self.params.clone() }
@@ -306,8 +326,8 @@ where
             let prepared = Self::analysed(&part, &params, known, budget)?;
             Ok(Layer { prepared, elements: numbers(elements), curves: numbers(curves) })
         };
-        let regular = layer(&found.elements, &found.curves, Some(Arc::clone(&found.regular)))?;
-        let rest = match layer(&not(&found.elements), &not(&found.curves), None) {
+        let regular = layer(&found.elements, &found.curves, Known::Found(Some(Arc::clone(&found.regular))))?;
+        let rest = match layer(&not(&found.elements), &not(&found.curves), Known::Unasked) {
             Ok(rest) => rest,
             Err(Error::Input { .. } | Error::Parameter { .. }) => return Ok(None),
             Err(error) => return Err(error),

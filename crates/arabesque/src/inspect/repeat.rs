@@ -1,11 +1,9 @@
 //! What an exemplar repeats by, for people and machines.
 
-use std::sync::Arc;
-
 use arabesque_core::{Budget, Exemplar, Matrix, Result, Vector};
 use arabesque_io::svg::{Drawing, RepeatCell, with_cell};
 use arabesque_patterns::{
-    Regular, regular,
+    Known,
     repeat::{Explains, Extent, symmetry},
 };
 use serde::Serialize;
@@ -44,12 +42,9 @@ pub struct RepeatReport {
 
 impl RepeatReport {
     /// The repeat of an exemplar; `None` where it is treated as irregular.
-    pub(super) fn of(exemplar: &Exemplar<2>, known: Option<Arc<Regular>>, budget: &Budget) -> Result<Option<Self>> {
+    pub(super) fn of(exemplar: &Exemplar<2>, known: Known, budget: &Budget) -> Result<Option<Self>> {
         // What can be neither repeated nor read is told by a run, not here.
-        let found = match known {
-            Some(known) => Some(known),
-            None => regular(exemplar, budget)?,
-        };
+        let found = known.or_find(exemplar, budget)?;
         let Some(repeat) = found.as_ref().map(|found| found.repeat()) else { return Ok(None) };
         let group = symmetry(exemplar, repeat, budget)?;
         let extent = match repeat.extent {

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use arabesque_core::{Error, OrientationField, Request, Result, ScalarField, Watch};
 use arabesque_io::svg::LargeFills;
-use arabesque_patterns::{Params, Prepared as Engine, Regular, Repeats};
+use arabesque_patterns::{Known, Params, Prepared as Engine, Repeats};
 
 use crate::{
     artwork::Artwork,
@@ -47,7 +47,7 @@ pub(crate) fn prepare(fill: &Fill, preparation: &mut Preparation<'_>) -> Result<
     let loaded = LoadedExemplar::read(input, &bytes, reading, preparation.files.budget())?;
     let (drawing, points, known) = match loaded {
         LoadedExemplar::Drawing(drawing, known) => (*drawing, None, known),
-        LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar)), None),
+        LoadedExemplar::Points(exemplar) => (points_as_drawing(&exemplar), Some(Arc::new(exemplar)), Known::Unasked),
         LoadedExemplar::Space(..) => {
             return Err(Error::input(
                 input.name(),
@@ -69,7 +69,7 @@ fn large_fills(params: &Params) -> LargeFills {
 pub(crate) fn prepare_region(redo: &Redo, preparation: &mut Preparation<'_>) -> Result<Plane> {
     let params = redo.params.engine_params()?;
     let exemplar = redo::read(redo, large_fills(&params), preparation)?;
-    Plane::new(exemplar, &params, None, preparation)
+    Plane::new(exemplar, &params, Known::Unasked, preparation)
 }
 
 impl Plane {
@@ -77,7 +77,7 @@ impl Plane {
     fn new(
         mut exemplar: PlaneExemplar,
         params: &Params,
-        known: Option<Arc<Regular>>,
+        known: Known,
         preparation: &mut Preparation<'_>,
     ) -> Result<Self> {
         preparation.warnings.append(&mut exemplar.drawing.warnings);

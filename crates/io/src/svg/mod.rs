@@ -33,7 +33,7 @@ pub use placed::{Mark, SvgElements, check_paint, with_marks};
 pub use read::{
     document::Document,
     domain::read_shape,
-    exemplar::read_exemplar,
+    exemplar::{read_exemplar, shows_period},
     flow::read_flow,
     guides::{Lines, read_lines},
     host_document::read_host_document,

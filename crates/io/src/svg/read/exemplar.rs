@@ -55,6 +55,17 @@ pub fn read_exemplar(text: &str, options: &ReadOptions) -> Result<Drawing> {
     Document::with(text, options, |document| document.exemplar())
 }
 
+/// Whether the exemplar in a text would be read as a period of a pattern: [`read_exemplar`] with these options gives it one.
+///
+/// # Errors
+/// As for [`Document::with`], and [`Error::Input`] where the text has to be a period and is none.
+pub fn shows_period(text: &str, options: &ReadOptions) -> Result<bool> {
+    Document::with(text, options, |document| {
+        let Opened { source, root, page, .. } = document.open()?;
+        Ok(document.periods(&source, &root, page.as_ref())?.is_some())
+    })
+}
+
 impl Document<'_> {
     /// Reads an exemplar, and the rest of the job where the file holds one.
     ///

@@ -14,10 +14,11 @@
 //! | error and slopes | `energy` | [Roveri 2015 §4.2, §4.3, eqs 2 to 6] |
 //! | leave out what has settled | `solve::part`, `solve::round` | |
 //! | local step: match | `solve::matching` | [Roveri 2015 §5.1] |
-//! | global step: places, then attributes | `solve::merging`, `solve::newton`, `solve::attributes` | [Roveri 2015 §5.1] |
+//! | global step: places, then attributes | `solve::merging`, `solve::newton`, `solve::apart`, `solve::attributes` | [Roveri 2015 §5.1] |
 //! | sampling control | `solve::sampling` | [Roveri 2015 §5.1, eq. 7] |
 //! | the multi-scale loop | `run` | [Roveri 2015, algorithm 1] |
-//! | cut, number parts and elements | `output::finish` | |
+//! | number parts | `output::parts` | [Keuper 2015] |
+//! | cut, number elements | `output::finish` | |
 //! | stroke by stroke | `brush` | [Roveri 2015 §6.2] |
 //!
 //! | symbol | identifier |
@@ -51,6 +52,10 @@
 //!   what is there already fits and the exemplar goes on for long. Rigid elements fill the gaps that are left. Points are then shaken as
 //!   unevenly as those of the exemplar lie, so that the output is not the exemplar to the point. Whole repetitions fill a closed curve where the
 //!   exemplar repeats regularly.
+//! - Parts that touch are told apart in the result by all that neighbours tell: how pairs that lie and face alike are in the exemplar, and how the
+//!   windows see them.
+//! - Rigid elements that stand on something continuous keep about the clear space of the exemplar: what is missing adds to the error (`solve::apart`), and
+//!   bare places are filled at first.
 //!
 //! Not handled: a σ for each point, and a window for each kind of point.
 

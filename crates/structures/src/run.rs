@@ -11,7 +11,8 @@ use crate::{
     },
     layout::Layout,
     output::{
-        finish::{Finished, finish, groups, kept, sources},
+        finish::{Finished, finish, kept, sources},
+        parts::groups,
         state::Output,
     },
     params::Start,

@@ -21,12 +21,18 @@ const CLOSE: f64 = 0.1;
 const KEPT: f64 = 0.85;
 /// The same for those that are there already: what is nearer cuts into each other.
 const CUTTING: f64 = 0.7;
+/// The same for those of mixtures, which make way for each other.
+const CROWDED: f64 = 0.35;
 /// No element needs more of it than this to look apart, in spacings.
 const APART: f64 = 0.5;
 
 /// How near elements come to one another: for each of them, the distance from its points to those of the nearest other one, the smallest first.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Gaps(Vec<f64>);
+pub(crate) struct Gaps {
+    sorted: Vec<f64>,
+    /// Whether elements stand on something continuous, which says where they are and how many.
+    mixed: bool,
+}
 
 impl Gaps {
     /// Of these elements, whose points lie `spacing` apart.
@@ -58,27 +64,43 @@ impl Gaps {
         };
         let mut gaps: Vec<f64> = (0..bodies.len()).map(nearest).collect();
         gaps.sort_by(f64::total_cmp);
-        Self(gaps)
+        Self { sorted: gaps, mixed: body_of.contains(&LOOSE) }
     }
 
     /// How near an element that is put in a gap may come to others: only a few of the exemplar come nearer. `None` for fewer than two elements.
     pub(crate) fn usual(&self) -> Option<f64> {
-        self.0.get((CLOSE * self.0.len() as f64) as usize).copied()
+        self.sorted.get((CLOSE * self.sorted.len() as f64) as usize).copied()
     }
 
     /// How near an element may come to others: about as near as any in the exemplar, of which the fewer there are the less they tell.
     pub(crate) fn least(&self, spacing: f64) -> f64 {
-        (KEPT * self.shortest()).max((APART * spacing).min(self.usual().unwrap_or(f64::INFINITY)))
+        let kept = if self.mixed { CUTTING } else { KEPT };
+        (kept * self.shortest()).max((APART * spacing).min(self.usual().unwrap_or(f64::INFINITY)))
+    }
+
+    /// The same for what is laid out at first.
+    pub(crate) fn laid(&self, spacing: f64) -> f64 {
+        if self.mixed { self.cutting() } else { self.least(spacing) }
     }
 
     /// Elements that are nearer than this cut into each other.
     pub(crate) fn cutting(&self) -> f64 {
-        CUTTING * self.shortest()
+        self.shortest() * if self.mixed { CROWDED } else { CUTTING }
+    }
+
+    /// Whether elements stand on something continuous.
+    pub(crate) fn is_mixed(&self) -> bool {
+        self.mixed
+    }
+
+    /// How far elements of mixtures are to stay from each other.
+    pub(crate) fn clear(&self) -> Option<f64> {
+        self.mixed.then(|| KEPT * self.shortest())
     }
 
     fn shortest(&self) -> f64 {
-        let n = self.0.len() as f64;
-        self.0.first().map_or(0.0, |gap| gap * n / (n + 1.0))
+        let n = self.sorted.len() as f64;
+        self.sorted.first().map_or(0.0, |gap| gap * n / (n + 1.0))
     }
 }
 

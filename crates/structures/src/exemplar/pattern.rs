@@ -100,12 +100,7 @@ impl<const D: usize> Pattern<D> {
         let range = |c: usize| weights.iter().fold((f32::MAX, f32::MIN), |(a, b), w| (w[c].min(a), w[c].max(b)));
         let ranges = std::array::from_fn(range);
         let index = GridIndex::new(&points.positions, 2.0 * spacing, &Domain::Box(all));
-        // Of mixtures, the continuous part says where elements are.
-        let gaps = if body_of.contains(&LOOSE) {
-            Gaps::default()
-        } else {
-            Gaps::new((&points.positions, &index), (&bodies, &body_of), spacing, all.size().norm())
-        };
+        let gaps = Gaps::new((&points.positions, &index), (&bodies, &body_of), spacing, all.size().norm());
         Ok(Self {
             channels,
             weights,

@@ -1,27 +1,14 @@
 //! From the optimised points to what is given back: cut at the border, with attributes, parts and elements numbered.
 
-use arabesque_core::{Budget, DisjointSets, Error, PointSet, Result, Vector};
+use arabesque_core::{Error, PointSet, Result, Vector};
 use rayon::prelude::*;
 
 use super::state::Output;
 use crate::{
-    each::each,
-    energy::{
-        level::{Level, Matches, Near},
-        links::neighbours,
-    },
+    energy::level::{Level, Matches, Near},
     exemplar::{bodies::LOOSE, pattern::Pattern},
     request::PlacedElement,
 };
-
-/// Work for each site that a point is seen by.
-const SEEN: u64 = 60;
-
-/// Points of one part are no farther apart than this, in spacings.
-const PART: f64 = 2.2;
-
-/// Share of the votes by which neighbours must be of one part: a part holds together at many places, and one false link joins two.
-const SURE: f64 = 0.6;
 
 /// For each point the point of the exemplar it stands for: the nearest to where most of its windows see it.
 pub(crate) fn sources<const D: usize>(
@@ -43,14 +30,17 @@ pub(crate) fn sources<const D: usize>(
         .collect()
 }
 
-/// For point `i` each site that sees it, with how much, and the nearest point of the exemplar there.
-fn seen<const D: usize>(
+/// A site that sees a point, how much it does, and the nearest point of the exemplar there.
+pub(super) type Seen = (u32, f64, usize);
+
+/// For point `i` each site that sees it, in their order.
+pub(super) fn seen<const D: usize>(
     level: &Level<'_, D>,
     output: &Output<D>,
     near: &Near,
     matches: &Matches<D>,
     i: usize,
-) -> Vec<(u32, f64, usize)> {
+) -> Vec<Seen> {
     let pattern = level.pattern;
     let mut all = Vec::new();
     for &q in near.windows.of(i) {
@@ -73,69 +63,6 @@ fn seen<const D: usize>(
         }
     }
     all
-}
-
-/// The parts of the exemplar: points near each other that have one number.
-fn parts_of_exemplar<const D: usize>(pattern: &Pattern<D>, groups: &[i32]) -> Vec<usize> {
-    let mut sets = DisjointSets::new(groups.len());
-    for (i, &p) in pattern.points.positions.iter().enumerate() {
-        pattern.index.within(p, PART * pattern.spacing, |j, _| {
-            if groups[i] == groups[j] {
-                sets.join(i, j);
-            }
-        });
-    }
-    (0..groups.len()).map(|i| sets.of(i)).collect()
-}
-
-/// Numbers of the parts of the output. Neighbours are of one part when most windows see them as of one part of the exemplar.
-pub(crate) fn groups<const D: usize>(
-    level: &Level<'_, D>,
-    output: &Output<D>,
-    near: &Near,
-    matches: &Matches<D>,
-    budget: &Budget,
-) -> Result<Option<Vec<i32>>> {
-    let pattern = level.pattern;
-    let Some(own) = &pattern.points.groups else { return Ok(None) };
-    let parts = parts_of_exemplar(pattern, own);
-    let n = output.places.len();
-    let cost = |i: usize| near.windows.of(i).len() as u64 * SEEN;
-    let seen = each(n, budget, cost, |i| seen(level, output, near, matches, i))?;
-    let mut sets = DisjointSets::new(n);
-    let scale = |i: usize| {
-        let sites = near.windows.of(i);
-        sites.iter().map(|&q| level.sites[q as usize].scale).sum::<f64>() / sites.len().max(1) as f64
-    };
-    let scales: Vec<f64> = (0..n).map(scale).collect();
-    let largest = scales.iter().copied().fold(0.0, f64::max);
-    let around = neighbours(&output.places, PART * pattern.spacing * largest, level.domain, budget)?;
-    for i in 0..n {
-        for &j in around.of(i) {
-            let j = j as usize;
-            let far = level.domain.offset(output.places[i], output.places[j]).norm();
-            if j < i || far > PART * pattern.spacing * scales[i] {
-                continue;
-            }
-            let (mut votes, mut all, mut b) = (0.0, 0.0, seen[j].iter().peekable());
-            for (q, weight, source) in &seen[i] {
-                while b.next_if(|s| s.0 < *q).is_some() {}
-                if let Some((_, other, theirs)) = b.next_if(|s| s.0 == *q) {
-                    all += weight * other;
-                    votes += weight * other * if parts[*source] == parts[*theirs] { 1.0 } else { -1.0 };
-                }
-            }
-            if votes > SURE * all && all > 0.0 {
-                sets.join(i, j);
-            }
-        }
-    }
-    let mut number = std::collections::HashMap::new();
-    let mut numbered = |i: usize| {
-        let next = number.len() as i32;
-        *number.entry(sets.of(i)).or_insert(next)
-    };
-    Ok(Some((0..n).map(&mut numbered).collect()))
 }
 
 /// What is given back of an output: the points for which `inside` says yes, elements as their middle does.

@@ -4,6 +4,7 @@
 
 use arabesque_core::{Budget, Result, Similarity, Vector};
 
+use super::apart::Crowd;
 use super::newton::{System, direction, spin};
 use crate::{
     energy::level::{Level, Matches, Near, Pull},
@@ -18,7 +19,7 @@ const HALVINGS: usize = 5;
 
 /// What a step came to.
 pub(crate) struct Moved {
-    /// `T` after it; never higher than before.
+    /// `T` after it; never higher than before, but where elements had to make way for each other.
     pub(crate) energy: f64,
     /// Mean movement of a point.
     pub(crate) distance: f64,
@@ -33,7 +34,9 @@ pub(crate) fn merge<const D: usize>(
     (pulls, before): (&mut Vec<Pull<D>>, f64),
     budget: &Budget,
 ) -> Result<Moved> {
-    let system = System::new(level, output, near, pulls, budget)?;
+    let crowd = Crowd::new(level, output, pulls, budget)?;
+    let whole = before + crowd.energy();
+    let system = System::new(level, output, near, (pulls, &crowd), budget)?;
     let mut moves = direction(output, near, &system, budget)?;
     for (i, v) in moves.iter_mut().enumerate() {
         let most = FARTHEST * level.tables.kernel.sigma * pulls[i].scale;
@@ -47,7 +50,7 @@ pub(crate) fn merge<const D: usize>(
         let moved = moved(level.pattern, output, &moves, step);
         let next = level.pulls(&moved, near, matches, budget)?;
         let energy = level.energy(&moved, near, &next, matches, budget)?;
-        if energy < before {
+        if energy + Crowd::new(level, &moved, &next, budget)?.energy() < whole {
             let distance = moves.iter().map(|v| v.norm()).sum::<f64>() * step / moves.len().max(1) as f64;
             *output = moved;
             *pulls = next;

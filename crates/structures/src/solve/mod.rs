@@ -1,5 +1,6 @@
 //! The local-global solver [Roveri 2015 §5.1, algorithm 1].
 
+pub(crate) mod apart;
 pub(crate) mod attributes;
 pub(crate) mod matching;
 pub(crate) mod merging;

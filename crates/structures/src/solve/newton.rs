@@ -6,6 +6,7 @@
 use arabesque_core::{Budget, Matrix, Result, Vector};
 use rayon::prelude::*;
 
+use super::apart::Crowd;
 use crate::{
     energy::{
         exp::exp,
@@ -46,7 +47,7 @@ impl<const D: usize> System<D> {
         level: &Level<'_, D>,
         output: &Output<D>,
         near: &Near,
-        pulls: &[Pull<D>],
+        (pulls, crowd): (&[Pull<D>], &Crowd),
         budget: &Budget,
     ) -> Result<Self> {
         let sigma = level.tables.kernel.sigma;
@@ -88,12 +89,16 @@ impl<const D: usize> System<D> {
             slopes.extend(more);
             entries.extend(rows);
         }
-        let diagonal = (0..output.places.len())
+        let mut diagonal: Vec<f64> = (0..output.places.len())
             .map(|i| {
                 let width = sigma * pulls[i].scale;
                 2.0 * f64::from(inner(&output.weights[i], &output.weights[i])) * pulls[i].cover / (width * width)
             })
             .collect();
+        crowd.slopes(level, output, |i, slope, curve| {
+            slopes[i] += if output.is_kept(i) { Vector::ZERO } else { slope };
+            diagonal[i] += curve;
+        });
         Ok(Self { slopes, diagonal, entries })
     }
 

@@ -162,8 +162,7 @@ fn remove<const D: usize>(
         heads.into_iter().map(|i| (worth(&change, i), i)).filter(|c| c.0 < -WORTH).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut gone = vec![0.0; n];
-    // Of mixtures, the continuous part says how many there are.
-    let own = if level.pattern.gaps.usual().is_some() { own_share(level) } else { 0.0 };
+    let own = own_share(level);
     for (_, i) in order {
         if removed[i] {
             continue;
@@ -196,8 +195,13 @@ fn remove<const D: usize>(
 }
 
 /// What one of the points of an element adds to the windows that hold it, in the mean as far as they do, as a share of what windows hold. An
-/// element sees itself: where there are as many as usual, there are more by that around each of them.
+/// element sees itself: where there are as many as usual, there are more by that around each of them. Of mixtures, the continuous part says how many
+/// there are.
 fn own_share<const D: usize>(level: &Level<'_, D>) -> f64 {
+    let gaps = &level.pattern.gaps;
+    if gaps.usual().is_none() || gaps.is_mixed() {
+        return 0.0;
+    }
     0.5_f64.powf(0.5 * level.pattern.repeats() as f64) / level.usual.max(1e-12)
 }
 

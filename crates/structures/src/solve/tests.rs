@@ -5,6 +5,7 @@ use std::{f64::consts::TAU, sync::Arc};
 use arabesque_core::{Bounds, Budget, Domain, Fields, Matrix, PointSet, Similarity, Vector};
 
 use super::{
+    apart::Crowd,
     attributes::attributes,
     matching::{Round, anywhere, matching, room},
     merging::merge,
@@ -23,7 +24,7 @@ use crate::{
     layout::Layout,
     output::state::Output,
     params::Window,
-    start::noise::noise,
+    start::{gaps::fill, noise::noise},
 };
 
 fn wave() -> PointSet<2> {
@@ -130,7 +131,8 @@ fn slopes_are_those_of_finite_differences() {
         let budget = Budget::default();
         let near = level.near(&output, &budget).unwrap();
         let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
-        let slopes = System::new(level, &output, &near, &pulls, &budget).unwrap().slopes;
+        let crowd = Crowd::new(level, &output, &pulls, &budget).unwrap();
+        let slopes = System::new(level, &output, &near, (&pulls, &crowd), &budget).unwrap().slopes;
         let size = slopes.iter().map(|s| s.norm()).fold(0.0, f64::max);
         let h = 0.02 * level.pattern.spacing;
         let (mut off, mut count) = (0.0, 0.0);
@@ -214,5 +216,95 @@ fn a_turned_and_scaled_output_is_the_same_problem() {
         let turned = Level { sites: &sites, ..*level };
         let after = energy(&turned, &moved, &near, &matches);
         assert!((after - before).abs() < 1e-3 * before.abs(), "{after} {before}");
+    });
+}
+
+/// A plane of points 1 apart, and sixteen triangles on it, 1 above and 4 apart.
+fn studded() -> PointSet<3> {
+    let (mut positions, mut elements) = (Vec::new(), Vec::new());
+    for k in 0..256 {
+        positions.push(Vector([f64::from(k % 16), f64::from(k / 16), 0.0]));
+        elements.push(-1);
+    }
+    for k in 0..16 {
+        for corner in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]] {
+            positions.push(Vector([
+                f64::from(4 * (k % 4)) + 1.0 + corner[0],
+                f64::from(k - k % 4) + 1.0 + corner[1],
+                1.0,
+            ]));
+            elements.push(k);
+        }
+    }
+    PointSet { elements: Some(elements), ..PointSet::at(positions) }
+}
+
+/// Calls `check` with a level over the plane of points and triangles, and the step of its sites.
+fn mixed(check: impl FnOnce(&Level<'_, 3>, f64)) {
+    let budget = Budget::default();
+    let params = StructureParams { window: Some(4.0), ..StructureParams::default() };
+    let prepared = Prepared::new(Arc::new(studded()), &params, &budget).unwrap();
+    let domain = Domain::Box(Bounds::new(Vector::ZERO, Vector([16.0, 16.0, 1.0])));
+    let layout = Layout::new(&prepared, &Flat::new(domain, Fields::default()), &budget).unwrap();
+    let pattern = &*prepared.pattern;
+    let kernel = Kernel::new(prepared.sigma, prepared.window, pattern.base, Window::Gaussian);
+    let tables = Tables::new(pattern, kernel, &prepared.fields, &budget).unwrap();
+    let level = Level {
+        pattern,
+        tables: &tables,
+        sites: &layout.sites,
+        open: layout.sites.len(),
+        index: &layout.index,
+        domain: &layout.domain,
+        shifts: &[],
+        usual: 30.0,
+    };
+    check(&level, layout.plan.step);
+}
+
+#[test]
+fn elements_on_a_base_make_way_for_each_other_along_it() {
+    mixed(|level, _| {
+        let budget = Budget::default();
+        let matches = Matches::new(level, vec![Vector([7.5, 7.5, 0.0]); level.sites.len()]);
+        let at = |x: f64| Similarity { translation: Vector([x, 6.0, 0.2]), ..Similarity::identity() };
+        let crowd = |x: f64| {
+            let mut output = Output::default();
+            output.add_body(level.pattern, 0, at(6.0));
+            output.add_body(level.pattern, 0, at(x));
+            let near = level.near(&output, &budget).unwrap();
+            let pulls = level.pulls(&output, &near, &matches, &budget).unwrap();
+            (Crowd::new(level, &output, &pulls, &budget).unwrap(), output)
+        };
+        // The triangles of the exemplar are 3 apart; here the clear space is 0.8.
+        let (near, output) = crowd(7.8);
+        let mut pushed = Vec::new();
+        near.slopes(level, &output, |i, slope, curve| pushed.push((output.body_of[i], slope, curve)));
+        assert!(near.energy() > 0.0 && pushed.len() == 2);
+        assert!(
+            pushed[0].1[0] > 0.0 && pushed[0].1 == -pushed[1].1 && pushed.iter().all(|p| p.1[2] == 0.0 && p.2 > 0.0)
+        );
+        assert!(near.energy() > crowd(8.3).0.energy());
+        assert_eq!(crowd(9.9).0.energy(), 0.0);
+    });
+}
+
+#[test]
+fn bare_places_of_a_base_get_elements_that_stand_on_it_as_high_as_in_the_exemplar() {
+    mixed(|level, step| {
+        let budget = Budget::default();
+        let mut output = Output::default();
+        for i in 0..256 {
+            let raised = level.pattern.points.positions[i] + Vector([0.0, 0.0, 0.5]);
+            output.add(raised, level.pattern.weights[i]);
+        }
+        fill(level, &mut output, step, 1, &budget).unwrap();
+        assert!((8..=30).contains(&output.bodies.len()), "{}", output.bodies.len());
+        for i in 256..output.places.len() {
+            assert!((output.places[i][2] - 1.5).abs() < 1e-9, "{:?}", output.places[i]);
+            let apart =
+                |j: usize| output.body_of[j] == output.body_of[i] || (output.places[j] - output.places[i]).norm() > 2.9;
+            assert!((256..output.places.len()).all(apart));
+        }
     });
 }

@@ -476,7 +476,7 @@ impl<const D: usize> Growth<'_, '_, D> {
     fn lay_body(&mut self, source: usize, pose: Similarity<D>) {
         let pattern = self.level.pattern;
         let members = &pattern.bodies[source].members;
-        let radius = pattern.gaps.least(pattern.spacing) * pose.scale;
+        let radius = pattern.gaps.laid(pattern.spacing) * pose.scale;
         let blocked = members.iter().any(|&i| {
             let mut blocked = false;
             self.cells.within(self.level.domain, pose.apply(pattern.points.positions[i]), radius, |n, _| {

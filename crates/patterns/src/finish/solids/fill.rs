@@ -16,7 +16,7 @@ const SOURCES: usize = 6;
 const STEPS: usize = 8;
 /// A candidate fits where it lies too deep by no more than this share of its inner radius: at first where there is room; then what is around makes room
 /// for it, so that a dense heap gets what it is short of; at last where there is room again.
-const FITS: [f64; 4] = [0.08, 0.5, 0.3, 0.08];
+const FITS: [f64; 4] = [0.08, 0.3, 0.2, 0.08];
 
 impl<const D: usize> Things<'_, D> {
     /// Puts elements of the classes that are short where there is most room.

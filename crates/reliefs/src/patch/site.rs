@@ -156,8 +156,10 @@ impl Site<'_> {
         if places.is_empty() {
             places.clone_from(&texture.places);
         }
-        let floor = FLOOR * (overlap.nodes.len() * texture.field.planes.len()) as f64;
-        let tolerance = self.params.tolerance;
+        // What repeats strictly goes on in one way only, however little of that an overlap shows.
+        let latitude = texture.repetition.latitude();
+        let floor = latitude * FLOOR * (overlap.nodes.len() * texture.field.planes.len()) as f64;
+        let tolerance = latitude * self.params.tolerance;
         let found = best(
             &texture.field,
             texture.searcher.as_ref(),

@@ -10,6 +10,14 @@ const LEAST: usize = 60;
 /// A plane that is narrower than this share of the height is none.
 const COLLAPSED: f64 = 1e-9;
 
+/// Side of the columns in which sheets are told from what has two sides, and how high what is in one of a sheet may be, in spacings.
+const COLUMN: f64 = 1.5;
+const THICK: f64 = 4.0;
+/// Share of the points of a sheet that lie in such columns.
+const SHEET: f64 = 0.75;
+/// Normals fall by more than this where the side of a sheet is wrong; the others stand at its steep places.
+const DOWN: f64 = 0.3;
+
 /// Share of neighbouring normals that may face opposite ways, and from which on it is told.
 const REFUSED: f64 = 0.1;
 const TOLD: f64 = 0.01;
@@ -43,6 +51,50 @@ pub(super) fn oriented(points: &PointSet<3>, budget: &Budget, warnings: &mut Vec
         points = points.selected(&kept);
     }
     Ok(points)
+}
+
+/// Turns estimated normals up where the texture is one sheet over its plane, whose upper side is meant: nothing tells the sides of a scan apart, and the
+/// sides of parts beyond a crack less still. What has something that faces up above it is the lower side of something, and stays. Points and normals are in
+/// the plane; returns how many were turned.
+pub(super) fn face_up(
+    positions: &[Vector<3>],
+    normals: &mut [Vector<3>],
+    spacing: f64,
+    budget: &Budget,
+) -> Result<usize> {
+    let all = Bounds::around(positions.iter().copied());
+    let cell = (COLUMN * spacing).max((all.size()[0] * all.size()[1] / positions.len() as f64).sqrt());
+    let width = (all.size()[0] / cell) as usize + 1;
+    let height = (all.size()[1] / cell) as usize + 1;
+    budget.spend((width * height + positions.len() * 20) as u64)?;
+    let column = |p: Vector<3>| {
+        let [x, y] = [0, 1].map(|k| ((p[k] - all.min[k]) / cell) as usize);
+        y.min(height - 1) * width + x.min(width - 1)
+    };
+    // Lowest and highest of each column, and the highest that faces up.
+    let mut columns = vec![(f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY); width * height];
+    for (p, n) in positions.iter().zip(&*normals) {
+        let (low, high, up) = &mut columns[column(*p)];
+        (*low, *high) = (low.min(p[2]), high.max(p[2]));
+        if n[2] > 0.0 {
+            *up = up.max(p[2]);
+        }
+    }
+    let is_flat = |p: &&Vector<3>| {
+        let (low, high, _) = columns[column(**p)];
+        high - low <= THICK * spacing
+    };
+    if (positions.iter().filter(is_flat).count() as f64) < SHEET * positions.len() as f64 {
+        return Ok(0);
+    }
+    let mut turned = 0;
+    for (p, n) in positions.iter().zip(normals) {
+        if n[2] < -DOWN && columns[column(*p)].2 < p[2] + 0.5 * spacing {
+            *n = -*n;
+            turned += 1;
+        }
+    }
+    Ok(turned)
 }
 
 /// What of normals contradicts itself: the share of points whose neighbours on the same sheet face the other way.
@@ -99,6 +151,9 @@ pub(super) fn axes(
     let axes = if is_taken { level } else { axes };
     let flat = Bounds::around(points.positions.iter().map(|&p| axes.level(p))).size();
     if flat[0].min(flat[1]) <= COLLAPSED * flat[2] || flat[0].min(flat[1]) <= 0.0 {
+        if plane == Plane::Auto {
+            return Err(fail("all points lie on one line or at one place", "give points of a surface"));
+        }
         return Err(fail(
             format!("the points have no extent across {name}"),
             "choose another plane with --plane, or leave it out",
@@ -131,4 +186,32 @@ pub(super) fn checked<'a>(points: &'a PointSet<3>, budget: &Budget) -> Result<&'
     budget.within("points of the texture", points.len(), ("nodes", budget.limits().nodes))?;
     budget.spend(points.len() as u64 * 50)?;
     Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of points one apart, at a height and facing a way by place.
+    fn square(of: impl Fn(f64, f64) -> (f64, f64)) -> (Vec<Vector<3>>, Vec<Vector<3>>) {
+        let at = |k: u32| {
+            let (x, y) = (f64::from(k % 30), f64::from(k / 30));
+            let (height, up) = of(x, y);
+            (Vector([x, y, height]), Vector([0.0, 0.0, up]))
+        };
+        (0..900).map(at).unzip()
+    }
+
+    #[test]
+    fn a_sheet_whose_sides_are_guessed_wrong_faces_up_and_the_lower_side_of_a_cloth_stays() {
+        let budget = Budget::default();
+        let (at, mut normals) = square(|x, y| ((0.4 * x).sin(), if x < 12.0 && y > 9.0 { -1.0 } else { 1.0 }));
+        assert_eq!(face_up(&at, &mut normals, 1.0, &budget).unwrap(), 12 * 20);
+        assert!(normals.iter().all(|n| n[2] > 0.0));
+        let (at, mut normals) = square(|_, _| (0.0, -1.0));
+        assert_eq!(face_up(&at, &mut normals, 1.0, &budget).unwrap(), 900);
+        let (low, high) = (square(|_, _| (0.0, -1.0)), square(|_, _| (2.0, 1.0)));
+        let (at, mut normals) = ([low.0, high.0].concat(), [low.1, high.1].concat());
+        assert_eq!(face_up(&at, &mut normals, 1.0, &budget).unwrap(), 0);
+    }
 }

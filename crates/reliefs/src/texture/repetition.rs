@@ -25,6 +25,16 @@ pub(crate) struct Repetition {
     pub(crate) strength: f64,
 }
 
+/// Up to the one strength all patches that fit are alike to choose from; from the other on only what fits best is.
+const LATITUDE: (f64, f64) = (0.7, 0.9);
+
+impl Repetition {
+    /// How much worse than the best a patch may be, from 0 for what repeats strictly to 1 for what does not.
+    pub(crate) fn latitude(&self) -> f64 {
+        ((LATITUDE.1 - self.strength) / (LATITUDE.1 - LATITUDE.0)).clamp(0.0, 1.0)
+    }
+}
+
 /// The shortest of the shifts at which the field is most like itself.
 pub(crate) fn repetition(field: &Field, budget: &Budget) -> Result<Repetition> {
     let skip = field.width.max(field.height).div_ceil(COLUMNS).max(1);

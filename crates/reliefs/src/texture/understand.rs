@@ -12,7 +12,7 @@ use crate::{
         axes::Axes,
         gap::Gap,
         pieces::Pieces,
-        reading::{axes, checked, contradictions, fail, oriented, told},
+        reading::{axes, checked, contradictions, face_up, fail, oriented, told},
         repetition::{Repetition, repetition},
     },
 };
@@ -103,10 +103,13 @@ impl Texture {
         let set = oriented(scattered, budget, &mut warnings)?;
         let held = budget.hold("the texture", set.len() * 160)?;
         let positions: Vec<_> = set.positions.iter().map(|&p| axes.level(p)).collect();
-        let normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.level(n)).collect();
+        let mut normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.level(n)).collect();
         let spacing = spacing_of(&positions, budget)?;
         if !(spacing.is_finite() && spacing > 0.0) {
             return Err(fail("most points lie in one place", "give points that are spread over a surface"));
+        }
+        if scattered.normals.is_none() {
+            face_up(&positions, &mut normals, spacing, budget)?;
         }
         let radius = RADIUS * spacing;
         let all = Bounds::around(positions.iter().copied());

@@ -44,7 +44,8 @@
 //!   surface would be blended. Where a patch has few points and no edges they are up to a fifth, so that crests go on; the border is narrower too.
 //! - A height field that is high for a patch is blended along upright rays, in overlaps up to three tenths wide: its parts climb to one another.
 //! - The last patches of a tile are the best of more that are tried, since they meet others on both sides.
-//! - Of the places within ε the one is taken of which least was seen so far, and least nearby; chance has a say. ε is larger for it.
+//! - Of the places within ε the one is taken of which least was seen so far, and least nearby; chance has a say. ε is larger for it, but for what repeats
+//!   strictly it is none: an overlap shows too little of how that goes on.
 //! - Of the nodes of an overlap at most 160 are compared, by turns as on a chessboard and in every second row and column.
 //! - Patches are laid along diagonals of the rows, whose patches do not see one another, so that they are made at once.
 //! - A patch is bent beside the overlap alone, and is as in the texture a third of its side on. Where it has many points, the spline is worked

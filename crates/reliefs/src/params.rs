@@ -37,7 +37,7 @@ params! {
         overlap "overlap": Option<f64> = None, in 0.05..=0.5, auto "a tenth, and up to a fifth where a patch has few points and no edges";
         /// Width of the border that is pasted beyond a patch, as a share of the patch.
         border "border": Option<f64> = None, in 0.0..=0.5, auto "0.15, and up to a quarter where a patch has few points";
-        /// Of patches that are worse than the best by at most this share of its difference the one of which least was seen so far is taken.
+        /// Of patches that are worse than the best by at most this share of its difference the one of which least was seen so far is taken; by less where the texture repeats strictly.
         tolerance "tolerance": f64 = 0.25, in 0.0..=10.0;
         /// How far a patch is kept from the one that goes on from its neighbours in the texture, as a share of the patch; 0 allows copies.
         apart "apart": f64 = 0.25, in 0.0..=1.0;

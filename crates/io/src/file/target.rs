@@ -233,7 +233,12 @@ fn resolved(path: &str) -> io::Result<(PathBuf, Kind)> {
                 return Err(io::Error::new(ErrorKind::NotFound, text));
             }
             // The folder is where it is, whatever becomes of links to it in the meantime.
-            let folder = fs::canonicalize(part::folder(given))?;
+            let folder = fs::canonicalize(part::folder(given)).map_err(|e| match e.kind() {
+                ErrorKind::NotFound => {
+                    io::Error::new(ErrorKind::NotFound, "its folder is not there; create it, or name another place")
+                }
+                _ => e,
+            })?;
             return Ok((folder.join(given.file_name().unwrap_or_default()), Kind::Replaced));
         }
         Err(e) => return Err(e),

@@ -125,9 +125,9 @@ impl Gap {
         let Empty { usual, widest, cell, .. } = empty;
         if widest < WIDER * usual + 1.0 {
             let problem = format!(
-                "no gap: the widest empty place is {:.4} wide, and {:.4} is usual",
+                "no gap: the widest empty place is {:.4} wide, and a gap is wider than {:.4} here",
                 2.0 * widest * cell,
-                2.0 * usual * cell
+                2.0 * (WIDER * usual + 1.0) * cell
             );
             return Err(Error::input("the texture", problem, "leave fill_hole out, or give a scan with a gap"));
         }

@@ -130,8 +130,9 @@ impl Relief {
             return Err(Error::parameter("tile", "true", "an extent, which is the size of the tile"));
         }
         if self.on.is_none() && (self.direction.is_some() || self.scale.is_some()) {
-            let name = if self.scale.is_some() { "scale" } else { "direction" };
-            return Err(Error::parameter(name, "given", "a mesh with on, or nothing"));
+            let given = self.scale.map(|scale| ("scale", scale.to_string()));
+            let (name, shown) = given.unwrap_or_else(|| ("direction", "given".to_owned()));
+            return Err(Error::parameter(name, shown, "nothing without a mesh to lie on (--on MESH)"));
         }
         if self.on.is_some() && self.height_field {
             return Err(Error::parameter("height_field", "true", "a relief in the plane, not on a mesh"));

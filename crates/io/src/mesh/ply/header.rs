@@ -63,6 +63,9 @@ pub(super) struct Header {
 /// [`Error::Input`] with the line for what is no header; those of the budget.
 pub(super) fn read_header(name: &str, bytes: &[u8], budget: &Budget) -> Result<Header> {
     let mut lines = Lines::new(bytes);
+    if bytes.is_empty() {
+        return Err(Error::input(name, "an empty file", "give a PLY file"));
+    }
     if lines.next().is_none_or(|first| first.trim_end() != "ply") {
         return Err(Error::input(name, "a file that does not begin with the word ply", "give a PLY file"));
     }

@@ -14,9 +14,11 @@ const TRIES: usize = 40;
 const SOURCES: usize = 6;
 /// Steps by which a candidate moves to where it fits.
 const STEPS: usize = 8;
-/// A candidate fits where it lies too deep by no more than this share of its inner radius: at first where there is room; then what is around makes room
-/// for it, so that a dense heap gets what it is short of; at last where there is room again.
-const FITS: [f64; 4] = [0.08, 0.3, 0.2, 0.08];
+/// A candidate fits where it lies too deep by no more than this share of its inner radius. Where much is missing, what is around makes room for it in the
+/// earlier rounds, so that a dense heap gets what it is short of; where little is, that would only break its order.
+const FITS: [f64; 3] = [0.5, 0.3, 0.08];
+/// Share of the elements that have to be missing for that.
+const MUCH: f64 = 0.05;
 
 impl<const D: usize> Things<'_, D> {
     /// Puts elements of the classes that are short where there is most room.
@@ -29,7 +31,9 @@ impl<const D: usize> Things<'_, D> {
             return Ok(());
         }
         let mut random = Stream::new(self.extent.request().seed, PLACES, round);
-        let fits = FITS[(round as usize).min(FITS.len() - 1)];
+        let is_much = missing as f64 > MUCH * targets.iter().sum::<f64>();
+        let last = FITS.len() - 1;
+        let fits = FITS[if is_much { (round as usize).min(last) } else { last }];
         let mut roomy = self.roomy(TRIES * missing, &mut random, budget)?;
         roomy.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut short = short;

@@ -318,18 +318,25 @@ fn textures_may_stand_and_come_without_normals() {
     assert!(Prepared::new(&lying, None, &params, &Budget::default()).is_ok());
 }
 
+/// How far the scans below lean, in radians.
+const LEAN: f64 = 0.4;
+
+/// Turned about x.
+fn turned(v: Vector<3>, radians: f64) -> Vector<3> {
+    let (sin, cos) = radians.sin_cos();
+    Vector([v[0], cos * v[1] - sin * v[2], sin * v[1] + cos * v[2]])
+}
+
 #[test]
 fn scans_that_lean_lie_askew_or_are_round_are_laid_flat_without_their_corners() {
     let lying = bumps(6.0, |x, y| (x - 3.0).hypot(y - 3.0) < 2.9);
-    let (sin, cos) = 0.4_f64.sin_cos();
-    let lean = |v: Vector<3>| Vector([v[0], cos * v[1] - sin * v[2], sin * v[1] + cos * v[2]]);
     let leaning = PointSet {
-        positions: lying.positions.iter().map(|&p| lean(p)).collect(),
-        normals: lying.normals.as_ref().map(|n| n.iter().map(|&n| lean(n)).collect()),
+        positions: lying.positions.iter().map(|&p| turned(p, LEAN)).collect(),
+        normals: lying.normals.as_ref().map(|n| n.iter().map(|&n| turned(n, LEAN)).collect()),
         ..PointSet::default()
     };
     let engine = prepared(&leaning);
-    assert!((engine.axes().lean() - 0.4_f64.to_degrees()).abs() < 1.0, "{}", engine.axes().lean());
+    assert!((engine.axes().lean() - LEAN.to_degrees()).abs() < 1.0, "{}", engine.axes().lean());
     assert!(engine.warnings().iter().any(|w| w.message.contains("laid flat")), "{:?}", engine.warnings());
     let made = engine.run(&ReliefRequest::new(Ground::Plane([8.0, 6.0])), &mut Unobserved).unwrap();
     let gap = widest_gap(&made.points.positions, [0.2, 0.2], [7.8, 5.8]);
@@ -343,13 +350,10 @@ fn scans_that_lean_lie_askew_or_are_round_are_laid_flat_without_their_corners() 
 #[test]
 fn the_gap_of_a_scan_that_leans_is_filled_where_it_is() {
     let lying = bumps(6.0, |x, y| (x - 3.0).hypot(y - 3.0) > 0.7);
-    let (sin, cos) = 0.4_f64.sin_cos();
-    let lean = |v: Vector<3>| Vector([v[0], cos * v[1] - sin * v[2], sin * v[1] + cos * v[2]]);
-    let leaning = PointSet::at(lying.positions.iter().map(|&p| lean(p)).collect());
+    let leaning = PointSet::at(lying.positions.iter().map(|&p| turned(p, LEAN)).collect());
     let engine = Prepared::with_gap(&leaning, None, &ReliefParams::default(), &Budget::default()).unwrap();
     let made = engine.run(&ReliefRequest::new(Ground::Hole), &mut Unobserved).unwrap();
     // Across the plane in which it leans.
-    let level = |p: Vector<3>| Vector([p[0], cos * p[1] + sin * p[2], cos * p[2] - sin * p[1]]);
-    let flat: Vec<Vector<3>> = made.points.positions.iter().map(|&p| level(p)).collect();
+    let flat: Vec<Vector<3>> = made.points.positions.iter().map(|&p| turned(p, -LEAN)).collect();
     assert!(flat.iter().all(|p| p[2].abs() < 0.35) && widest_gap(&flat, [2.0, 2.0], [4.0, 4.0]) < 0.2);
 }

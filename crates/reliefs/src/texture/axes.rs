@@ -9,6 +9,8 @@ use crate::params::Plane;
 const LEANS: f64 = 0.7;
 /// Heights are told without so large a share of the points on both sides, which may lie anywhere.
 const STRAY: f64 = 0.02;
+/// Points that are enough to tell how a texture leans.
+const ENOUGH: usize = 50_000;
 
 /// How the axes of a file and those of the plane of the texture go together: the plane of all that follows is x, y.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +39,8 @@ impl Axes {
 
     /// The same, with the turn that lays a texture flat which leans, as scans do: whose plane of best fit makes it much lower than the axis does.
     pub(crate) fn levelled(self, points: &[Vector<3>]) -> Self {
-        let lying: Vec<Vector<3>> = points.iter().map(|&p| self.lie(p)).collect();
+        let step = points.len().div_ceil(ENOUGH).max(1);
+        let lying: Vec<Vector<3>> = points.iter().step_by(step).map(|&p| self.lie(p)).collect();
         let normal = thinnest_direction(&lying);
         let normal = if normal[2] < 0.0 { -normal } else { normal };
         let up = Vector([0.0, 0.0, 1.0]);

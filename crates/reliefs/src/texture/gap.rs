@@ -13,33 +13,62 @@ const WIDER: f64 = 1.5;
 const BARE: f64 = 0.02;
 /// Share of the empty places that are usual.
 const USUAL: f64 = 0.9;
-/// Cells at most.
+/// Cells at most, and for each point.
 const MOST: f64 = 16e6;
+const EACH: f64 = 16.0;
 
-/// How far places are from all points.
-struct Empty {
+/// The plane in cells, and which of them hold points.
+struct Cells {
     cell: f64,
     width: usize,
     height: usize,
-    /// For each cell the distance from the nearest that holds a point, in cells; beyond the box all do.
-    far: Vec<f64>,
-    /// How far the middle of the widest empty place is, and that of a wide one of those that are usual.
-    widest: f64,
-    usual: f64,
+    is_there: Vec<bool>,
 }
 
-impl Empty {
+impl Cells {
     fn new(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Self> {
-        let size = all.size();
-        let cell = (CELL * spacing).max((size[0] * size[1] / MOST).sqrt());
-        let (width, height) = ((size[0] / cell) as usize + 1, (size[1] / cell) as usize + 1);
+        let [across, down, _] = all.size().0;
+        // Where a few points lie far from all others the cells are larger.
+        let most = MOST.min(EACH * points.len() as f64);
+        let cell = (CELL * spacing).max((across * down / most).sqrt()).max(across.max(down) / most);
+        let (width, height) = ((across / cell) as usize + 1, (down / cell) as usize + 1);
         budget.spend((width * height * 60 + points.len() * 10) as u64)?;
         let mut is_there = vec![false; width * height];
         for p in points {
             let [x, y] = [0, 1].map(|k| ((p[k] - all.min[k]) / cell) as usize);
             is_there[y.min(height - 1) * width + x.min(width - 1)] = true;
         }
-        let far = distances(&is_there, (width, height), true);
+        Ok(Self { cell, width, height, is_there })
+    }
+
+    /// How far each cell is from the nearest of these, in cells; beyond the box all are.
+    fn far(&self, from: &[bool]) -> Vec<f64> {
+        distances(from, (self.width, self.height), true)
+    }
+
+    /// The cells within the convex hull of those that hold a point.
+    fn hull(&self) -> Vec<bool> {
+        let Self { width, height, is_there, .. } = self;
+        let ends = |x: usize| {
+            let holds = |y: &usize| is_there[y * width + x];
+            Some(((0..*height).find(holds)? as f64, (0..*height).rfind(holds)? as f64))
+        };
+        let columns: Vec<(f64, f64, f64)> =
+            (0..*width).filter_map(|x| ends(x).map(|(a, b)| (x as f64, a, b))).collect();
+        let low = lower_hull(columns.iter().map(|c| [c.0, c.1]));
+        let high = lower_hull(columns.iter().map(|c| [c.0, -c.2]));
+        let mut is_within = vec![false; width * height];
+        for x in 0..*width {
+            let (Some(from), Some(to)) = (at(&low, x as f64), at(&high, x as f64)) else { continue };
+            let (from, to) = (from.floor().max(0.0) as usize, (-to).ceil() as usize);
+            (from..=to.min(height - 1)).for_each(|y| is_within[y * width + x] = true);
+        }
+        is_within
+    }
+
+    /// How far the middle of a wide one of the empty places is that are usual, and that of the widest, from these distances.
+    fn usual_and_widest(&self, far: &[f64]) -> (f64, f64) {
+        let (width, height) = (self.width, self.height);
         let mut tops: Vec<f64> = Vec::new();
         let at = |x: usize, y: usize| far[y * width + x];
         for y in 1..height.saturating_sub(1) {
@@ -54,28 +83,8 @@ impl Empty {
         let usual = tops.get((tops.len() as f64 * USUAL) as usize).copied().unwrap_or(1.0);
         // With few empty places the widest is usual only if another one is as wide.
         let usual = if tops.len() < 10 { 1.5 } else { usual.max(1.5) };
-        let widest = tops.last().copied().unwrap_or(0.0);
-        Ok(Self { cell, width, height, far, widest, usual })
+        (usual, tops.last().copied().unwrap_or(0.0))
     }
-}
-
-/// The cells within the convex hull of those that hold a point.
-fn hull(empty: &Empty) -> Vec<bool> {
-    let Empty { width, height, far, .. } = empty;
-    let ends = |x: usize| {
-        let is_there = |y: &usize| far[y * width + x] == 0.0;
-        Some(((0..*height).find(is_there)? as f64, (0..*height).rfind(is_there)? as f64))
-    };
-    let columns: Vec<(f64, f64, f64)> = (0..*width).filter_map(|x| ends(x).map(|(a, b)| (x as f64, a, b))).collect();
-    let low = lower_hull(columns.iter().map(|c| [c.0, c.1]));
-    let high = lower_hull(columns.iter().map(|c| [c.0, -c.2]));
-    let mut is_within = vec![false; width * height];
-    for x in 0..*width {
-        let (Some(from), Some(to)) = (at(&low, x as f64), at(&high, x as f64)) else { continue };
-        let (from, to) = (from.floor().max(0.0) as usize, (-to).ceil() as usize);
-        (from..=to.min(height - 1)).for_each(|y| is_within[y * width + x] = true);
-    }
-    is_within
 }
 
 /// The lower side of the convex hull of points in the order of x.
@@ -121,41 +130,41 @@ pub(crate) struct Gap {
 impl Gap {
     /// Looks for gaps that are wider than what is usual between the points.
     pub(crate) fn find(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Self> {
-        let empty = Empty::new(points, all, spacing, budget)?;
-        let Empty { usual, widest, cell, .. } = empty;
+        let cells = Cells::new(points, all, spacing, budget)?;
+        let far = cells.far(&cells.is_there);
+        let (usual, widest) = cells.usual_and_widest(&far);
         if widest < WIDER * usual + 1.0 {
             let problem = format!(
                 "no gap: the widest empty place is {:.4} wide, and a gap is wider than {:.4} here",
-                2.0 * widest * cell,
-                2.0 * (WIDER * usual + 1.0) * cell
+                2.0 * widest * cells.cell,
+                2.0 * (WIDER * usual + 1.0) * cells.cell
             );
             return Err(Error::input("the texture", problem, "leave fill_hole out, or give a scan with a gap"));
         }
-        Self::of(&empty, WIDER * usual, all, budget)
+        Self::of(&cells, (&far, WIDER * usual), all, budget)
     }
 
     /// What of its box lies outside the convex hull of the points, if that is more than a border: a texture may be as open as it likes within.
     pub(crate) fn bare(points: &[Vector<3>], all: &Bounds<3>, spacing: f64, budget: &Budget) -> Result<Option<Self>> {
-        let mut empty = Empty::new(points, all, spacing, budget)?;
-        let is_within = hull(&empty);
-        empty.far = distances(&is_within, (empty.width, empty.height), true);
-        let widest = empty.far.iter().copied().fold(0.0, f64::max);
-        let least = BARE * empty.width.min(empty.height) as f64;
-        Ok(if widest < least.max(2.0) { None } else { Some(Self::of(&empty, 0.0, all, budget)?) })
+        let cells = Cells::new(points, all, spacing, budget)?;
+        let far = cells.far(&cells.hull());
+        let widest = far.iter().copied().fold(0.0, f64::max);
+        let least = BARE * cells.width.min(cells.height) as f64;
+        Ok(if widest < least.max(2.0) { None } else { Some(Self::of(&cells, (&far, 0.0), all, budget)?) })
     }
 
-    /// The places that are farther from all points than `least`, with what is as near to them.
-    fn of(empty: &Empty, least: f64, all: &Bounds<3>, budget: &Budget) -> Result<Self> {
+    /// The places that are farther away than `least`, with what is as near to them.
+    fn of(cells: &Cells, (far, least): (&[f64], f64), all: &Bounds<3>, budget: &Budget) -> Result<Self> {
         let mut gap = Self {
             origin: [all.min[0], all.min[1]],
-            cell: empty.cell,
-            width: empty.width,
-            height: empty.height,
-            is_gap: vec![false; empty.far.len()],
+            cell: cells.cell,
+            width: cells.width,
+            height: cells.height,
+            is_gap: vec![false; far.len()],
             sums: Vec::new(),
             bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
         };
-        gap.mark(&empty.far, least, budget)?;
+        gap.mark(far, least, budget)?;
         Ok(gap)
     }
 

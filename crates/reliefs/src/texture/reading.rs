@@ -53,19 +53,41 @@ pub(super) fn oriented(points: &PointSet<3>, budget: &Budget, warnings: &mut Vec
     Ok(points)
 }
 
-/// Turns estimated normals up where the texture is one sheet over its plane, whose upper side is meant: nothing tells the sides of a scan apart, and the
-/// sides of parts beyond a crack less still. What has something that faces up above it is the lower side of something, and stays. Points and normals are in
-/// the plane; returns how many were turned.
-pub(super) fn face_up(
+/// Points with their normals as a surface, and the share of the normals that contradict one another. Estimated ones face up where the texture is a sheet.
+pub(super) fn surface(
+    positions: Vec<Vector<3>>,
+    (normals, are_estimated): (Vec<Vector<3>>, bool),
+    (spacing, radius): (f64, f64),
+    budget: &Budget,
+) -> Result<(OrientedPoints, f64)> {
+    let facing = if are_estimated { face_up(&positions, &normals, spacing, budget)? } else { None };
+    let surface = |normals| -> Result<(OrientedPoints, f64)> {
+        let points = OrientedPoints::new(positions.clone(), normals, radius, budget)?;
+        let share = contradictions(&points, radius, budget)?;
+        Ok((points, share))
+    };
+    let found = surface(normals)?;
+    let Some(facing) = facing else { return Ok(found) };
+    // What is no sheet after all contradicts itself more when it faces up.
+    let other = surface(facing)?;
+    Ok(if other.1 <= found.1.max(TOLD) { other } else { found })
+}
+
+/// Normals that face up where the texture is one sheet over its plane, whose upper side is meant: nothing tells the sides of a scan apart, and the sides of
+/// parts beyond a crack less still. What has something that faces up above it is the lower side of something, and stays. Points and normals are in the
+/// plane; `None` where none is turned.
+fn face_up(
     positions: &[Vector<3>],
-    normals: &mut [Vector<3>],
+    normals: &[Vector<3>],
     spacing: f64,
     budget: &Budget,
-) -> Result<usize> {
+) -> Result<Option<Vec<Vector<3>>>> {
     let all = Bounds::around(positions.iter().copied());
-    let cell = (COLUMN * spacing).max((all.size()[0] * all.size()[1] / positions.len() as f64).sqrt());
-    let width = (all.size()[0] / cell) as usize + 1;
-    let height = (all.size()[1] / cell) as usize + 1;
+    let [across, down, _] = all.size().0;
+    // No more columns than points, wherever these lie.
+    let count = positions.len() as f64;
+    let cell = (COLUMN * spacing).max((across * down / count).sqrt()).max(across.max(down) / count);
+    let (width, height) = ((across / cell) as usize + 1, (down / cell) as usize + 1);
     budget.spend((width * height + positions.len() * 20) as u64)?;
     let column = |p: Vector<3>| {
         let [x, y] = [0, 1].map(|k| ((p[k] - all.min[k]) / cell) as usize);
@@ -73,7 +95,7 @@ pub(super) fn face_up(
     };
     // Lowest and highest of each column, and the highest that faces up.
     let mut columns = vec![(f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY); width * height];
-    for (p, n) in positions.iter().zip(&*normals) {
+    for (p, n) in positions.iter().zip(normals) {
         let (low, high, up) = &mut columns[column(*p)];
         (*low, *high) = (low.min(p[2]), high.max(p[2]));
         if n[2] > 0.0 {
@@ -84,21 +106,22 @@ pub(super) fn face_up(
         let (low, high, _) = columns[column(**p)];
         high - low <= THICK * spacing
     };
-    if (positions.iter().filter(is_flat).count() as f64) < SHEET * positions.len() as f64 {
-        return Ok(0);
+    if (positions.iter().filter(is_flat).count() as f64) < SHEET * count {
+        return Ok(None);
     }
+    let is_wrong = |p: &Vector<3>, n: &Vector<3>| n[2] < -DOWN && columns[column(*p)].2 < p[2] + 0.5 * spacing;
     let mut turned = 0;
-    for (p, n) in positions.iter().zip(normals) {
-        if n[2] < -DOWN && columns[column(*p)].2 < p[2] + 0.5 * spacing {
-            *n = -*n;
-            turned += 1;
-        }
-    }
-    Ok(turned)
+    let facing = positions.iter().zip(normals).map(|(p, n)| {
+        let is_wrong = is_wrong(p, n);
+        turned += usize::from(is_wrong);
+        if is_wrong { -*n } else { *n }
+    });
+    let facing = facing.collect();
+    Ok((turned > 0).then_some(facing))
 }
 
 /// What of normals contradicts itself: the share of points whose neighbours on the same sheet face the other way.
-pub(super) fn contradictions(points: &OrientedPoints, radius: f64, budget: &Budget) -> Result<f64> {
+fn contradictions(points: &OrientedPoints, radius: f64, budget: &Budget) -> Result<f64> {
     let step = points.len().div_ceil(2000).max(1);
     let (mut all, mut against, mut meter) = (0_usize, 0_usize, budget.meter());
     for i in (0..points.len()).step_by(step) {
@@ -128,28 +151,28 @@ pub(super) fn told(share: f64) -> Result<Option<Warning>> {
     Ok((share > TOLD).then(|| Warning::new(message(), advice)))
 }
 
-/// The axis across the plane, and how the texture leans from it. Where the plane or its box are given, it is taken as it lies.
+/// The axis across the plane, and how the texture leans from it, without the points that were left out. Where the plane or its box are given, it is taken as it lies.
 pub(super) fn axes(
-    points: &PointSet<3>,
+    (points, kept): (&PointSet<3>, &[Vector<3>]),
     (plane, has_box, has_gap): (Plane, bool, bool),
     warnings: &mut Vec<Warning>,
 ) -> Result<Axes> {
     let thinnest = Axes::of(points, Plane::Auto).across_axis();
     let axes = Axes::of(points, plane);
-    let level = axes.levelled(&points.positions);
+    let level = axes.levelled(kept);
     let axis = axes.across_axis();
     let name = ["x", "y", "z"][axis];
-    let is_taken = plane == Plane::Auto && !has_box;
+    let is_levelled = plane == Plane::Auto && !has_box;
     if level != axes && !has_gap {
         let leans = format!("the texture leans by {:.1} degrees from the plane across {name}", level.lean());
-        warnings.push(if is_taken {
+        warnings.push(if is_levelled {
             Warning::new(format!("{leans}: laid flat"), format!("give --plane {name} if it is to be taken as it lies"))
         } else {
             Warning::new(leans, "leave --plane and --box out if it is to be laid flat, or turn it before")
         });
     }
-    let axes = if is_taken { level } else { axes };
-    let flat = Bounds::around(points.positions.iter().map(|&p| axes.level(p))).size();
+    let axes = if is_levelled { level } else { axes };
+    let flat = Bounds::around(kept.iter().map(|&p| axes.level(p))).size();
     if flat[0].min(flat[1]) <= COLLAPSED * flat[2] || flat[0].min(flat[1]) <= 0.0 {
         if plane == Plane::Auto {
             return Err(fail("all points lie on one line or at one place", "give points of a surface"));
@@ -205,13 +228,27 @@ mod tests {
     #[test]
     fn a_sheet_whose_sides_are_guessed_wrong_faces_up_and_the_lower_side_of_a_cloth_stays() {
         let budget = Budget::default();
-        let (at, mut normals) = square(|x, y| ((0.4 * x).sin(), if x < 12.0 && y > 9.0 { -1.0 } else { 1.0 }));
-        assert_eq!(face_up(&at, &mut normals, 1.0, &budget).unwrap(), 12 * 20);
-        assert!(normals.iter().all(|n| n[2] > 0.0));
-        let (at, mut normals) = square(|_, _| (0.0, -1.0));
-        assert_eq!(face_up(&at, &mut normals, 1.0, &budget).unwrap(), 900);
-        let (low, high) = (square(|_, _| (0.0, -1.0)), square(|_, _| (2.0, 1.0)));
-        let (at, mut normals) = ([low.0, high.0].concat(), [low.1, high.1].concat());
-        assert_eq!(face_up(&at, &mut normals, 1.0, &budget).unwrap(), 0);
+        let facing = |(at, normals): &(Vec<Vector<3>>, Vec<Vector<3>>)| face_up(at, normals, 1.0, &budget).unwrap();
+        let is_up = |n: &Vector<3>| n[2] > 0.0;
+        let parts = square(|x, y| ((0.4 * x).sin(), if x < 12.0 && y > 9.0 { -1.0 } else { 1.0 }));
+        assert!(facing(&parts).is_some_and(|normals| normals.iter().all(is_up)));
+        let whole = square(|_, _| (0.0, -1.0));
+        assert!(facing(&whole).is_some_and(|normals| normals.iter().all(is_up)));
+        let high = square(|_, _| (2.0, 1.0));
+        assert!(facing(&([&whole.0[..], &high.0].concat(), [&whole.1[..], &high.1].concat())).is_none());
+    }
+
+    #[test]
+    fn what_is_no_sheet_keeps_the_sides_that_contradict_one_another_least() {
+        let budget = Budget::default();
+        // A sheet that faces down, with bits above every other block of it: turned up beside these, it would be a chessboard.
+        let (mut at, mut normals) = square(|_, _| (0.0, -1.0));
+        let is_below = |p: &Vector<3>| (p[0] / 3.0).floor() as usize % 2 == (p[1] / 3.0).floor() as usize % 2;
+        at.extend(at.clone().iter().filter(|p| is_below(p)).map(|p| *p + Vector([0.0, 0.0, 1.2])));
+        normals.resize(at.len(), Vector([0.0, 0.0, 1.0]));
+        let turned = face_up(&at, &normals, 1.0, &budget).unwrap().unwrap();
+        assert!(turned[..900].iter().any(|n| n[2] > 0.0) && turned[..900].iter().any(|n| n[2] < 0.0));
+        let (points, share) = surface(at, (normals.clone(), true), (1.0, 2.5), &budget).unwrap();
+        assert!(share < TOLD && points.normals() == normals, "{share}");
     }
 }

@@ -25,7 +25,8 @@ pub(crate) struct Repetition {
     pub(crate) strength: f64,
 }
 
-/// Up to the one strength all patches that fit are alike to choose from; from the other on only what fits best is.
+/// Textures that repeat no more strongly than the first of these leave the usual choice of patches; those that repeat as strongly as the second leave
+/// none but what fits best.
 const LATITUDE: (f64, f64) = (0.7, 0.9);
 
 impl Repetition {

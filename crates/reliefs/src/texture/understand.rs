@@ -12,7 +12,7 @@ use crate::{
         axes::Axes,
         gap::Gap,
         pieces::Pieces,
-        reading::{axes, checked, contradictions, face_up, fail, oriented, told},
+        reading::{axes, checked, fail, oriented, surface, told},
         repetition::{Repetition, repetition},
     },
 };
@@ -99,22 +99,20 @@ impl Texture {
     ) -> Result<Self> {
         let mut warnings = Vec::new();
         let scattered = checked(points, budget)?;
-        let axes = axes(scattered, (params.plane, bounds.is_some(), has_gap), &mut warnings)?;
         let set = oriented(scattered, budget, &mut warnings)?;
+        let axes = axes((scattered, &set.positions), (params.plane, bounds.is_some(), has_gap), &mut warnings)?;
         let held = budget.hold("the texture", set.len() * 160)?;
         let positions: Vec<_> = set.positions.iter().map(|&p| axes.level(p)).collect();
-        let mut normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.level(n)).collect();
+        let normals: Vec<_> = set.normals.iter().flatten().map(|&n| axes.level(n)).collect();
         let spacing = spacing_of(&positions, budget)?;
         if !(spacing.is_finite() && spacing > 0.0) {
             return Err(fail("most points lie in one place", "give points that are spread over a surface"));
         }
-        if scattered.normals.is_none() {
-            face_up(&positions, &mut normals, spacing, budget)?;
-        }
         let radius = RADIUS * spacing;
         let all = Bounds::around(positions.iter().copied());
-        let points = OrientedPoints::new(positions, normals, radius, budget)?;
-        warnings.extend(told(contradictions(&points, radius, budget)?)?);
+        let (points, contradicted) =
+            surface(positions, (normals, scattered.normals.is_none()), (spacing, radius), budget)?;
+        warnings.extend(told(contradicted)?);
         let lattice = lattice(&all, spacing, params);
         let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
         if nodes.iter().fold(lattice.heights.len(), |all, n| all.saturating_mul(*n)) > NODES {

@@ -21,6 +21,7 @@ use crate::{
         kernel::Kernel,
         level::{Level, Matches, Near, Tables},
     },
+    exemplar::pattern::Pattern,
     layout::Layout,
     output::state::Output,
     params::Window,
@@ -36,6 +37,24 @@ fn wave() -> PointSet<2> {
     PointSet { normals: Some(normals), radii: Some(radii), ..PointSet::at(positions) }
 }
 
+/// A level over all sites of a layout.
+fn level_over<'a, const D: usize>(
+    pattern: &'a Pattern<D>,
+    tables: &'a Tables<D>,
+    layout: &'a Layout<D>,
+) -> Level<'a, D> {
+    Level {
+        pattern,
+        tables,
+        sites: &layout.sites,
+        open: layout.sites.len(),
+        index: &layout.index,
+        domain: &layout.domain,
+        shifts: &[],
+        usual: 30.0,
+    }
+}
+
 /// Calls `check` with a level over noise, with random matches.
 fn noisy(check: impl FnOnce(&Level<'_, 2>, &Layout<2>, Output<2>, Matches<2>)) {
     let budget = Budget::default();
@@ -45,16 +64,7 @@ fn noisy(check: impl FnOnce(&Level<'_, 2>, &Layout<2>, Output<2>, Matches<2>)) {
     let pattern = &*prepared.pattern;
     let kernel = Kernel::new(prepared.sigma, prepared.window, pattern.base, Window::Gaussian);
     let tables = Tables::new(pattern, kernel, &prepared.fields, &budget).unwrap();
-    let level = Level {
-        pattern,
-        tables: &tables,
-        sites: &layout.sites,
-        open: layout.sites.len(),
-        index: &layout.index,
-        domain: &layout.domain,
-        shifts: &[],
-        usual: 30.0,
-    };
+    let level = level_over(pattern, &tables, &layout);
     let output = noise(&level, Output::default(), layout.plan.step, 5);
     let room = room(&level);
     let mut stream = arabesque_core::Stream::new(3, arabesque_core::Stage::TEST, 0);
@@ -249,16 +259,7 @@ fn mixed(check: impl FnOnce(&Level<'_, 3>, f64)) {
     let pattern = &*prepared.pattern;
     let kernel = Kernel::new(prepared.sigma, prepared.window, pattern.base, Window::Gaussian);
     let tables = Tables::new(pattern, kernel, &prepared.fields, &budget).unwrap();
-    let level = Level {
-        pattern,
-        tables: &tables,
-        sites: &layout.sites,
-        open: layout.sites.len(),
-        index: &layout.index,
-        domain: &layout.domain,
-        shifts: &[],
-        usual: 30.0,
-    };
+    let level = level_over(pattern, &tables, &layout);
     check(&level, layout.plan.step);
 }
 

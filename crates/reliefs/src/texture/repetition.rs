@@ -27,7 +27,7 @@ pub(crate) struct Repetition {
 
 /// Textures that repeat no more strongly than the first of these leave the usual choice of patches; those that repeat as strongly as the second leave
 /// none but what fits best.
-const LATITUDE: (f64, f64) = (0.7, 0.9);
+const LATITUDE: (f64, f64) = (0.7, 0.8);
 
 impl Repetition {
     /// How much worse than the best a patch may be, from 0 for what repeats strictly to 1 for what does not.

@@ -25,6 +25,8 @@ const WORK: f64 = 10_000.0;
 const QUESTIONS: f64 = 20.0;
 /// Overlap of the patches in a gap at least, as a share of the patch.
 const GAP_OVERLAP: f64 = 0.2;
+/// How much worse than the best a patch in a gap may be at most.
+const GAP_TOLERANCE: f64 = 0.1;
 /// How many more patches are tried in a gap.
 const GAP_TRIES: usize = 4;
 /// Share of points in overlaps that may be torn before it is told.
@@ -68,9 +70,9 @@ impl Prepared {
     ) -> Result<Self> {
         params.check()?;
         let budget = budget.stage("preparing the scan");
-        // A gap is closed once, in one place: what fits best is wanted there, not variety.
+        // A gap is closed once, in one place: what fits best is wanted there, with little variety.
         let params = ReliefParams {
-            tolerance: 0.0,
+            tolerance: params.tolerance.min(GAP_TOLERANCE),
             apart: 0.0,
             overlap: Some(params.overlap.map_or(GAP_OVERLAP, |o| o.max(GAP_OVERLAP))),
             tries: params.tries.saturating_mul(GAP_TRIES),
@@ -100,7 +102,20 @@ impl Prepared {
         self.texture.repetition.length.map(|cells| cells * self.texture.lattice.cell)
     }
 
-    /// How well it does: 0 to 1.
+    /// The two shortest shifts along x and y of its plane that carry a strictly repeating texture into itself.
+    pub fn repeat(&self) -> Option<[[f64; 2]; 2]> {
+        self.texture.repetition.repeat.map(|r| r.shifts.map(|s| s.map(|v| v * self.texture.lattice.cell)))
+    }
+
+    /// For a tile whose sides do not suit what repeats: for each of them the nearest that does, below and above; `None` for a tile that suits.
+    pub fn better_tile(&self, size: [f64; 2]) -> Option<[[Option<f64>; 2]; 2]> {
+        let (repeat, cell) = (self.texture.repetition.repeat?, self.texture.lattice.cell);
+        let cells = size.map(|s| s / cell);
+        let nearest = |k: usize| repeat.lengths(k, cells[k]).map(|near| near.map(|length| length * cell));
+        repeat.closing(cells).is_none().then(|| [nearest(0), nearest(1)])
+    }
+
+    /// How well the texture agrees with itself there: 0 to 1.
     pub fn regularity(&self) -> f64 {
         self.texture.repetition.strength
     }

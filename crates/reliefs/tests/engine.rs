@@ -5,7 +5,8 @@
 use std::{f64::consts::TAU, ops::ControlFlow, sync::Arc};
 
 use arabesque_core::{
-    Bounds, Budget, Error, Limits, PointSet, Progress, StopReason, TriangleMesh, Unobserved, Vector, Watch,
+    Bounds, Budget, Error, Limits, PointSet, Progress, Stage, StopReason, Stream, TriangleMesh, Unobserved, Vector,
+    Watch,
 };
 use arabesque_reliefs::{Ground, Plane, Prepared, ReliefOutcome, ReliefParams, ReliefRequest};
 use arabesque_surface::{DirectionField, Directions, MeshIndex};
@@ -356,4 +357,68 @@ fn the_gap_of_a_scan_that_leans_is_filled_where_it_is() {
     // Across the plane in which it leans.
     let flat: Vec<Vector<3>> = made.points.positions.iter().map(|&p| turned(p, -LEAN)).collect();
     assert!(flat.iter().all(|p| p[2].abs() < 0.35) && widest_gap(&flat, [2.0, 2.0], [4.0, 4.0]) < 0.2);
+}
+
+/// A wall of equal bricks in running bond, one long and half as high.
+fn wall(keeps: impl Fn(f64, f64) -> bool) -> PointSet<3> {
+    let mut random = Stream::new(8, Stage::TEST, 0);
+    let mut points = PointSet::default();
+    let (side, step) = (8.0, 0.06);
+    for k in 0..133 * 133_u32 {
+        let jitter = |random: &mut Stream| step * (0.5 + random.range(-0.3, 0.3));
+        let (x, y) = (f64::from(k % 133) * step + jitter(&mut random), f64::from(k / 133) * step + jitter(&mut random));
+        if x < side && y < side && keeps(x, y) {
+            points.positions.push(Vector([x, y, brick(x, y)]));
+        }
+    }
+    points.normals = Some(vec![Vector([0.0, 0.0, 1.0]); points.positions.len()]);
+    points
+}
+
+/// The height of the wall.
+fn brick(x: f64, y: f64) -> f64 {
+    let row = (y / 0.5).floor();
+    let (u, v) = ((x + 0.5 * row).rem_euclid(1.0), y.rem_euclid(0.5));
+    let from_joint = u.min(1.0 - u).min(v).min(0.5 - v);
+    0.2 * ((from_joint - 0.05) / 0.05).clamp(0.0, 1.0)
+}
+
+#[test]
+fn a_gap_in_a_wall_is_closed_in_bond_and_by_the_seed() {
+    let in_gap = |x: f64, y: f64| (2.3..5.9).contains(&x) && (2.6..5.1).contains(&y);
+    let scan = wall(|x, y| !in_gap(x, y));
+    let engine = Prepared::with_gap(&scan, None, &ReliefParams::default(), &Budget::default()).unwrap();
+    let [a, b] = engine.repeat().expect("a wall of equal bricks repeats strictly");
+    // Rows shift by half a brick: each shift leads to a joint of the same kind.
+    for s in [a, b] {
+        let rows = (s[1] / 0.5).round();
+        let off = (s[0] - 0.5 * rows).rem_euclid(1.0);
+        assert!((s[1] - 0.5 * rows).abs() < 0.02 && off.min(1.0 - off) < 0.02, "{a:?} {b:?}");
+    }
+    let closed = |seed: u64| {
+        let made = engine.run(&ReliefRequest { seed, ..ReliefRequest::new(Ground::Hole) }, &mut Unobserved).unwrap();
+        let filled: Vec<_> = made.points.positions.into_iter().filter(|p| in_gap(p[0], p[1])).collect();
+        let wrong = filled.iter().filter(|p| (p[2] - brick(p[0], p[1])).abs() > 0.08).count();
+        assert!(filled.len() > 1800 && (wrong as f64) < 0.04 * filled.len() as f64, "{wrong} of {}", filled.len());
+        filled
+    };
+    assert_ne!(closed(1), closed(2), "the seed has no say");
+}
+
+#[test]
+fn tiles_keep_the_bond_or_say_which_would() {
+    let engine = Prepared::new(&wall(|_, _| true), None, &ReliefParams::default(), &Budget::default()).unwrap();
+    assert_eq!(engine.better_tile([7.0, 9.0]), None);
+    let [widths, _] = engine.better_tile([6.5, 9.0]).unwrap();
+    let [Some(below), Some(above)] = widths else { panic!("{widths:?}") };
+    assert!((below - 6.0).abs() < 0.1 && (above - 7.0).abs() < 0.1, "{below} {above}");
+    let made = engine.run(&ReliefRequest::new(Ground::Tile([7.0, 9.0])), &mut Unobserved).unwrap();
+    // Wherever the first patch is from, the bond is that of the wall, somewhere.
+    let points = &made.points.positions;
+    let wrong = |dx: f64, dy: f64| {
+        points.iter().filter(|p| (p[2] - brick(p[0] + dx, p[1] + dy)).abs() > 0.08).count() as f64 / points.len() as f64
+    };
+    let shifts = (0..50).flat_map(|i| (0..50).map(move |j| (0.02 * f64::from(i), 0.02 * f64::from(j))));
+    let least = shifts.map(|(dx, dy)| wrong(dx, dy)).fold(1.0, f64::min);
+    assert!(least < 0.12, "{least}");
 }

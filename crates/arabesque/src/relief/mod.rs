@@ -84,7 +84,9 @@ impl Ready for Texture {
         };
         let across = ["x", "y", "z"][engine.axes().across_axis()];
         let repeats = match engine.repetition() {
-            Some(length) => format!("repeats after {length:.4} ({:.0} %)", 100.0 * engine.regularity()),
+            Some(length) => {
+                format!("repeats after {length:.4} ({:.0} %){}", 100.0 * engine.regularity(), lattice(engine))
+            }
             None => "does not repeat".to_owned(),
         };
         format!(
@@ -152,10 +154,26 @@ impl Texture {
         let extent = job.extent.as_ref().map(sides).transpose()?;
         context.warnings.extend(extent.and_then(|size| self.crumb(size)));
         match extent {
-            Some(size) if job.tile => Ok(Ground::Tile(size)),
+            Some(size) if job.tile => {
+                context.warnings.extend(self.unsuited(size));
+                Ok(Ground::Tile(size))
+            }
             Some(size) => Ok(Ground::Plane(size)),
             None => Ok(Ground::Hole),
         }
+    }
+
+    /// What to say of a tile after whose sides a strictly repeating texture does not come again.
+    fn unsuited(&self, size: [f64; 2]) -> Option<Warning> {
+        let better = self.engine.better_tile(size)?;
+        let of = |k: usize| {
+            let near: Vec<String> = better[k].iter().flatten().map(|length| rounded(*length)).collect();
+            if near.is_empty() { "none near".to_owned() } else { near.join(" or ") }
+        };
+        let [w, d] = size.map(rounded);
+        let message = format!("a tile of {w}x{d} does not suit what repeats: where it closes, the order is broken");
+        let advice = format!("widths that suit: {}; depths that suit: {}", of(0), of(1));
+        Some(Warning::new(message, advice))
     }
 
     /// What to say where so little is wanted that it does not show what the texture is.
@@ -170,6 +188,12 @@ impl Texture {
         let advice = "give the extent in the units of the texture: of a height field in pixels";
         (size.iter().any(|s| *s > 0.0 && *s < patch)).then(|| Warning::new(message(), advice))
     }
+}
+
+/// The shifts of what repeats strictly.
+fn lattice(engine: &Engine) -> String {
+    let show = |[x, y]: [f64; 2]| format!("({}, {})", rounded(x), rounded(y));
+    engine.repeat().map_or_else(String::new, |[a, b]| format!(", strictly by {} and {}", show(a), show(b)))
 }
 
 /// Width and depth in the units of the exemplar.

@@ -82,7 +82,9 @@ impl<'a> HoleCanvas<'a> {
         self.store.within(&bounds, |s| samples.push(Sample { at: s.at - origin, ..*s }));
         self.budget.spend(samples.len() as u64 * 40)?;
         let (usage, nearby, budget) = (&Usage::default(), Vec::new(), &self.budget);
-        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
+        // The scan is where it is: what closes its gap goes on from there.
+        let goes_on = Some([0, 1].map(|k| (corner[k] - texture.origin[k]) / cell));
+        let site = Site { texture, params: self.params, mask, samples, shunned, goes_on, usage, nearby, budget };
         let Some(laid) = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))? else { return Ok(None) };
         let seam = 1.6 * texture.spacing;
         self.store.remove(&bounds, |s| {

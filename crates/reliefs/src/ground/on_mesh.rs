@@ -162,10 +162,10 @@ impl Canvas for MeshCanvas<'_> {
         let is_near = |p: Vector<3>| (0..2).all(|k| p[k] > -more && p[k] < side + more);
         let flat: Vec<Option<Sample>> = found.par_iter().with_min_len(64).map(local).collect();
         samples.extend(flat.iter().flatten().filter(|s| is_near(s.at)).copied());
-        let (shunned, usage, budget) = (Vec::new(), &self.usage, &self.budget);
+        let (shunned, goes_on, usage, budget) = (Vec::new(), None, &self.usage, &self.budget);
         let near = |(at, _): &&(Vector<3>, [u32; 2])| (*at - foot.point).norm() < NEARBY * side * scale;
         let nearby = self.laid.iter().filter(near).map(|(_, place)| *place).collect();
-        let site = Site { texture, params: self.params, mask, samples, shunned, usage, nearby, budget };
+        let site = Site { texture, params: self.params, mask, samples, shunned, goes_on, usage, nearby, budget };
         let Some(laid) = site.lay(&mut Stream::new(self.seed, PATCHES, self.laid.len() as u64))? else {
             return Ok(None);
         };

@@ -10,7 +10,7 @@ use crate::{
     patch::mask::Mask,
     patch::{blend::Site, notes::Notes, site::Laid, usage::Usage},
     sample::Sample,
-    texture::understand::Texture,
+    texture::{repeat::Repeat, understand::Texture},
 };
 
 const PATCHES: Stage = Stage::new(501);
@@ -39,6 +39,8 @@ pub(crate) struct PlaneCanvas<'a> {
     size: [f64; 2],
     is_tile: bool,
     rows: [Row; 2],
+    /// How what repeats strictly does so here: as in the texture, but for what a tile takes to close.
+    repeat: Option<Repeat>,
     store: Store,
     /// For each patch the place in the texture that it is from, once it is laid.
     laid: Vec<Option<[u32; 2]>>,
@@ -98,6 +100,7 @@ impl<'a> PlaneCanvas<'a> {
             size,
             is_tile,
             rows,
+            repeat: repeat_in(texture, is_tile.then_some(size)),
             store: Store::new(0.25 * patch),
             laid: vec![None; count],
             order: along_diagonals(rows[0].count, count),
@@ -122,6 +125,14 @@ impl<'a> PlaneCanvas<'a> {
         [-1.0, 0.0, 1.0].into_iter().flat_map(of).collect()
     }
 
+    /// A place in the texture from which a patch with its corner here goes on as the first patch does.
+    fn goes_on(&self, corner: [f64; 2]) -> Option<[f64; 2]> {
+        let (here, texture) = (self.repeat?, self.texture.repetition.repeat?);
+        let (first, place) = (self.corner(self.order[0] as usize), self.laid[self.order[0] as usize]?);
+        let way = here.of(&texture, [0, 1].map(|k| (corner[k] - first[k]) / self.texture.lattice.cell));
+        Some([0, 1].map(|k| f64::from(place[k]) + way[k]))
+    }
+
     /// The patches around a place that are laid, with where they are as seen from there.
     fn laid_around(&self, corner: [f64; 2]) -> Vec<([f64; 2], [u32; 2])> {
         let reach = 2.0 * self.texture.patch_side();
@@ -143,6 +154,15 @@ impl<'a> PlaneCanvas<'a> {
             }
         }
         around
+    }
+}
+
+/// The lattice of what repeats strictly, in the plane or in a tile of this size; none where the tile does not suit it.
+fn repeat_in(texture: &Texture, tile: Option<[f64; 2]>) -> Option<Repeat> {
+    let repeat = texture.repetition.repeat?;
+    match tile {
+        Some(size) => repeat.closing(size.map(|s| s / texture.lattice.cell)),
+        None => Some(repeat),
     }
 }
 
@@ -231,7 +251,8 @@ impl PlaneCanvas<'_> {
         let is_last =
             k % self.rows[0].count + 1 == self.rows[0].count || k / self.rows[0].count + 1 == self.rows[1].count;
         let params = if self.is_tile && is_last { &self.closing } else { self.params };
-        let site = Site { texture, params, mask, samples, shunned, usage, nearby, budget };
+        let site =
+            Site { texture, params, mask, samples, shunned, goes_on: self.goes_on(corner), usage, nearby, budget };
         let laid = site.lay(&mut Stream::new(self.seed, PATCHES, k as u64))?;
         Ok(laid.map(|laid| Made { k, bounds, mask: site.mask, laid }))
     }

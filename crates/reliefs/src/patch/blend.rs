@@ -28,6 +28,8 @@ pub(crate) struct Site<'a> {
     pub(crate) samples: Vec<Sample>,
     /// Places of the texture that would go on from patches around, in cells.
     pub(crate) shunned: Vec<[f64; 2]>,
+    /// A place, in cells, from which what repeats strictly goes on as it does around; none where it does not matter.
+    pub(crate) goes_on: Option<[f64; 2]>,
     /// What was used of the texture so far, and by the patches nearby.
     pub(crate) usage: &'a Usage,
     pub(crate) nearby: Vec<[u32; 2]>,

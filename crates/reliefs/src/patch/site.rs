@@ -42,6 +42,8 @@ const LEAST: usize = 16;
 const DISTINCT: usize = 32;
 /// What was not seen counts so much, so that chance has a say.
 const SEEN: f64 = 0.05;
+/// How far beside where a strict repeat wants it a patch may be from, in cells.
+const BESIDE: f64 = 1.0;
 /// How far pairs listen to one another, as a share of the patch.
 const LISTENING: f64 = 0.15;
 
@@ -152,7 +154,11 @@ impl Site<'_> {
                 d[0] * d[0] + d[1] * d[1] < apart * apart
             })
         };
-        let mut places: Vec<_> = texture.places.iter().filter(|p| !is_shunned(p)).copied().collect();
+        let goes_on = |place: &[u32; 2]| self.beside(*place).iter().fold(0.0_f64, |l, v| l.hypot(*v)) <= BESIDE;
+        let mut places: Vec<_> = texture.places.iter().filter(|p| goes_on(p) && !is_shunned(p)).copied().collect();
+        if places.is_empty() {
+            places = texture.places.iter().filter(|p| goes_on(p)).copied().collect();
+        }
         if places.is_empty() {
             places.clone_from(&texture.places);
         }
@@ -195,10 +201,18 @@ impl Site<'_> {
         Ok(distinct)
     }
 
+    /// How far a place lies beside the nearest from which what repeats strictly goes on as it does around, in cells.
+    fn beside(&self, place: [u32; 2]) -> [f64; 2] {
+        let (Some(repeat), Some(at)) = (self.texture.repetition.repeat, self.goes_on) else { return [0.0; 2] };
+        repeat.beside([0, 1].map(|k| f64::from(place[k]) - at[k]))
+    }
+
     /// The points of the texture for a patch, and as far around as they may move.
     fn source(&self, place: [u32; 2]) -> Vec<Sample> {
         let texture = self.texture;
-        let corner = texture.corner(place);
+        // Places are told in cells; what repeats strictly is laid where it belongs between them.
+        let [x, y] = self.beside(place).map(|v| if v.abs() <= BESIDE { v * texture.lattice.cell } else { 0.0 });
+        let corner = texture.corner(place) - Vector([x, y, 0.0]);
         let side = texture.patch_side();
         let more = texture.border as f64 * texture.lattice.cell + self.reach();
         let (low, high) = (texture.bounds.min[2], texture.bounds.max[2]);

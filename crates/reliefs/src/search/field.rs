@@ -55,10 +55,44 @@ pub(crate) struct Field {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) planes: Vec<Vec<f32>>,
+    /// The columns of a gap, which tell nothing of the texture; empty where there is none.
+    unknown: Vec<bool>,
     _held: Held,
 }
 
 impl Field {
+    /// Leaves out columns of which nothing is known, by where they stand as seen from the origin of the field.
+    pub(crate) fn leave_out(&mut self, lattice: &Lattice, is_unknown: impl Fn(f64, f64) -> bool) {
+        let at = |k: usize| (k as f64 + 0.5) * lattice.cell;
+        let of = |k: usize| is_unknown(at(k % self.width), at(k / self.width));
+        self.unknown = (0..self.width * self.height).map(of).collect();
+    }
+
+    /// The field by the means of nine columns each: what is narrower than a column or two is no detail but how points happened to lie.
+    pub(crate) fn smoothed(&self, budget: &Budget) -> Result<Self> {
+        let count = self.width * self.height;
+        let held = budget.hold("the distance field", count * self.planes.len() * 4)?;
+        budget.spend((count * self.planes.len()) as u64)?;
+        let mean = |values: &[f32], k: usize, step: usize, (is_first, is_last): (bool, bool)| {
+            let before = if is_first { values[k] } else { values[k - step] };
+            let after = if is_last { values[k] } else { values[k + step] };
+            (before + values[k] + after) / 3.0
+        };
+        let smooth = |values: &Vec<f32>| -> Vec<f32> {
+            let ends = |k: usize| (k % self.width == 0, k % self.width + 1 == self.width);
+            let rows: Vec<f32> = (0..count).map(|k| mean(values, k, 1, ends(k))).collect();
+            let ends = |k: usize| (k < self.width, k + self.width >= count);
+            (0..count).map(|k| mean(&rows, k, self.width, ends(k))).collect()
+        };
+        let planes = self.planes.par_iter().map(smooth).collect();
+        Ok(Self { planes, width: self.width, height: self.height, unknown: self.unknown.clone(), _held: held })
+    }
+
+    /// Whether column `k` tells of the texture.
+    pub(crate) fn is_known(&self, k: usize) -> bool {
+        !self.unknown.get(k).is_some_and(|unknown| *unknown)
+    }
+
     /// The field of points over `width` by `height` columns, the first of which stands half a cell beyond `origin`.
     pub(crate) fn new(
         points: &OrientedPoints,
@@ -86,7 +120,7 @@ impl Field {
             let numbers = rows.iter().flat_map(|row| row.iter().skip(p).step_by(planes).copied());
             numbers.chain([0.0; ABREAST]).collect()
         };
-        Ok(Self { width, height, planes: (0..planes).map(plane).collect(), _held: held })
+        Ok(Self { width, height, planes: (0..planes).map(plane).collect(), unknown: Vec::new(), _held: held })
     }
 }
 

@@ -2,7 +2,9 @@
 
 pub(crate) mod axes;
 pub(crate) mod gap;
+mod likeness;
 pub(crate) mod pieces;
 pub(crate) mod reading;
+pub(crate) mod repeat;
 pub(crate) mod repetition;
 pub(crate) mod understand;

@@ -1,16 +1,24 @@
 //! How far the texture is from where it looks like itself again, by the autocorrelation of its field.
 
 use arabesque_core::{Budget, Result};
-use rayon::prelude::*;
 
-use crate::search::field::Field;
+use crate::{
+    search::field::Field,
+    texture::{likeness::Likeness, repeat::Repeat},
+};
 
-/// Columns along the longer side that are compared at most.
-const COLUMNS: usize = 48;
+/// Columns along the longer side that are compared at most: first few, of which what is small next to a repetition is no part, then more.
+const COLUMNS: [usize; 2] = [48, 128];
+/// A repetition of fewer columns is looked for among more of them.
+const FINE: f64 = 8.0;
 /// A shift at which the field differs by less than this share of what is usual is a repetition.
 const ALIKE: f64 = 0.72;
 /// Repetitions that are worse than the best by less than this factor are as good.
 const AS_GOOD: f64 = 1.35;
+/// Shifts that are worse than the best by no more may belong to its lattice.
+const SPREAD: f64 = 0.2;
+/// What repeats less strongly has no lattice that is worth a closer look.
+const STRICT: f64 = 0.5;
 /// On the way to a repetition the field differs by so much more, as a share of what is usual.
 const BETWEEN: f64 = 0.25;
 /// Shortest repetition, in columns that are compared.
@@ -23,6 +31,8 @@ pub(crate) struct Repetition {
     pub(crate) length: Option<f64>,
     /// How well the field agrees with itself there: 0 to 1.
     pub(crate) strength: f64,
+    /// The two shifts that carry the whole texture into itself, if it repeats so strictly.
+    pub(crate) repeat: Option<Repeat>,
 }
 
 /// Textures that repeat no more strongly than the first of these leave the usual choice of patches; those that repeat as strongly as the second leave
@@ -36,85 +46,68 @@ impl Repetition {
     }
 }
 
-/// The shortest of the shifts at which the field is most like itself.
+/// A shift at which the field is more like itself than at those around.
+#[derive(Clone, Copy, Debug)]
+struct Minimum {
+    shift: [i64; 2],
+    /// Length of the shift in columns that are compared.
+    length: f64,
+    /// Difference as a share of what is usual.
+    difference: f64,
+}
+
+/// The shortest of the shifts at which the field is most like itself, and those that carry it into itself.
 pub(crate) fn repetition(field: &Field, budget: &Budget) -> Result<Repetition> {
-    let skip = field.width.max(field.height).div_ceil(COLUMNS).max(1);
-    let (width, height) = (field.width / skip, field.height / skip);
-    let none = Repetition { length: None, strength: 0.0 };
-    if width < 8 || height < 8 {
-        return Ok(none);
-    }
-    let mean = |plane: &Vec<f32>, x: usize, y: usize| {
-        let of = |dy: usize| (0..skip).map(move |dx| plane[(y * skip + dy) * field.width + x * skip + dx]);
-        (0..skip).flat_map(of).sum::<f32>() / (skip * skip) as f32
-    };
-    let planes: Vec<Vec<f32>> = field
-        .planes
-        .par_iter()
-        .map(|plane| (0..width * height).map(|k| mean(plane, k % width, k / width)).collect())
-        .collect();
-    // Shifts up to half of the texture; those to the other side are the same.
-    let (most_x, most_y) = (width as i64 / 2, height as i64 / 2);
-    let shifts: Vec<[i64; 2]> = (0..=most_y).flat_map(|y| (-most_x..=most_x).map(move |x| [x, y])).collect();
-    budget.spend((shifts.len() * width * height * planes.len()) as u64 / 6)?;
-    let differences: Vec<f64> = shifts.par_iter().map(|&shift| difference(&planes, (width, height), shift)).collect();
-    let mut sorted = differences.clone();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let usual = sorted[sorted.len() / 2].max(f64::MIN_POSITIVE);
-    let row = 2 * most_x as usize + 1;
-    let at = |x: i64, y: i64| -> f64 {
-        // Below the first row the shifts are those above it, turned round.
-        let (x, y) = if y < 0 { (-x, -y) } else { (x, y) };
-        if x.abs() > most_x || y > most_y {
-            f64::INFINITY
-        } else {
-            differences[y as usize * row + (x + most_x) as usize]
+    let mut found = Repetition { length: None, strength: 0.0, repeat: None };
+    let smooth = field.smoothed(budget)?;
+    for columns in COLUMNS {
+        let Some(likeness) = Likeness::new(&smooth, columns, budget)? else { break };
+        let minima = minima(&likeness);
+        let best = minima.iter().map(|m| m.difference).fold(f64::INFINITY, f64::min);
+        let strength = (1.0 - best).clamp(0.0, 1.0);
+        let as_good = |m: &&Minimum| m.difference <= (AS_GOOD * best).max(best + 0.1).min(ALIKE);
+        let shortest = minima.iter().filter(as_good).map(|m| m.length).fold(f64::INFINITY, f64::min);
+        let scale = likeness.skip as f64;
+        let repeats = best <= ALIKE;
+        if repeats >= found.length.is_some() && strength > found.strength {
+            found = Repetition { length: repeats.then_some(shortest * scale), strength, ..found };
         }
-    };
+        if found.repeat.is_none() && repeats {
+            let mut good = minima;
+            good.retain(|m| m.difference <= (best + SPREAD).min(ALIKE));
+            good.sort_by(|a, b| a.difference.total_cmp(&b.difference));
+            let shifts: Vec<_> = good.iter().map(|m| m.shift.map(|v| v as f64 * scale)).collect();
+            found.repeat = Repeat::find(&smooth, &shifts, scale, budget)?;
+        }
+        let is_clear = shortest >= FINE && (found.repeat.is_some() || strength < STRICT);
+        if likeness.skip == 1 || repeats && is_clear {
+            break;
+        }
+    }
+    Ok(found)
+}
+
+/// Shifts that may be repetitions.
+fn minima(likeness: &Likeness) -> Vec<Minimum> {
+    let usual = likeness.usual();
     // What looks alike all the way, as waves do along their crests, does not repeat there.
     let differs_between = |[x, y]: [i64; 2], own: f64| {
         let steps = 2 * x.abs().max(y);
-        let part = |k: i64| {
-            let [i, j] = [x, y].map(|v| (v as f64 * k as f64 / steps as f64).round() as i64);
-            at(i, j)
-        };
+        let part = |k: i64| likeness.at([x, y].map(|v| (v as f64 * k as f64 / steps as f64).round() as i64));
         (1..steps).any(|k| part(k) > own + BETWEEN * usual)
     };
-    let minima: Vec<(f64, f64)> = shifts
-        .iter()
-        .filter(|[x, y]| {
-            let own = at(*x, *y);
-            let is_inner = x.abs() < most_x && *y < most_y;
-            is_inner
-                && differs_between([*x, *y], own)
-                && (-1..=1).all(|dy| (-1..=1).all(|dx| at(x + dx, y + dy) >= own))
-        })
-        .map(|[x, y]| (((x * x + y * y) as f64).sqrt(), at(*x, *y) / usual))
-        .filter(|(length, _)| *length >= SHORTEST)
-        .collect();
-    let best = minima.iter().map(|m| m.1).fold(f64::INFINITY, f64::min);
-    if best > ALIKE {
-        return Ok(Repetition { strength: (1.0 - best).clamp(0.0, 1.0), ..none });
-    }
-    let alike = minima.iter().filter(|m| m.1 <= (AS_GOOD * best).max(best + 0.1).min(ALIKE));
-    let length = alike.map(|m| m.0).fold(f64::INFINITY, f64::min);
-    Ok(Repetition { length: Some(length * skip as f64), strength: 1.0 - best })
-}
-
-/// Mean squared difference of the planes from themselves, shifted.
-fn difference(planes: &[Vec<f32>], (width, height): (usize, usize), [x, y]: [i64; 2]) -> f64 {
-    let y = y as usize;
-    let (from, to) = ((-x).max(0) as usize, (width as i64 - x.max(0)) as usize);
-    let mut sum = 0.0;
-    for plane in planes {
-        for row in 0..height - y {
-            let a = &plane[row * width + from..row * width + to];
-            let start = (row + y) * width + (from as i64 + x) as usize;
-            let b = &plane[start..start + a.len()];
-            sum += f64::from(a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f32>());
-        }
-    }
-    sum / ((to - from) * (height - y)) as f64
+    let is_least = |[x, y]: [i64; 2]| {
+        let own = likeness.at([x, y]);
+        let is_inner = x.abs() < likeness.most[0] && y < likeness.most[1];
+        is_inner
+            && (-1..=1).all(|dy| (-1..=1).all(|dx| likeness.at([x + dx, y + dy]) >= own))
+            && differs_between([x, y], own)
+    };
+    let minimum = |shift: [i64; 2]| {
+        let length = shift.map(|v| v as f64).iter().fold(0.0_f64, |l, v| l.hypot(*v));
+        Minimum { shift, length, difference: likeness.at(shift) / usual }
+    };
+    likeness.shifts().filter(|s| is_least(*s)).map(minimum).filter(|m| m.length >= SHORTEST).collect()
 }
 
 #[cfg(test)]

@@ -124,7 +124,13 @@ impl Texture {
             ));
         }
         let origin = [0, 1].map(|k| all.min[k] + 0.5 * (all.size()[k] - nodes[k] as f64 * lattice.cell));
-        let field = Field::new(&points, &lattice, origin, (nodes[0], nodes[1]), budget)?;
+        let mut field = Field::new(&points, &lattice, origin, (nodes[0], nodes[1]), budget)?;
+        let gap = if has_gap { Some(Gap::find(points.positions(), &all, spacing, budget)?) } else { None };
+        let seeks_bare = !has_gap && bounds.is_none();
+        let bare = if seeks_bare { Gap::bare(points.positions(), &all, spacing, budget)? } else { None };
+        if let Some(empty) = gap.as_ref().or(bare.as_ref()) {
+            field.leave_out(&lattice, |x, y| empty.contains(origin[0] + x, origin[1] + y));
+        }
         let repetition = repetition(&field, budget)?;
         budget.spend(points.len() as u64 * 900)?;
         let variations: Vec<f32> = points.variations();
@@ -151,16 +157,11 @@ impl Texture {
             border: 0,
             places: Vec::new(),
             pieces: Pieces::default(),
-            gap: None,
-            bare: None,
+            gap,
+            bare,
             warnings,
             _held: held,
         };
-        if has_gap {
-            texture.gap = Some(Gap::find(texture.points.positions(), &all, spacing, budget)?);
-        } else if bounds.is_none() {
-            texture.bare = Gap::bare(texture.points.positions(), &all, spacing, budget)?;
-        }
         let given = bounds.map(|b| Bounds::around([axes.lie(b.min), axes.lie(b.max)]));
         texture.settle(&all, given, params)?;
         texture.pieces = Pieces::find(&texture.points, spacing, texture.patch_side(), budget)?;

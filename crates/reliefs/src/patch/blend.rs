@@ -8,7 +8,7 @@ use crate::{
     params::ReliefParams,
     patch::{mask::Mask, notes::Notes, usage::Usage},
     sample::Sample,
-    texture::understand::Texture,
+    texture::{pieces::is_within, understand::Texture},
 };
 
 /// Surfaces that are farther apart, in spacings, do not have the same edges.
@@ -16,8 +16,6 @@ const ALIKE: f64 = 1.5;
 /// How far the points of a pair of a high sheet may be apart, as a share of its height.
 const RISE: f64 = 0.35;
 const UP: Vector<3> = Vector([0.0, 0.0, 1.0]);
-/// Share of a loose piece that may lie within others.
-const PASSING: f64 = 0.02;
 
 /// What is known of the place of a patch.
 pub(crate) struct Site<'a> {
@@ -82,9 +80,12 @@ impl Site<'_> {
             self.budget.spend(9000)?;
             Ok(Some(self.moved(sample, share, (around, &own))))
         };
+        // What bends and blends lies between what was there: nothing comes to lie higher or lower than in the texture.
+        let (low, high) = (texture.bounds.min[2], texture.bounds.max[2]);
         let blended: Result<Vec<Option<(Sample, u8)>>> = bent.par_iter().with_min_len(64).map(blend).collect();
         let mut samples = Vec::with_capacity(bent.len());
-        for (sample, how) in blended?.into_iter().flatten().filter(|(s, _)| self.mask.replaces(s)) {
+        for (mut sample, how) in blended?.into_iter().flatten().filter(|(s, _)| self.mask.replaces(s)) {
+            sample.at[2] = sample.at[2].clamp(low, high);
             match how {
                 1 => notes.by_ray += 1,
                 2 => notes.by_projection += 1,
@@ -131,17 +132,15 @@ impl Site<'_> {
         let normals = staying.iter().map(|s| s.normal).collect();
         let points = OrientedPoints::new(positions, normals, self.texture.radius, self.budget)?;
         self.budget.spend(samples.len() as u64 * 800)?;
-        let spacing = self.texture.spacing;
-        let is_inside = |s: &Sample| {
-            let near = points.nearest(s.at, 4.0 * spacing, |_| true);
-            near.is_some_and(|(j, _)| (s.at - points.positions()[j]).dot(points.normals()[j]) < -0.4 * spacing)
-        };
+        let is_inside = |s: &Sample| is_within(&points, s.at, self.texture.spacing, |_| true);
         let mut inside = std::collections::BTreeMap::<u32, (usize, usize)>::new();
         for s in samples.iter().filter(|s| s.piece > 0) {
             let count = inside.entry(s.piece).or_default();
             *count = (count.0 + usize::from(is_inside(s)), count.1 + 1);
         }
-        let collides = |s: &Sample| inside.get(&s.piece).is_some_and(|(n, all)| *n as f64 > PASSING * *all as f64);
+        let collides = |s: &Sample| {
+            inside.get(&s.piece).is_some_and(|(n, all)| *n as f64 > self.texture.pieces.passing * *all as f64)
+        };
         let (out, kept): (Vec<Sample>, Vec<Sample>) = samples.into_iter().partition(collides);
         notes.unmatched += out.len();
         Ok(kept)

@@ -5,10 +5,26 @@ use arabesque_surface::OrientedPoints;
 
 /// Points so many spacings apart hang together, where they face alike.
 const LINK: f64 = 2.2;
+/// Cosines of the angles between normals from which on points beside one another are of two pieces: in a valley, and elsewhere.
+const VALLEY: f64 = 0.5;
+const RIDGE: f64 = 0.2;
 /// Largest piece, as a share of a patch.
 const LARGEST: f64 = 0.6;
 /// Share of the points that lie in pieces of a loose texture.
 const MOST: f64 = 0.7;
+
+/// How deep what is within a piece lies below its surface, and how far away that is looked for, in spacings.
+const DEEP: f64 = 0.4;
+const NEAR: f64 = 4.0;
+/// Share of a piece that may lie within others in any case, and how much more than in the texture.
+const PASSING: f64 = 0.02;
+const MORE: f64 = 1.3;
+
+/// Whether a place lies below the surface of those points that count.
+pub(crate) fn is_within(points: &OrientedPoints, at: Vector<3>, spacing: f64, counts: impl Fn(usize) -> bool) -> bool {
+    let near = points.nearest(at, NEAR * spacing, counts);
+    near.is_some_and(|(j, _)| (at - points.positions()[j]).dot(points.normals()[j]) < -DEEP * spacing)
+}
 
 /// The loose pieces of a texture, numbered from 1.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +35,8 @@ pub(crate) struct Pieces {
     pub(crate) members: Vec<Piece>,
     /// Half the size of the largest.
     pub(crate) reach: f64,
+    /// Share of a piece that may lie within others.
+    pub(crate) passing: f64,
 }
 
 /// A loose piece.
@@ -39,7 +57,10 @@ impl Pieces {
         for i in 0..positions.len() {
             meter.spend(900)?;
             points.around(positions[i], LINK * spacing, |j, _| {
-                if j > i && normals[j].dot(normals[i]) > 0.2 {
+                let turn = normals[j].dot(normals[i]);
+                // Two pieces that touch meet in a valley: their normals lean to one another.
+                let leans = (normals[j] - normals[i]).dot(positions[j] - positions[i]) < 0.0;
+                if j > i && turn > if leans { VALLEY } else { RIDGE } {
                     sets.join(i, j);
                 }
             });
@@ -62,7 +83,24 @@ impl Pieces {
             let points = group.iter().map(|&i| i as u32).collect();
             found.members.push(Piece { points, middle: [middle[0], middle[1]], is_cut });
         }
-        Ok(if (loose as f64) < MOST * positions.len() as f64 { Self::default() } else { found })
+        if (loose as f64) < MOST * positions.len() as f64 {
+            return Ok(Self::default());
+        }
+        found.passing = PASSING.max(MORE * found.most_within(points, spacing, budget)?);
+        Ok(found)
+    }
+
+    /// The share of a piece that lies within others in the texture, at most.
+    fn most_within(&self, points: &OrientedPoints, spacing: f64, budget: &Budget) -> Result<f64> {
+        let mut meter = budget.meter();
+        let mut most = 0.0_f64;
+        for (k, piece) in self.members.iter().enumerate().filter(|(_, piece)| !piece.is_cut) {
+            meter.spend(piece.points.len() as u64 * 800)?;
+            let is_other = |j: usize| self.of[j] != 0 && self.of[j] != k as u32 + 1;
+            let within = |i: &&u32| is_within(points, points.positions()[**i as usize], spacing, is_other);
+            most = most.max(piece.points.iter().filter(within).count() as f64 / piece.points.len() as f64);
+        }
+        Ok(most)
     }
 
     /// Whether the texture is loose.
@@ -115,6 +153,17 @@ mod tests {
         let middle = found.members.iter().find(|p| !p.is_cut).unwrap();
         assert!((middle.middle[0] - 2.01).abs() < 0.1, "{:?}", middle.middle);
         assert!(found.members.iter().filter(|p| p.is_cut).count() == 4 && (found.reach - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn pieces_may_pass_through_one_another_as_they_do_in_the_texture() {
+        let grid = |step: f64| -> Vec<[f64; 2]> {
+            (0..16).map(|k| [step * f64::from(k % 4), step * f64::from(k / 4)]).collect()
+        };
+        let passing =
+            |step: f64| Pieces::find(&balls(&grid(step), false), 0.25, 5.0, &Budget::default()).unwrap().passing;
+        assert_eq!(passing(2.4), PASSING);
+        assert!((0.03..0.4).contains(&passing(1.8)), "{}", passing(1.8));
     }
 
     #[test]

@@ -9,7 +9,8 @@
 //! |---|---|---|
 //! | understand the texture: plane, box, normals | `texture::understand` | [Duranleau 2008 §3] |
 //! | distance and gradient field | `search::field` | [Duranleau 2008 §5.1], projection by [Adamson 2004] |
-//! | what repeats, and the patch | `texture::repetition` | |
+//! | what repeats, and the patch | `texture::repetition`, `texture::likeness` | |
+//! | the two shifts of what repeats strictly | `texture::repeat` | |
 //! | places that fit, by cross-correlation | `search::best`, `search::fft` | [Duranleau 2008 §4 step 2, §5.1] |
 //! | pairs of points | `patch::pairing` | [Duranleau 2008 §5.2, eqs 1 to 3] |
 //! | thin-plate spline, normals, folds | `patch::spline`, `patch::site` | [Duranleau 2008 §5.2] |
@@ -46,6 +47,9 @@
 //! - The last patches of a tile are the best of more that are tried, since they meet others on both sides.
 //! - Of the places within ε the one is taken of which least was seen so far, and least nearby; chance has a say. ε is larger for it, but for what repeats
 //!   strictly it is none: an overlap shows too little of how that goes on.
+//! - Where two shifts carry a texture into itself, patches are taken only from where it goes on as what is there does, and are laid exactly so between
+//!   the cells: bonds keep without drift, gaps are closed in bond, and tiles that nearly suit are stretched a little.
+//! - Nothing comes to lie higher or lower than in the texture.
 //! - Of the nodes of an overlap at most 160 are compared, by turns as on a chessboard and in every second row and column.
 //! - Patches are laid along diagonals of the rows, whose patches do not see one another, so that they are made at once.
 //! - A patch is bent beside the overlap alone, and is as in the texture a third of its side on. Where it has many points, the spline is worked

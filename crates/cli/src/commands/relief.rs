@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use arabesque::{
-    Direction, Format, Input, Recipe, Relief as ReliefJob,
-    core::options::help_list,
+    Direction, Format, Input, Recipe, Relief as ReliefJob, Size,
+    core::{Error, options::help_list},
     reliefs::{Plane, ReliefParams},
 };
 use clap::Args;
@@ -111,6 +111,12 @@ fn parameters() -> String {
     format!("Parameters for --set, by name:\n{}", help_list(&ReliefParams::specs()))
 }
 
+/// Width and depth, in the units of the texture.
+fn extent(text: &str) -> Result<Size, Error> {
+    let expected = "width x depth with positive numbers up to 1e9 in the units of the texture, such as 2x1.5";
+    text.parse().map_err(|_| Error::parameter("extent", format!("\"{text}\""), expected))
+}
+
 impl Relief {
     pub(crate) fn execute(self) -> Result<ExitCode, Failure> {
         let format = self.run.format.or(Format::of_path(&self.output).ok().flatten());
@@ -118,7 +124,7 @@ impl Relief {
             return Err(Failure::usage("--height-field is a picture; give -o OUT.png"));
         }
         let mut job = ReliefJob {
-            extent: self.place.extent.map(|text| text.parse()).transpose()?,
+            extent: self.place.extent.as_deref().map(extent).transpose()?,
             tile: self.place.tile,
             on: self.place.on.map(Input::file),
             direction: self.place.direction.map(|text| Direction::parse(&text)),

@@ -79,7 +79,7 @@ impl Field {
             (before + values[k] + after) / 3.0
         };
         let smooth = |values: &Vec<f32>| -> Vec<f32> {
-            let ends = |k: usize| (k % self.width == 0, k % self.width + 1 == self.width);
+            let ends = |k: usize| (k.is_multiple_of(self.width), (k + 1).is_multiple_of(self.width));
             let rows: Vec<f32> = (0..count).map(|k| mean(values, k, 1, ends(k))).collect();
             let ends = |k: usize| (k < self.width, k + self.width >= count);
             (0..count).map(|k| mean(&rows, k, self.width, ends(k))).collect()

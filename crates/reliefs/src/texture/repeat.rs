@@ -95,7 +95,7 @@ impl Repeat {
             }
             let times = ((a[0] * b[0] + a[1] * b[1]) / length(a).powi(2)).round();
             let shorter = combined([b, a], [1.0, -times]);
-            if times == 0.0 || !(length(shorter) < 0.999 * length(b)) {
+            if times == 0.0 || !times.is_finite() || length(shorter) >= 0.999 * length(b) {
                 break;
             }
             b = shorter;

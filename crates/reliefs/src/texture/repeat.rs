@@ -31,6 +31,10 @@ const PART: f64 = 0.12;
 const SHORTEST: f64 = 3.0;
 /// Share of the shifts of the lattice at which the field has to be like itself.
 const MOST: f64 = 0.8;
+/// Shifts of the lattice at which it has to be at least: of fewer nothing follows.
+const LEAST: usize = 5;
+/// Parts of the cell in which places are looked for, along each shift.
+const WAYS: usize = 8;
 /// How much tiles may stretch or shear what repeats.
 const STRETCH: f64 = 0.04;
 
@@ -169,7 +173,7 @@ impl Repeat {
             }
         }
         all.sort_by(f64::total_cmp);
-        Ok((good >= 3 && good as f64 >= MOST * all.len() as f64).then(|| all[all.len() / 2]))
+        Ok((good >= LEAST && good as f64 >= MOST * all.len() as f64).then(|| all[all.len() / 2]))
     }
 
     /// The lattice by parts of its shifts where those carry the field into itself as well.
@@ -208,6 +212,16 @@ impl Repeat {
         let [a, b] = self.shifts;
         let det = cross(a, b);
         [cross(way, b) / det, cross(a, way) / det]
+    }
+
+    /// Whether among these places there is one for every way in which something may go on.
+    pub(crate) fn is_covered(&self, places: &[[u32; 2]]) -> bool {
+        let mut is_met = [false; WAYS * WAYS];
+        for place in places {
+            let [u, v] = self.coordinates(place.map(f64::from)).map(|t| ((t - t.floor()) * WAYS as f64) as usize);
+            is_met[v.min(WAYS - 1) * WAYS + u.min(WAYS - 1)] = true;
+        }
+        is_met.iter().all(|met| *met)
     }
 
     /// How far a way leads beside the nearest that carries the texture into itself.
@@ -442,6 +456,16 @@ mod tests {
             assert!((x - 0.3).abs() < 1e-9 && (y + 0.4).abs() < 1e-9, "{way:?}: {x} {y}");
         }
         assert!((length(lattice.beside([5.0, 0.0])) - 5.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn places_over_a_whole_cell_cover_it() {
+        let lattice = Repeat { shifts: [[20.0, 0.0], [10.0, 12.0]] };
+        let block = |width: u32, height: u32| -> Vec<[u32; 2]> {
+            (0..width * height).map(|k| [100 + k % width, 57 + k / width]).collect()
+        };
+        assert!(lattice.is_covered(&block(20, 12)) && lattice.is_covered(&block(10, 24)));
+        assert!(!lattice.is_covered(&block(14, 12)) && !lattice.is_covered(&[]));
     }
 
     #[test]

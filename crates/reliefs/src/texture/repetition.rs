@@ -62,22 +62,21 @@ pub(crate) fn repetition(field: &Field, budget: &Budget) -> Result<Repetition> {
     let smooth = field.smoothed(budget)?;
     for columns in COLUMNS {
         let Some(likeness) = Likeness::new(&smooth, columns, budget)? else { break };
-        let minima = minima(&likeness);
-        let best = minima.iter().map(|m| m.difference).fold(f64::INFINITY, f64::min);
-        let strength = (1.0 - best).clamp(0.0, 1.0);
-        let as_good = |m: &&Minimum| m.difference <= (AS_GOOD * best).max(best + 0.1).min(ALIKE);
-        let shortest = minima.iter().filter(as_good).map(|m| m.length).fold(f64::INFINITY, f64::min);
+        let smoothed = minima(&likeness);
+        let all = if columns == COLUMNS[0] {
+            Likeness::new(field, columns, budget)?.map_or_else(Vec::new, |likeness| minima(&likeness))
+        } else {
+            smoothed.clone()
+        };
         let scale = likeness.skip as f64;
+        let (best, shortest) = shortest(&all);
+        let strength = (1.0 - best).clamp(0.0, 1.0);
         let repeats = best <= ALIKE;
-        if repeats >= found.length.is_some() && strength > found.strength {
+        if repeats > found.length.is_some() || found.length.is_none() && strength > found.strength {
             found = Repetition { length: repeats.then_some(shortest * scale), strength, ..found };
         }
-        if found.repeat.is_none() && repeats {
-            let mut good = minima;
-            good.retain(|m| m.difference <= (best + SPREAD).min(ALIKE));
-            good.sort_by(|a, b| a.difference.total_cmp(&b.difference));
-            let shifts: Vec<_> = good.iter().map(|m| m.shift.map(|v| v as f64 * scale)).collect();
-            found.repeat = Repeat::find(&smooth, &shifts, scale, budget)?;
+        if found.repeat.is_none() {
+            found.repeat = Repeat::find(&smooth, &surest(smoothed, scale), scale, budget)?;
         }
         let is_clear = shortest >= FINE && (found.repeat.is_some() || strength < STRICT);
         if likeness.skip == 1 || repeats && is_clear {
@@ -85,6 +84,22 @@ pub(crate) fn repetition(field: &Field, budget: &Budget) -> Result<Repetition> {
         }
     }
     Ok(found)
+}
+
+/// The least difference, and the length of the shortest shift at which it is about as small.
+fn shortest(minima: &[Minimum]) -> (f64, f64) {
+    let best = minima.iter().map(|m| m.difference).fold(f64::INFINITY, f64::min);
+    let most = (AS_GOOD * best).max(best + 0.1).min(ALIKE);
+    let as_good = minima.iter().filter(|m| m.difference <= most);
+    (best, as_good.map(|m| m.length).fold(f64::INFINITY, f64::min))
+}
+
+/// Shifts that may belong to a lattice, in cells, the surest first.
+fn surest(mut minima: Vec<Minimum>, scale: f64) -> Vec<[f64; 2]> {
+    let best = minima.iter().map(|m| m.difference).fold(f64::INFINITY, f64::min);
+    minima.retain(|m| m.difference <= (best + SPREAD).min(ALIKE));
+    minima.sort_by(|a, b| a.difference.total_cmp(&b.difference));
+    minima.iter().map(|m| m.shift.map(|v| v as f64 * scale)).collect()
 }
 
 /// Shifts that may be repetitions.

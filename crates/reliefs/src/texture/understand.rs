@@ -13,6 +13,7 @@ use crate::{
         gap::Gap,
         pieces::Pieces,
         reading::{axes, checked, fail, oriented, surface, told},
+        repeat::Repeat,
         repetition::{Repetition, repetition},
     },
 };
@@ -324,7 +325,9 @@ impl Texture {
         // There has to be a place for every way in which what repeats may meet the gap.
         let is_gap = self.gap.is_some();
         let repeats = self.repetition.length.filter(|_| is_gap).map_or(0.0, |length| 1.5 * length * length);
-        self.places.len() >= ENOUGH.max(repeats as usize)
+        let goes_on = |repeat: &Repeat| repeat.is_covered(&self.places);
+        let every_way = self.repetition.repeat.as_ref().filter(|_| is_gap).is_none_or(goes_on);
+        self.places.len() >= ENOUGH.max(repeats as usize) && every_way
     }
 
     fn count_in(&self, bounds: &Bounds<3>) -> usize {

@@ -266,7 +266,7 @@ impl Repeat {
         for (m, n) in (-most..=most).flat_map(|m| (-most..=most).map(move |n| (m, n))) {
             let to = combined(self.shifts, [m as f64, n as f64]);
             let (along, off) = (to[axis], to[1 - axis].abs());
-            if along <= 0.0 || off > 0.25 * STRETCH * along {
+            if along <= 0.0 || off > 0.5 * STRETCH * along {
                 continue;
             }
             let side = usize::from(along > wanted);

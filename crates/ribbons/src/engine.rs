@@ -11,7 +11,7 @@ use crate::{
     constraints::valid::{Grade, Offset, Position},
     exemplar::columns::Columns,
     exemplar::strip::{self, Strip, StripExemplar, sample},
-    forecast::Pace,
+    forecast::{Pace, USUAL},
     geometry::cage::{Cage, CagePlan},
     objects::{
         find::{self, Objects},
@@ -165,7 +165,7 @@ impl Prepared {
         }
         let pieces = allow(&cages, &budget);
         let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget, &mut |work| {
-            watch.foreseen(&budget.forecast(pieces as f64, work));
+            watch.foreseen(&budget.forecast(pieces as f64, work + USUAL * pieces as f64));
         })?;
         let mut outcome = self.lay(&cages, &free, (request, before), watch)?;
         let Some(mask) = mask else { return Ok(outcome) };

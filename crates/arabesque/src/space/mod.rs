@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 use arabesque_core::{
     Border, Budget, Domain, Error, Exemplar, Limits, Outcome, Progress, Request as EngineRequest, Result, Snapshot,
-    StopReason, Warning, Watch,
+    StopReason, Warning, Watch, rounded,
 };
 use arabesque_io::mesh::scene::Convention;
 use arabesque_patterns::Prepared as Engine;
@@ -320,7 +320,7 @@ fn check_volume(exemplar: &Exemplar<3>, volume: f64, budget: &Budget) -> Result<
     if expected.is_nan() || expected > budget.limits().output_elements as f64 {
         return Err(Error::Limit {
             what: "size of the place to fill".into(),
-            found: format!("room for about {expected:.0} elements or cells"),
+            found: format!("room for about {} elements or cells", rounded(expected.round())),
             limit: budget.limits().output_elements.to_string(),
             advice: format!(
                 "make it smaller{}; it is in the units of the exemplar",

@@ -111,6 +111,25 @@ impl Frame {
         parts.map(|(k, samples)| Band { width, first: k * rows, samples }).collect()
     }
 
+    /// Whether everything within a ball is behind what is there already. Nothing is hidden by what is not drawn yet.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub(super) fn hides(&self, ball: &Ball, budget: &Budget) -> Result<bool> {
+        let ([cx, cy, _], near) = (ball.place, ball.near() as f32);
+        // A little more than the ball, for the rounding of places.
+        let reach = ball.radius + 1.0;
+        let mut looked = 1;
+        let is_hidden = Self::span(cy - reach, cy + reach, self.height).all(|y| {
+            let half = (reach * reach - (y as f64 + 0.5 - cy).powi(2)).max(0.0).sqrt();
+            let columns = Self::span(cx - half, cx + half, self.width);
+            looked += columns.len() as u64;
+            self.samples[y * self.width..][columns].iter().all(|sample| sample.depth > near)
+        });
+        budget.spend(looked)?;
+        Ok(is_hidden)
+    }
+
     /// All samples as one band.
     #[cfg(test)]
     pub(super) fn whole(&mut self) -> Band<'_> {
@@ -160,6 +179,23 @@ impl Band<'_> {
     }
 }
 
+/// The ball around a thing, in samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    /// Which thing it is.
+    pub(super) number: usize,
+    /// Column, row and nearness of its middle.
+    pub(super) place: [f64; 3],
+    pub(super) radius: f64,
+}
+
+impl Ball {
+    /// How near it comes to the eye.
+    pub(super) fn near(&self) -> f64 {
+        self.place[2] + self.radius + 1.0
+    }
+}
+
 /// Things that follow one another, and the rows that they reach over together: most bands pass over most of them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
@@ -206,6 +242,22 @@ mod tests {
         assert_eq!(Frame::span(-1e300, 1e300, 9), 0..9);
         assert_eq!(Frame::span(f64::NAN, 3.0, 9).len(), 3);
         assert!(Frame::span(5.0, 2.0, 9).is_empty());
+    }
+
+    #[test]
+    fn what_lies_behind_is_hidden_and_nothing_else() {
+        let budget = Budget::default();
+        let mut frame = Frame::empty([20, 20], &budget).unwrap();
+        let hides = |frame: &Frame, x: f64, depth: f64| {
+            frame.hides(&Ball { number: 0, place: [x, 20.0, depth], radius: 5.0 }, &budget).unwrap()
+        };
+        assert!(!hides(&frame, 20.0, -100.0));
+        for at in 0..40 * 30 {
+            frame.whole().put(at % 30, at / 30, Sample::new(0.0, [0.0, 0.0, 1.0], [0; 3]));
+        }
+        assert!(hides(&frame, 20.0, -10.0));
+        assert!(!hides(&frame, 20.0, -4.0), "it reaches to the front");
+        assert!(!hides(&frame, 26.0, -10.0), "it reaches beyond what is in front");
     }
 
     #[test]

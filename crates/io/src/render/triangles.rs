@@ -1,14 +1,16 @@
 //! Triangles in samples.
 //!
-//! A mesh in several places is drawn a batch of places at a time: first all vertices are brought to where they are seen, then each band of
-//! the picture draws the triangles that reach into it, in their order, so that the picture is the same for any number of threads.
+//! A mesh in several places is drawn a batch of places at a time, from the nearest on. Places that lie behind what was drawn before are passed
+//! over; of the others all vertices are brought to where they are seen, and then each band of the picture draws the triangles that reach into
+//! it, in their order, so that the picture is the same for any number of threads.
 
-use arabesque_core::{Budget, Held, Meter, Result, Similarity, TriangleMesh, Vector};
+use arabesque_core::{Bounds, Budget, Held, Meter, Result, Similarity, TriangleMesh, Vector};
 use rayon::prelude::*;
 
-use super::frame::{Band, Frame, Projection, Reach, Sample};
+use super::frame::{Ball, Band, Frame, Projection, Reach, Sample};
 
-/// Work of one vertex, of one triangle, and of one sample of its box.
+/// Work of the ball around one place, of one vertex, of one triangle, and of one sample of its box.
+const PER_BALL: u64 = 60;
 const PER_VERTEX: u64 = 30;
 const PER_TRIANGLE: u64 = 30;
 const PER_SAMPLE: u64 = 4;
@@ -37,29 +39,50 @@ struct Corners {
     colours: [[u8; 3]; 3],
 }
 
-/// Draws a mesh in its places. What lies between corners is between them in every respect.
+/// Draws a mesh in its places, the nearest first. What lies between corners is between them in every respect.
 ///
 /// # Errors
 /// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
 pub(super) fn draw(placed: &Placed<'_>, projection: &Projection, frame: &mut Frame, budget: &Budget) -> Result<()> {
     let Placed { mesh, places, .. } = placed;
     let each = mesh.positions.len().max(mesh.triangles.len()).max(1);
-    let batch = (BATCH / each).max(1);
-    for (number, places) in places.chunks(batch).enumerate() {
-        let seen = Seen::new(mesh, places, projection, budget)?;
-        frame.bands().into_par_iter().try_for_each(|mut band| {
-            seen.draw(placed, (number * batch, projection), &mut band, &mut budget.meter())
-        })?;
+    let balls = balls(mesh, places, projection, budget)?;
+    for batch in balls.chunks((BATCH / each).max(1)) {
+        let hidden = batch.par_iter().map(|ball| frame.hides(ball, budget)).collect::<Result<Vec<bool>>>()?;
+        let shown = batch.iter().zip(&hidden).filter(|(_, is_hidden)| !**is_hidden);
+        let numbers = shown.map(|(ball, _)| ball.number).collect();
+        let seen = Seen::new(placed, numbers, projection, budget)?;
+        frame
+            .bands()
+            .into_par_iter()
+            .try_for_each(|mut band| seen.draw(placed, projection, &mut band, &mut budget.meter()))?;
         budget.spend(0)?;
     }
     Ok(())
 }
 
-/// The mesh in the places of a batch.
+/// The balls around the mesh in its places, the nearest first: most of a heap is behind what is in front.
+fn balls(mesh: &TriangleMesh, places: &[Similarity<3>], projection: &Projection, budget: &Budget) -> Result<Vec<Ball>> {
+    budget.spend(PER_BALL * places.len() as u64 + mesh.positions.len() as u64)?;
+    let centre = Bounds::around(mesh.positions.iter().copied()).centre();
+    let radius = mesh.positions.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
+    let ball = |(number, place): (usize, &Similarity<3>)| Ball {
+        number,
+        place: projection.place(place.apply(centre)),
+        radius: radius * place.scale * projection.scale,
+    };
+    let mut balls: Vec<Ball> = places.iter().enumerate().map(ball).collect();
+    balls.par_sort_by(|a, b| b.near().total_cmp(&a.near()).then(a.number.cmp(&b.number)));
+    Ok(balls)
+}
+
+/// The mesh in those places of a batch where something of it may be seen.
 struct Seen {
-    /// For each place, the vertices as columns, rows and nearness in samples.
+    /// The numbers of the places.
+    numbers: Vec<usize>,
+    /// For each of them, the vertices as columns, rows and nearness in samples.
     vertices: Vec<[f64; 3]>,
-    /// For each place, the rows of each run of triangles.
+    /// For each of them, the rows of each run of triangles.
     reaches: Vec<Reach>,
     /// Vertices and runs of one place.
     each: [usize; 2],
@@ -67,26 +90,22 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(
-        mesh: &TriangleMesh,
-        places: &[Similarity<3>],
-        projection: &Projection,
-        budget: &Budget,
-    ) -> Result<Self> {
+    fn new(placed: &Placed<'_>, numbers: Vec<usize>, projection: &Projection, budget: &Budget) -> Result<Self> {
+        let Placed { mesh, places, .. } = placed;
         let each = [mesh.positions.len(), mesh.triangles.len().div_ceil(RUN)];
-        let (mut vertices, held) = budget.list("vertices as they are seen", each[0] * places.len())?;
-        vertices.resize(each[0] * places.len(), [0.0; 3]);
+        let (mut vertices, held) = budget.list("vertices as they are seen", each[0] * numbers.len())?;
+        vertices.resize(each[0] * numbers.len(), [0.0; 3]);
         vertices.par_chunks_mut(SHARE).enumerate().try_for_each(|(share, list)| {
             budget.spend(PER_VERTEX * list.len() as u64)?;
             for (k, seen) in list.iter_mut().enumerate() {
                 let k = share * SHARE + k;
-                *seen = projection.place(places[k / each[0]].apply(mesh.positions[k % each[0]]));
+                *seen = projection.place(places[numbers[k / each[0]]].apply(mesh.positions[k % each[0]]));
             }
             Ok(())
         })?;
-        let (mut reaches, runs) = budget.list("triangles as they are seen", each[1] * places.len())?;
-        reaches.resize(each[1] * places.len(), Reach::NONE);
-        let mut seen = Self { vertices, reaches: Vec::new(), each, _held: [held, runs] };
+        let (mut reaches, runs) = budget.list("triangles as they are seen", each[1] * numbers.len())?;
+        reaches.resize(each[1] * numbers.len(), Reach::NONE);
+        let mut seen = Self { numbers, vertices, reaches: Vec::new(), each, _held: [held, runs] };
         reaches.par_iter_mut().enumerate().try_for_each(|(k, reach)| {
             let (place, run) = (k / each[1], k % each[1]);
             let triangles = mesh.triangles.chunks(RUN).nth(run).unwrap_or_default();
@@ -104,11 +123,11 @@ impl Seen {
         self.vertices[place * self.each[0] + v as usize]
     }
 
-    /// Draws what reaches into a band; the first place of the batch is the one of number `first`.
+    /// Draws what reaches into a band.
     fn draw(
         &self,
         placed: &Placed<'_>,
-        (first, projection): (usize, &Projection),
+        projection: &Projection,
         band: &mut Band<'_>,
         meter: &mut Meter<'_>,
     ) -> Result<()> {
@@ -118,11 +137,12 @@ impl Seen {
                 continue;
             }
             let (place, run) = (k / self.each[1], k % self.each[1]);
-            let (number, end) = (first + place, ((run + 1) * RUN).min(mesh.triangles.len()));
+            let (number, end) = (self.numbers[place], ((run + 1) * RUN).min(mesh.triangles.len()));
             let turn = |n: Vector<3>| projection.axes.turned(places[number].rotation.apply(n)).0.map(|c| c as f32);
             for t in run * RUN..end {
                 let triangle = mesh.triangles[t];
-                let corners = || Corners { normals: normals[t].map(turn), colours: triangle.map(|v| colour(number, v)) };
+                let corners =
+                    || Corners { normals: normals[t].map(turn), colours: triangle.map(|v| colour(number, v)) };
                 draw_one(triangle.map(|v| self.vertex(place, v)), corners, band, meter)?;
             }
         }

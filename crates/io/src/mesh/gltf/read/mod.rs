@@ -149,7 +149,8 @@ impl Reader<'_> {
                 called => format!("{name}: node {}", crate::text::short::short(called)),
             };
             let [x, y, z] = p.0.map(rounded);
-            let problem = format!("a vertex at ({x}, {y}, {z}) where coordinates between -{most} and {most} were expected");
+            let problem =
+                format!("a vertex at ({x}, {y}, {z}) where coordinates between -{most} and {most} were expected");
             let raising = Limits::raising("coordinate", p.0.iter().fold(0.0, |far: f64, c| far.max(c.abs())));
             let advice = format!("scale the mesh down, move it nearer to the origin{raising}");
             return Err(Error::input(place, problem, advice));

@@ -16,6 +16,8 @@ const LOOK: u64 = 12;
 const ORDINARY: u64 = 256;
 /// Triangles around one corner from which these are told to be what makes questions dear.
 const CROWD: usize = 200;
+/// Cells along a side of the box around a mesh, in whose middles it is asked how dear questions are.
+const CELLS: usize = 4;
 /// Questions that tell how dear they are.
 const ASKED: usize = 64;
 
@@ -240,9 +242,13 @@ impl MeshIndex {
     /// # Errors
     /// [`Error::Limit`] when they would be; as [`Budget::spend`].
     pub fn expect(&self, questions: f64, budget: &Budget) -> Result<()> {
-        let each = self.dearness();
-        budget.spend((ASKED.min(self.triangles()) as f64 * each) as u64)?;
-        self.refuse_many(questions * each / 1e6, budget)
+        let size = self.bounds.size();
+        // The middles of a few cells all over the box.
+        let middle = |k: usize, axis: usize| ((k / CELLS.pow(axis as u32) % CELLS) as f64 + 0.5) / CELLS as f64;
+        let place = |k: usize| self.bounds.min + Vector(std::array::from_fn(|axis| size[axis] * middle(k, axis)));
+        let looked: u64 = (0..CELLS.pow(3)).map(|k| self.nearest(place(k)).1).sum();
+        budget.spend(looked * LOOK)?;
+        self.refuse_many(questions * (looked * LOOK) as f64 / CELLS.pow(3) as f64 / 1e6, budget)
     }
 
     /// Refuses questions that would take so many million units of work, where that is over the limit.

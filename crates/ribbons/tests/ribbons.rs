@@ -221,7 +221,10 @@ fn pieces_before_and_after_a_cut_one_are_as_cheap_as_others() {
         budget.work()
     };
     let free = work(&wanted);
-    let cut = work(&RibbonRequest { avoid: Some(spot(100.0, 50.0, 40.0)), ..wanted });
+    // Through a wall there is no way at all.
+    let wall =
+        Mask { blocked: (0..200 * 100).map(|k| (80..120).contains(&(k % 200))).collect(), ..spot(0.0, 0.0, 0.0) };
+    let cut = work(&RibbonRequest { avoid: Some(wall), ..wanted });
     assert!(cut < 2 * free, "{cut} units of work, {free} where nothing is in the way");
 }
 

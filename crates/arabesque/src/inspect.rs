@@ -185,7 +185,7 @@ pub(crate) fn of_other(
     reading: impl Into<Reading>,
     resources: &Resources,
 ) -> Result<Report> {
-    let budget = resources.budget();
+    let budget = resources.budget().stage("reading");
     let report = match LoadedExemplar::read(input, bytes, reading, &budget)? {
         LoadedExemplar::Drawing(drawing, known) => {
             let mut report = describe(input, "drawing", &drawing.exemplar);

@@ -27,6 +27,8 @@ pub(crate) struct Watch {
     bar: ProgressBar,
     level: Level,
     started: Instant,
+    /// Whether the work was told before.
+    foretold: bool,
     /// The last stage that was told, where stages are told.
     told: Option<Cow<'static, str>>,
 }
@@ -42,7 +44,8 @@ impl Watch {
         if let Ok(style) = ProgressStyle::with_template(&format!("{} {{percent:>3}}% {{msg}}", say::bar_style())) {
             bar.set_style(style);
         }
-        Self { bar, level, started: Instant::now(), told: (level == Level::Verbose).then_some(Cow::Borrowed("")) }
+        let told = (level == Level::Verbose).then_some(Cow::Borrowed(""));
+        Self { bar, level, started: Instant::now(), foretold: false, told }
     }
 
     /// Takes the bar off the screen.
@@ -67,11 +70,14 @@ impl<P> arabesque::Watch<P> for Watch {
     fn foreseen(&mut self, forecast: &Forecast) {
         let seconds = forecast.work * UNIT;
         if self.level > Level::Quiet && seconds > WORTH_TELLING {
-            let text = format!(
-                "about {:.0} elements, samples or pieces to place: {} of work for one core",
-                forecast.count,
-                clock(seconds)
-            );
+            let text = match std::mem::replace(&mut self.foretold, true) {
+                false => format!(
+                    "about {:.0} elements, samples or pieces to place: {} of work for one core",
+                    forecast.count,
+                    clock(seconds)
+                ),
+                true => format!("by what was placed until now, {} of work for one core are left", clock(seconds)),
+            };
             self.bar.suspend(|| say::note(&text));
             if forecast.work > forecast.allowed {
                 let needed = (forecast.work / 1e6).ceil();

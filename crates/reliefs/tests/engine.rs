@@ -319,6 +319,16 @@ fn textures_may_stand_and_come_without_normals() {
     assert!(Prepared::new(&lying, None, &params, &Budget::default()).is_ok());
 }
 
+#[test]
+fn patches_that_are_too_small_for_the_texture_are_told() {
+    let warned = |patch: f64| {
+        let params = ReliefParams { patch: Some(patch), ..ReliefParams::default() };
+        let engine = Prepared::new(&bumps(3.5, |_, _| true), None, &params, &Budget::default()).unwrap();
+        engine.warnings().iter().filter(|w| w.message.contains("smaller than this texture can tell apart")).count()
+    };
+    assert_eq!((warned(1e-6), warned(0.8)), (1, 0));
+}
+
 /// How far the scans below lean, in radians.
 const LEAN: f64 = 0.4;
 

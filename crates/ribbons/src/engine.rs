@@ -11,7 +11,7 @@ use crate::{
     constraints::valid::{Grade, Offset, Position},
     exemplar::columns::Columns,
     exemplar::strip::{self, Strip, StripExemplar, sample},
-    forecast::Pace,
+    forecast::{Pace, USUAL},
     geometry::cage::{Cage, CagePlan},
     objects::{
         find::{self, Objects},
@@ -165,7 +165,7 @@ impl Prepared {
         }
         let pieces = allow(&cages, &budget);
         let free = Forbidden::of(&cages, mask, self.strip.longest() as f64, &budget, &mut |work| {
-            watch.foreseen(&budget.forecast(pieces as f64, work));
+            watch.foreseen(&budget.forecast(pieces as f64, work + USUAL * pieces as f64));
         })?;
         let mut outcome = self.lay(&cages, &free, (request, before), watch)?;
         let Some(mask) = mask else { return Ok(outcome) };
@@ -211,6 +211,9 @@ impl Prepared {
         let limit = budget.limits().output_elements;
         for (name, path) in curves {
             let cage = cut(path, &plan(name))?;
+            if self.objects.is_none() {
+                check_folds(name, &cage)?;
+            }
             pieces += cage.len();
             budget.within("pieces along all curves", pieces, ("output-elements", limit))?;
             if self.params.stitch && self.objects.is_none() {
@@ -448,6 +451,14 @@ impl Prepared {
         })?;
         Ok(hit)
     }
+}
+
+/// Refuses a curve with a piece that no position can fill, before any piece is laid.
+fn check_folds<const D: usize>(name: &str, cage: &Cage<D>) -> Result<()> {
+    let Some(k) = cage.forms.iter().position(|form| form.unfolded().is_none()) else { return Ok(()) };
+    let (number, n, place) = (k + 1, cage.len(), place(cage, k));
+    let problem = format!("{name}: piece {number} of {n}, at {place}: the curve turns back on itself within one piece");
+    Err(Error::no_result(problem, "round the curve there, use shorter pieces (--step), or a narrower ribbon (--width)"))
 }
 
 /// Allows the work of all pieces, and says how many there are.

@@ -8,6 +8,11 @@ const TOLD: [usize; 2] = [4, 64];
 /// Work of the pieces after which it is foreseen from fewer.
 const SOON: u64 = 4_000_000_000;
 
+/// Work of a piece as a rule, which is all that is known before the first ones.
+pub(crate) const USUAL: f64 = 12e6;
+/// How many times as much as was foretold, or as many times less, is told anew.
+const OTHER: f64 = 3.0;
+
 /// What is known of the pieces of a run.
 #[derive(Debug)]
 pub(crate) struct Pace {
@@ -28,7 +33,8 @@ impl Pace {
         Self { total, told, start: work, from: (0, work), is_told: false }
     }
 
-    /// With `done` pieces and so much work, the work of those that are left; once, when it can be told.
+    /// With `done` pieces and so much work, the work of those that are left; once, when it can be told, where pieces are dearer or cheaper
+    /// by far than was foretold.
     pub(crate) fn at(&mut self, done: usize, work: u64) -> Option<f64> {
         if done == 1 || done == self.told / 2 {
             self.from = (done, work);
@@ -39,7 +45,8 @@ impl Pace {
         }
         self.is_told = true;
         let each = work.saturating_sub(self.from.1) as f64 / (done - self.from.0) as f64;
-        Some(each * self.total.saturating_sub(done) as f64)
+        let is_as_foretold = (USUAL / OTHER..=USUAL * OTHER).contains(&each);
+        (!is_as_foretold).then(|| each * self.total.saturating_sub(done) as f64)
     }
 }
 
@@ -58,6 +65,13 @@ mod tests {
         assert_eq!(told(200, 1000), Some((20, 180.0 * 1000.0)));
         assert_eq!(told(2, 1000), None);
         assert_eq!(told(10_000, 1_000_000_000), Some((4, 9996.0 * 1e9)));
+    }
+
+    #[test]
+    fn what_was_foretold_is_not_told_again() {
+        assert_eq!(told(200, USUAL as u64), None);
+        assert_eq!(told(200, 2 * USUAL as u64), None);
+        assert!(told(200, 5 * USUAL as u64).is_some() && told(200, USUAL as u64 / 5).is_some());
     }
 
     #[test]

@@ -211,6 +211,24 @@ fn no_way_through_is_an_error_that_names_the_piece_and_relaxing_cuts_it() {
 }
 
 #[test]
+fn pieces_before_and_after_a_cut_one_are_as_cheap_as_others() {
+    let exemplar = strip(120, 40, 2);
+    let wanted = request(line(&[(10.0, 50.0), (590.0, 50.0)]));
+    let params = RibbonParams { step: Some(5.0), relax: true, ..RibbonParams::default() };
+    let work = |wanted: &RibbonRequest<2>| {
+        let budget = Budget::default();
+        run(&exemplar, &params, &RibbonRequest { budget: budget.clone(), ..wanted.clone() });
+        budget.work()
+    };
+    let free = work(&wanted);
+    // Through a wall there is no way at all.
+    let wall =
+        Mask { blocked: (0..200 * 100).map(|k| (80..120).contains(&(k % 200))).collect(), ..spot(0.0, 0.0, 0.0) };
+    let cut = work(&RibbonRequest { avoid: Some(wall), ..wanted });
+    assert!(cut < 2 * free, "{cut} units of work, {free} where nothing is in the way");
+}
+
+#[test]
 fn ends_are_shown_at_the_ends_and_nowhere_else() {
     let exemplar = StripExemplar { start: Some(0..20), end: Some(70..90), ..strip(90, 24, 4) };
     let outcome = run(

@@ -14,6 +14,9 @@ use subject::{Found, Intent, read};
 pub use arabesque_measure::{Family, FamilyFault, Measure, Verdict};
 pub use report::{MeasureOptions, MeasureReport, Measurements};
 
+/// What is being done, for messages about limits.
+const MEASURING: &str = "reading and measuring";
+
 /// Measures results beside their exemplar.
 ///
 /// # Errors
@@ -25,13 +28,13 @@ pub fn measure(
     resources: &Resources,
 ) -> Result<Measurements> {
     let bytes = resources.read_as("exemplar", exemplar)?;
-    let budget = resources.budget();
+    let budget = resources.budget().stage(MEASURING);
     let loaded = LoadedExemplar::read(exemplar, &bytes, options.reading, &budget)?;
     let mut work = budget.millions();
     let mut reports = Vec::new();
     for result in results {
         // Each has the whole of the limits for itself.
-        let budget = resources.budget();
+        let budget = resources.budget().stage(MEASURING);
         reports.push(one((&loaded, result), options, resources, &budget)?);
         work += budget.millions();
     }

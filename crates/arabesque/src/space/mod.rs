@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 use arabesque_core::{
     Border, Budget, Domain, Error, Exemplar, Limits, Outcome, Progress, Request as EngineRequest, Result, Snapshot,
-    StopReason, Warning, Watch,
+    StopReason, Warning, Watch, rounded,
 };
 use arabesque_io::mesh::scene::Convention;
 use arabesque_patterns::Prepared as Engine;
@@ -319,19 +319,19 @@ fn check_volume(exemplar: &Exemplar<3>, volume: f64, budget: &Budget) -> Result<
     let expected = if shown > 0.0 { volume * shown / exemplar.window.measure() } else { volume / spacing.powi(3) };
     if expected.is_nan() || expected > budget.limits().output_elements as f64 {
         return Err(Error::Limit {
-            what: "size of the box".into(),
-            found: format!("room for about {expected:.0} elements or cells"),
+            what: "size of the place to fill".into(),
+            found: format!("room for about {} elements or cells", rounded(expected.round())),
             limit: budget.limits().output_elements.to_string(),
             advice: format!(
-                "make it smaller{}; its sides are in the units of the exemplar",
+                "make it smaller{}; it is in the units of the exemplar",
                 Limits::raising("output-elements", expected)
             ),
         });
     }
     if expected < 0.5 {
         return Err(Error::no_result(
-            format!("the box has no room for anything: the exemplar has a spacing of {spacing:.4}"),
-            "make it larger; its sides are in the units of the exemplar",
+            format!("the place has no room for anything: the exemplar has a spacing of {spacing:.4}"),
+            "make it larger; it is in the units of the exemplar",
         ));
     }
     Ok(())

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use arabesque_core::{Error, PointSet, Result, StopReason, Unobserved, Warning, Watch};
 use arabesque_io::geometry::Cloud;
-use arabesque_structures::{Prepared as Engine, StructureOutcome, StructureRequest};
+use arabesque_structures::{Prepared as Engine, Solid, StructureOutcome, StructureRequest};
 use arabesque_surface::{Reconstruction, SurfaceParams, reconstruct};
 
 use crate::{
@@ -101,6 +101,10 @@ impl Ready for Structure {
                 Ok(Artwork::new(origin, PlanePoints(outcome)))
             }
             Self::Space(engine, points, shapes) => {
+                // Known without the mesh, which may take a while to look over.
+                if job.inside.is_some() && engine.repeats() < 3 {
+                    return Err(Solid::shallow());
+                }
                 let mut request = StructureRequest::new(place::in_space(&mut job, points, &mut context)?);
                 if let Some(input) = &mut job.keep {
                     request.kept = place::kept(input, &mut context, |points| match points {

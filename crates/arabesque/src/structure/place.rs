@@ -103,7 +103,7 @@ pub(super) fn in_space(
             Ok(Arc::new(shell.turned(degrees(job, place)?.to_radians())))
         }
         ("inside", Structures { inside: Some(input), .. }) => {
-            let (index, report) = filled(input, context)?;
+            let (index, report) = filled(input, |_| 0.0, context)?;
             Ok(Arc::new(Solid::new(Arc::new(index), report.volume.abs(), even(job, place)?)))
         }
         (other, _) => {
@@ -143,10 +143,16 @@ pub(crate) fn lines(option: &str, input: &mut Input, context: &mut RunContext<'_
     }
 }
 
-/// A closed mesh to fill, with what is known of it; the file is embedded.
-pub(crate) fn filled(input: &mut Input, context: &mut RunContext<'_>) -> Result<(MeshIndex, MeshReport)> {
+/// A closed mesh to fill, with what is known of it; the file is embedded. A mesh that could not answer as many `questions` as are asked of one
+/// in such a box is refused before it is looked over.
+pub(crate) fn filled(
+    input: &mut Input,
+    questions: fn(&Bounds<3>) -> f64,
+    context: &mut RunContext<'_>,
+) -> Result<(MeshIndex, MeshReport)> {
     let (index, warnings) = indexed_mesh(input, context.files)?;
     context.warnings.extend(warnings);
+    index.expect(questions(&index.bounds()), context.budget())?;
     let report = MeshReport::new(&index, context.budget())?;
     context.warnings.extend(report.volume_of(input.name())?);
     Ok((index, report))

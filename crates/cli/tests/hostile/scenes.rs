@@ -104,11 +104,21 @@ pub(crate) fn cases() -> Vec<Case> {
         ("a curve of one place", "--along", "v 0 0 0\nl 1 1\n".to_owned(), TOLD),
         ("a curve that turns back", "--along", "v 0 0 0\nv 9 0 0\nl 1 2 1 2 1\n".to_owned(), EITHER),
         ("a curve of fifty thousand corners", "--along", long(), EITHER),
+        ("a cone of thirty thousand slivers", "--inside", cone(15_000), REFUSED),
     ] {
         let case = Case::new(name, format!("fill in.obj {option} m.obj -o out.glb"), codes);
         cases.push(case.with("in.obj", heap(40, 1.0)).with("m.obj", file));
     }
     cases
+}
+
+/// A cone whose triangles all meet in its tip or in the middle of its base.
+fn cone(count: u32) -> String {
+    let rim = |k: u32| (f64::from(k) / f64::from(count) * std::f64::consts::TAU).sin_cos();
+    let corners: String = (0..count).map(|k| format!("v {} 0 {}\n", 9.0 * rim(k).0, 9.0 * rim(k).1)).collect();
+    let next = |k: u32| (k + 3, (k + 1) % count + 3);
+    let faces: String = (0..count).map(next).map(|(a, b)| format!("f 1 {a} {b}\nf 2 {b} {a}\n")).collect();
+    format!("v 0 9 0\nv 0 0 0\n{corners}{faces}")
 }
 
 /// A curve that winds along a short way.

@@ -1,6 +1,6 @@
 //! The size of pictures that are drawn.
 
-use arabesque_core::{Budget, Error, Result};
+use arabesque_core::{Budget, Error, Limits, Result};
 
 /// Most pixels along one side, which is as far as the renderer counts.
 const MAX_SIDE: i16 = i16::MAX;
@@ -13,18 +13,19 @@ pub fn checked_size(what: &str, [width, height]: [f64; 2], budget: &Budget, advi
     if width * height <= budget.limits().pixels as f64 && width.max(height) <= f64::from(MAX_SIDE) {
         return Ok([width as u32, height as u32]);
     }
+    // Sides that are too long stay so, whatever the limit.
+    let is_too_long = width.max(height) > f64::from(MAX_SIDE) || width.is_nan() || height.is_nan();
+    let raising = if is_too_long { String::new() } else { Limits::raising("pixels", width * height) };
     Err(Error::Limit {
         what: what.to_owned(),
         found: format!("{width} x {height} pixels"),
         limit: format!("{} pixels, {MAX_SIDE} per side", budget.limits().pixels),
-        advice: format!("{advice}, or raise the limit with --limit pixels"),
+        advice: format!("{advice}{raising}"),
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use arabesque_core::Limits;
-
     use super::*;
 
     #[test]
@@ -34,6 +35,8 @@ mod tests {
         for size in [[10.0, 11.0], [f64::NAN, 1.0], [1.0, f64::NAN]] {
             assert!(matches!(checked_size("size", size, &budget, "less"), Err(Error::Limit { .. })), "{size:?}");
         }
-        assert!(checked_size("size", [40_000.0, 1.0], &Budget::default(), "less").is_err());
+        let advice = |size| checked_size("size", size, &budget, "ask for less").unwrap_err().to_string();
+        assert!(advice([10.0, 11.0]).ends_with("; ask for less, or raise the limit with --limit pixels=110"));
+        assert!(advice([40_000.0, 1.0]).ends_with("; ask for less"), "no limit makes it possible");
     }
 }

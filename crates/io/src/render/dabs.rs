@@ -3,13 +3,19 @@
 //! A point with a direction is a point of a surface: its ball touches the surface from behind, and is lit mostly as the surface is, so
 //! that many of them look like it, a little rough. Seen from behind they are darker.
 
-use arabesque_core::{Budget, Result};
+use arabesque_core::{Budget, Meter, Result};
+use rayon::prelude::*;
 
-use super::frame::{Frame, Sample};
+use super::frame::{Band, Frame, Reach, Sample};
 
 /// Work of one point, and of one sample of its square.
 const PER_POINT: u64 = 40;
 const PER_SAMPLE: u64 = 5;
+
+/// Points of a batch.
+const BATCH: usize = 1 << 16;
+/// Points that are passed over together.
+const RUN: usize = 64;
 
 /// How round the balls of a surface look.
 const ROUND: f32 = 0.3;
@@ -27,28 +33,57 @@ pub(super) struct Dab {
     pub(super) colour: [u8; 3],
 }
 
-/// Draws points.
-pub(super) fn draw(dabs: impl Iterator<Item = Dab>, frame: &mut Frame, budget: &Budget) -> Result<()> {
-    let mut meter = budget.meter();
-    for dab in dabs {
-        meter.spend(PER_POINT)?;
-        let ball = dab.ball();
-        let ([cx, cy, _], r) = (ball, dab.radius);
-        let columns = Frame::span(cx - r, cx + r, frame.width);
-        for y in Frame::span(cy - r, cy + r, frame.height) {
-            meter.spend(PER_SAMPLE * columns.len() as u64)?;
-            for x in columns.clone() {
-                let [dx, dy] = [(x as f64 + 0.5 - cx) / r, (cy - (y as f64 + 0.5)) / r];
-                if let Some(sample) = dab.at(ball, dx, dy) {
-                    frame.put(x, y, sample);
+/// Draws `count` points, in their order: a batch at a time, the bands of the picture at the same time.
+///
+/// # Errors
+/// [`arabesque_core::Error::Limit`] when the work or the memory is used up, [`arabesque_core::Error::Stopped`].
+pub(super) fn draw(count: usize, dab: impl Fn(usize) -> Dab + Sync, frame: &mut Frame, budget: &Budget) -> Result<()> {
+    let (mut dabs, _held) = budget.list("points as they are seen", count.min(BATCH))?;
+    for first in (0..count).step_by(BATCH) {
+        let end = (first + BATCH).min(count);
+        budget.spend(PER_POINT * (end - first) as u64)?;
+        (first..end).into_par_iter().map(&dab).collect_into_vec(&mut dabs);
+        let reaches: Vec<Reach> = dabs.chunks(RUN).map(reach).collect();
+        frame.bands().into_par_iter().try_for_each(|mut band| {
+            let mut meter = budget.meter();
+            dabs.chunks(RUN).zip(&reaches).try_for_each(|(run, reach)| {
+                if band.rows(reach.from, reach.to).is_empty() {
+                    return Ok(());
                 }
-            }
-        }
+                run.iter().try_for_each(|dab| dab.draw(&mut band, &mut meter))
+            })
+        })?;
+        budget.spend(0)?;
     }
     Ok(())
 }
 
+/// The rows of some points.
+fn reach(dabs: &[Dab]) -> Reach {
+    dabs.iter().fold(Reach::NONE, |reach, dab| {
+        let [_, y, _] = dab.ball();
+        reach.joined(y - dab.radius, y + dab.radius)
+    })
+}
+
 impl Dab {
+    /// Draws what lies in a band.
+    fn draw(&self, band: &mut Band<'_>, meter: &mut Meter<'_>) -> Result<()> {
+        let ball = self.ball();
+        let ([cx, cy, _], r) = (ball, self.radius);
+        let columns = Frame::span(cx - r, cx + r, band.width);
+        for y in band.rows(cy - r, cy + r) {
+            meter.spend(PER_SAMPLE * columns.len() as u64)?;
+            for x in columns.clone() {
+                let [dx, dy] = [(x as f64 + 0.5 - cx) / r, (cy - (y as f64 + 0.5)) / r];
+                if let Some(sample) = self.at(ball, dx, dy) {
+                    band.put(x, y, sample);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Middle of the ball that is drawn: where there is a direction, of one that touches the surface from behind. The back of a surface
     /// stays where it is, so that it does not come through the front of something thin.
     fn ball(&self) -> [f64; 3] {
@@ -87,7 +122,7 @@ mod tests {
     fn seen(normal: Option<[f32; 3]>) -> Frame {
         let mut frame = Frame::empty([10, 10], &Budget::default()).unwrap();
         let dab = Dab { place: [10.0, 10.0, 1.0], radius: 8.0, normal, colour: [9; 3] };
-        draw(std::iter::once(dab), &mut frame, &Budget::default()).unwrap();
+        draw(1, |_| dab, &mut frame, &Budget::default()).unwrap();
         frame
     }
 

@@ -1,11 +1,16 @@
 //! What is in front at every place of a picture, four times as finely as it is shown.
 
+use std::ops::Range;
+
 use arabesque_core::{Bounds, Budget, Held, Result, Vector};
 
 use super::view::Axes;
 
 /// Samples along a side of a pixel.
 pub(super) const FINE: usize = 2;
+
+/// Bands of a picture: several for each thread of a usual machine, since some have more in them than others.
+const BANDS: usize = 32;
 
 /// What is in front at one place.
 #[derive(Clone, Copy, Debug)]
@@ -98,23 +103,113 @@ impl Frame {
         Ok(Self { width, height, samples, _held: held })
     }
 
+    /// The samples, in bands of rows that can be drawn at the same time. What is drawn in a place is in one band, so that the picture does
+    /// not depend on how many there are.
+    pub(super) fn bands(&mut self) -> Vec<Band<'_>> {
+        let (width, rows) = (self.width, self.height.div_ceil(BANDS).max(1));
+        let parts = self.samples.chunks_mut((rows * width).max(1)).enumerate();
+        parts.map(|(k, samples)| Band { width, first: k * rows, samples }).collect()
+    }
+
+    /// Whether everything within a ball is behind what is there already. Nothing is hidden by what is not drawn yet.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub(super) fn hides(&self, ball: &Ball, budget: &Budget) -> Result<bool> {
+        let ([cx, cy, _], near) = (ball.place, ball.near() as f32);
+        // A little more than the ball, for the rounding of places.
+        let reach = ball.radius + 1.0;
+        let mut looked = 1;
+        let is_hidden = Self::span(cy - reach, cy + reach, self.height).all(|y| {
+            let half = (reach * reach - (y as f64 + 0.5 - cy).powi(2)).max(0.0).sqrt();
+            let columns = Self::span(cx - half, cx + half, self.width);
+            looked += columns.len() as u64;
+            self.samples[y * self.width..][columns].iter().all(|sample| sample.depth > near)
+        });
+        budget.spend(looked)?;
+        Ok(is_hidden)
+    }
+
+    /// All samples as one band.
+    #[cfg(test)]
+    pub(super) fn whole(&mut self) -> Band<'_> {
+        Band { width: self.width, first: 0, samples: &mut self.samples }
+    }
+
+    /// The samples of a pixel.
+    pub(super) fn of_pixel(&self, x: usize, y: usize) -> [Sample; FINE * FINE] {
+        std::array::from_fn(|k| self.samples[(FINE * y + k / FINE) * self.width + FINE * x + k % FINE])
+    }
+
+    /// The columns, or rows, of `count` whose middles lie between two numbers.
+    pub(super) fn span(from: f64, to: f64, count: usize) -> Range<usize> {
+        let first = (from - 0.5).ceil().clamp(0.0, count as f64) as usize;
+        let end = ((to - 0.5).floor() + 1.0).clamp(0.0, count as f64) as usize;
+        first..end.max(first)
+    }
+}
+
+/// Rows of a picture that one thread draws.
+pub(super) struct Band<'a> {
+    /// Samples along a row.
+    pub(super) width: usize,
+    /// The first row.
+    first: usize,
+    samples: &'a mut [Sample],
+}
+
+impl Band<'_> {
+    /// The rows whose middles lie between two numbers.
+    pub(super) fn rows(&self, from: f64, to: f64) -> Range<usize> {
+        let first = self.first as f64;
+        let rows = Frame::span(from - first, to - first, self.samples.len() / self.width.max(1));
+        rows.start + self.first..rows.end + self.first
+    }
+
     /// Whether nothing is nearer, or as near, at a place.
     pub(super) fn is_free(&self, x: usize, y: usize, depth: f32) -> bool {
-        depth > self.samples[y * self.width + x].depth
+        depth > self.samples[(y - self.first) * self.width + x].depth
     }
 
     /// Puts something in a place where nothing is nearer.
     pub(super) fn put(&mut self, x: usize, y: usize, sample: Sample) {
         if self.is_free(x, y, sample.depth) {
-            self.samples[y * self.width + x] = sample;
+            self.samples[(y - self.first) * self.width + x] = sample;
         }
     }
+}
 
-    /// The columns, or rows, of `count` whose middles lie between two numbers.
-    pub(super) fn span(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
-        let first = (from - 0.5).ceil().clamp(0.0, count as f64) as usize;
-        let end = ((to - 0.5).floor() + 1.0).clamp(0.0, count as f64) as usize;
-        first..end.max(first)
+/// The ball around a thing, in samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    /// Which thing it is.
+    pub(super) number: usize,
+    /// Column, row and nearness of its middle.
+    pub(super) place: [f64; 3],
+    pub(super) radius: f64,
+}
+
+impl Ball {
+    /// How near it comes to the eye.
+    pub(super) fn near(&self) -> f64 {
+        self.place[2] + self.radius + 1.0
+    }
+}
+
+/// Things that follow one another, and the rows that they reach over together: most bands pass over most of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+impl Reach {
+    /// Over no rows.
+    pub(super) const NONE: Self = Self { from: f64::INFINITY, to: f64::NEG_INFINITY };
+
+    /// The same with more rows.
+    pub(super) fn joined(self, from: f64, to: f64) -> Self {
+        Self { from: self.from.min(from), to: self.to.max(to) }
     }
 }
 
@@ -127,7 +222,7 @@ mod tests {
     fn what_is_nearer_stays() {
         let mut frame = Frame::empty([1, 1], &Budget::default()).unwrap();
         for (depth, red) in [(1.0, 1), (3.0, 3), (2.0, 2)] {
-            frame.put(1, 0, Sample::new(depth, [0.0, 0.0, 1.0], [red, 0, 0]));
+            frame.whole().put(1, 0, Sample::new(depth, [0.0, 0.0, 1.0], [red, 0, 0]));
         }
         assert_eq!(frame.samples[1].colour, [3, 0, 0]);
         assert!(!frame.samples[0].is_something());
@@ -147,6 +242,39 @@ mod tests {
         assert_eq!(Frame::span(-1e300, 1e300, 9), 0..9);
         assert_eq!(Frame::span(f64::NAN, 3.0, 9).len(), 3);
         assert!(Frame::span(5.0, 2.0, 9).is_empty());
+    }
+
+    #[test]
+    fn what_lies_behind_is_hidden_and_nothing_else() {
+        let budget = Budget::default();
+        let mut frame = Frame::empty([20, 20], &budget).unwrap();
+        let hides = |frame: &Frame, x: f64, depth: f64| {
+            frame.hides(&Ball { number: 0, place: [x, 20.0, depth], radius: 5.0 }, &budget).unwrap()
+        };
+        assert!(!hides(&frame, 20.0, -100.0));
+        for at in 0..40 * 30 {
+            frame.whole().put(at % 30, at / 30, Sample::new(0.0, [0.0, 0.0, 1.0], [0; 3]));
+        }
+        assert!(hides(&frame, 20.0, -10.0));
+        assert!(!hides(&frame, 20.0, -4.0), "it reaches to the front");
+        assert!(!hides(&frame, 26.0, -10.0), "it reaches beyond what is in front");
+    }
+
+    #[test]
+    fn bands_are_the_rows_of_the_picture() {
+        for height in [1, 3, 40, 333] {
+            let mut frame = Frame::empty([2, height], &Budget::default()).unwrap();
+            let mut next = 0;
+            for mut band in frame.bands() {
+                let rows = band.rows(f64::NEG_INFINITY, f64::INFINITY);
+                assert_eq!(rows.start, next);
+                next = rows.end;
+                rows.for_each(|y| band.put(3, y, Sample::new(y as f32, [0.0, 0.0, 1.0], [0; 3])));
+            }
+            assert_eq!(next, frame.height);
+            let depths = frame.samples.chunks(frame.width).map(|row| row[3].depth);
+            assert!(depths.enumerate().all(|(y, depth)| depth == y as f32), "{height}");
+        }
     }
 
     #[test]

@@ -30,7 +30,9 @@ pub(super) struct Lamp {
     screen: Vec<u8>,
     /// Which way is up in space, as the picture has it.
     up: [f32; 3],
-    /// Half the way between the two lamps and the eye.
+    /// Towards the two lights.
+    towards: [[f32; 3]; 2],
+    /// Half the way between the stronger light and the eye.
     half: [f32; 3],
     /// Farthest and nearest.
     depths: [f32; 2],
@@ -43,7 +45,8 @@ impl Lamp {
     pub(super) fn new(up: [f32; 3], depths: [f32; 2]) -> Self {
         let [x, y, z] = KEY.0;
         let step = |k: usize| (to_screen(k as f64 / (STEPS - 1) as f64) * 255.0).round() as u8;
-        Self { lights: lights(), screen: (0..STEPS).map(step).collect(), up, half: unit([x, y, z + 1.0]), depths }
+        let (towards, half) = ([unit(KEY.0), unit(FILL.0)], unit([x, y, z + 1.0]));
+        Self { lights: lights(), screen: (0..STEPS).map(step).collect(), up, towards, half, depths }
     }
 
     /// Light from what is seen; `open` is how much of the space around it is free.
@@ -53,11 +56,11 @@ impl Lamp {
         if sample.behind {
             base = std::array::from_fn(|k| base[k] * BEHIND[k]);
         }
-        let lamp = |(towards, strength): ([f32; 3], [f32; 3])| {
-            let falls = ((dot(n, unit(towards)) + WRAP) / (1.0 + WRAP)).max(0.0);
+        let lamp = |towards: [f32; 3], strength: [f32; 3]| {
+            let falls = ((dot(n, towards) + WRAP) / (1.0 + WRAP)).max(0.0);
             strength.map(|s| s * falls)
         };
-        let (key, fill) = (lamp(KEY), lamp(FILL));
+        let (key, fill) = (lamp(self.towards[0], KEY.1), lamp(self.towards[1], FILL.1));
         let above = dot(n, self.up) * 0.5 + 0.5;
         let shaded = 1.0 - SHADE * (1.0 - open);
         let gleam = GLEAM * dot(n, self.half).max(0.0).powi(NARROW) * shaded;

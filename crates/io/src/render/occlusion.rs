@@ -4,7 +4,8 @@
 //! it stands above the surface there, and the less the farther off it is. Neighbouring places look in other directions, and
 //! the mean over a small square of them evens that out. Two reaches are looked at: what touches, and what forms hollows.
 
-use arabesque_core::{Budget, Result};
+use arabesque_core::{Budget, Held, Result};
+use rayon::prelude::*;
 
 use super::frame::{FINE, Frame};
 
@@ -24,58 +25,50 @@ const STRENGTH: f32 = 3.0;
 /// Least weight of what is seen far in front.
 const RIM: f32 = 0.12;
 
-/// What is seen in each pixel: its nearness in pixels, and its direction.
+/// What is seen in each pixel.
 struct Coarse {
     width: usize,
     height: usize,
-    depth: Vec<f32>,
-    normal: Vec<[f32; 3]>,
+    places: Vec<Place>,
+    _held: Held,
+}
+
+/// What is seen in one: its nearness in pixels, and its direction.
+#[derive(Clone, Copy)]
+struct Place {
+    depth: f32,
+    normal: [f32; 3],
 }
 
 /// How much light comes to each pixel, from 0 to 1, with what is looked at up to each of the `reaches`, in pixels.
 pub(super) fn openness(frame: &Frame, reaches: [f32; 2], budget: &Budget) -> Result<Vec<f32>> {
-    let coarse = coarse(frame, budget)?;
-    let pixels = coarse.depth.len();
+    let coarse = Coarse::new(frame, budget)?;
+    let (width, pixels) = (coarse.width, coarse.places.len());
     let (mut light, _held) = budget.list("light of the picture", pixels.saturating_mul(2))?;
     light.resize(pixels, 1.0_f32);
+    let mut raw = vec![0.0; pixels];
     for reach in reaches {
-        let mut raw = Vec::with_capacity(pixels);
         let spirals = spirals(reach);
-        for y in 0..coarse.height {
-            budget.spend(PER_LOOK * (LOOKS * coarse.width) as u64)?;
-            raw.extend((0..coarse.width).map(|x| {
+        raw.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
+            budget.spend(PER_LOOK * (LOOKS * width) as u64)?;
+            for (x, hidden) in row.iter_mut().enumerate() {
                 let number = ((x % SQUARE) * SQUARE + (y % SQUARE) * 7) % spirals.len();
-                coarse.hidden([x, y], &spirals[number], reach)
-            }));
-        }
-        for y in 0..coarse.height {
-            budget.spend(PER_LOOK * (SQUARE * SQUARE * coarse.width) as u64)?;
-            for x in 0..coarse.width {
-                let at = y * coarse.width + x;
-                if coarse.depth[at] > f32::NEG_INFINITY {
-                    light[at] *= 1.0 - coarse.even(&raw, x, y, reach).min(1.0);
+                *hidden = coarse.hidden([x, y], &spirals[number], reach);
+            }
+            Ok(())
+        })?;
+        light.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
+            budget.spend(PER_LOOK * (SQUARE * SQUARE * width) as u64)?;
+            for (x, light) in row.iter_mut().enumerate() {
+                if coarse.places[y * width + x].depth > f32::NEG_INFINITY {
+                    *light *= 1.0 - coarse.even(&raw, x, y, reach).min(1.0);
                 }
             }
-        }
+            Ok(())
+        })?;
+        budget.spend(0)?;
     }
     Ok(light)
-}
-
-fn coarse(frame: &Frame, budget: &Budget) -> Result<Coarse> {
-    let [width, height] = [frame.width / FINE, frame.height / FINE];
-    let _held = budget.hold("places of the picture", width.saturating_mul(height).saturating_mul(16))?;
-    let mut coarse = Coarse { width, height, depth: Vec::new(), normal: Vec::new() };
-    for y in 0..height {
-        budget.spend(PER_LOOK * frame.width as u64)?;
-        for x in 0..width {
-            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
-            let samples = corners.map(|(i, j)| frame.samples[(FINE * y + j) * frame.width + FINE * x + i]);
-            let nearest = samples.into_iter().fold(samples[0], |a, b| if b.depth > a.depth { b } else { a });
-            coarse.depth.push(nearest.depth / FINE as f32);
-            coarse.normal.push(nearest.direction());
-        }
-    }
-    Ok(coarse)
 }
 
 /// Where to look from a place, right and up, for each place of a square.
@@ -91,10 +84,28 @@ fn spirals(reach: f32) -> [[[i32; 2]; LOOKS]; SQUARE * SQUARE] {
 }
 
 impl Coarse {
+    fn new(frame: &Frame, budget: &Budget) -> Result<Self> {
+        let [width, height] = [frame.width / FINE, frame.height / FINE];
+        let nothing = Place { depth: f32::NEG_INFINITY, normal: [0.0; 3] };
+        let (mut places, held) = budget.list("places of the picture", width.saturating_mul(height))?;
+        places.resize(width * height, nothing);
+        places.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
+            budget.spend(PER_LOOK * frame.width as u64)?;
+            for (x, place) in row.iter_mut().enumerate() {
+                let samples = frame.of_pixel(x, y);
+                let nearest = samples.into_iter().fold(samples[0], |a, b| if b.depth > a.depth { b } else { a });
+                *place = Place { depth: nearest.depth / FINE as f32, normal: nearest.direction() };
+            }
+            Ok(())
+        })?;
+        budget.spend(0)?;
+        Ok(Self { width, height, places, _held: held })
+    }
+
     /// The share of the space around a place that is filled.
     fn hidden(&self, [x, y]: [usize; 2], looks: &[[i32; 2]; LOOKS], reach: f32) -> f32 {
         let at = y * self.width + x;
-        let (depth, n) = (self.depth[at], self.normal[at]);
+        let Place { depth, normal: n } = self.places[at];
         if depth == f32::NEG_INFINITY {
             return 0.0;
         }
@@ -107,7 +118,7 @@ impl Coarse {
             if to_x >= self.width || to_y >= self.height {
                 continue;
             }
-            let there = self.depth[to_y * self.width + to_x];
+            let there = self.places[to_y * self.width + to_x].depth;
             if there == f32::NEG_INFINITY {
                 continue;
             }
@@ -126,13 +137,13 @@ impl Coarse {
 
     /// The mean over a square of places that are about as near.
     fn even(&self, raw: &[f32], x: usize, y: usize, reach: f32) -> f32 {
-        let depth = self.depth[y * self.width + x];
+        let depth = self.places[y * self.width + x].depth;
         let (mut sum, mut count) = (0.0, 0.0);
         let side = |at: usize, most: usize| at.saturating_sub(SQUARE / 2)..(at + SQUARE / 2).min(most);
         for j in side(y, self.height) {
             for i in side(x, self.width) {
                 let at = j * self.width + i;
-                if (self.depth[at] - depth).abs() < 0.3 * reach {
+                if (self.places[at].depth - depth).abs() < 0.3 * reach {
                     sum += raw[at];
                     count += 1.0;
                 }
@@ -153,7 +164,7 @@ mod tests {
         for y in 0..frame.height {
             for x in 0..frame.width {
                 let depth = if x >= 60 { height } else { 0.0 };
-                frame.put(x, y, Sample::new(depth, [0.0, 0.0, 1.0], [0; 3]));
+                frame.whole().put(x, y, Sample::new(depth, [0.0, 0.0, 1.0], [0; 3]));
             }
         }
         openness(&frame, [6.0, 12.0], &Budget::default()).unwrap()

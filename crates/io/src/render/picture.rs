@@ -1,6 +1,7 @@
 //! Pictures: what is drawn, how, and as which file.
 
 use arabesque_core::{Bounds, Budget, Error, Image, Result, Similarity, TriangleMesh, Vector};
+use rayon::prelude::*;
 
 use super::{
     dabs::{self, Dab},
@@ -11,7 +12,7 @@ use super::{
     palette::{CLAY, of_number},
     spacing::spacing,
     subject::{Cloud, Item, bytes},
-    triangles::{self, Corner},
+    triangles::{self, Placed},
     view::{Axes, View},
 };
 use crate::{
@@ -106,7 +107,7 @@ pub fn draw(items: &[Item<'_>], look: &Look, budget: &Budget) -> Result<Image> {
         }
     }
     for (cloud, radius) in &clouds {
-        dabs::draw(dabs_of(cloud, *radius, &projection), &mut frame, budget)?;
+        dabs::draw(cloud.positions.len(), dab_of(cloud, *radius, &projection), &mut frame, budget)?;
     }
     shaded(&frame, &projection, look.background, budget)
 }
@@ -186,22 +187,18 @@ fn draw_mesh(
     let _held = budget.hold("directions of the mesh", mesh.triangles.len().saturating_mul(100))?;
     let normals = corner_normals(mesh, budget)?;
     let colours = mesh.colours.as_ref().filter(|c| c.len() == mesh.positions.len());
-    for (number, place) in places.iter().enumerate() {
-        let plain = if numbered { of_number(number as i32) } else { CLAY };
-        let corner = |v: u32, normal: Vector<3>| Corner {
-            place: projection.place(place.apply(mesh.positions[v as usize])),
-            normal: projection.axes.turned(place.rotation.apply(normal)).0.map(|c| c as f32),
-            colour: colours.map_or(plain, |colours| bytes(colours[v as usize])),
-        };
-        let corners = mesh.triangles.iter().zip(&normals).map(|(t, n)| [0, 1, 2].map(|k| corner(t[k], n[k])));
-        triangles::draw(corners, frame, budget)?;
-    }
-    Ok(())
+    let colour = |number: usize, v: u32| match colours {
+        Some(colours) => bytes(colours[v as usize]),
+        None if numbered => of_number(number as i32),
+        None => CLAY,
+    };
+    triangles::draw(&Placed { mesh, places, normals: &normals, colour: &colour }, projection, frame, budget)
 }
 
-fn dabs_of<'a>(cloud: &'a Cloud<'_>, radius: f64, projection: &'a Projection) -> impl Iterator<Item = Dab> + 'a {
+/// How point `n` is drawn.
+fn dab_of<'a>(cloud: &'a Cloud<'_>, radius: f64, projection: &'a Projection) -> impl Fn(usize) -> Dab + Sync + 'a {
     let lone = LONE * FINE as f64;
-    (0..cloud.positions.len()).map(move |n| {
+    move |n| {
         let radius = cloud.radii.map_or(radius, |radii| radii[n]) * projection.scale;
         let normal = cloud.normals.filter(|_| cloud.radii.is_none()).map(|normals| normals[n]);
         Dab {
@@ -211,7 +208,7 @@ fn dabs_of<'a>(cloud: &'a Cloud<'_>, radius: f64, projection: &'a Projection) ->
             normal: normal.filter(|n| *n != Vector::ZERO).map(|n| projection.axes.turned(n).0.map(|c| c as f32)),
             colour: cloud.colours[n],
         }
-    })
+    }
 }
 
 fn shaded(frame: &Frame, projection: &Projection, background: Background, budget: &Budget) -> Result<Image> {
@@ -221,20 +218,21 @@ fn shaded(frame: &Frame, projection: &Projection, background: Background, budget
     let up = projection.axes.turned(Vector([0.0, 0.0, 1.0])).0.map(|c| c as f32);
     let lamp = Lamp::new(up, depths(&frame.samples));
     let (mut pixels, _held) = budget.list("pixels of the picture", width.saturating_mul(height))?;
-    for y in 0..height {
+    pixels.resize(width * height, [0; 4]);
+    pixels.par_chunks_mut(width).zip(open.par_chunks(width)).enumerate().try_for_each(|(y, (row, open))| {
         budget.spend(PER_PIXEL * width as u64)?;
-        for x in 0..width {
-            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
-            let samples = corners.map(|(i, j)| frame.samples[(FINE * y + j) * frame.width + FINE * x + i]);
-            let pixel = lamp.pixel(&samples, open[y * width + x]);
-            pixels.push(if background == Background::White { lamp.on_white(pixel) } else { pixel });
+        for (x, (shown, open)) in row.iter_mut().zip(open).enumerate() {
+            let pixel = lamp.pixel(&frame.of_pixel(x, y), *open);
+            *shown = if background == Background::White { lamp.on_white(pixel) } else { pixel };
         }
-    }
+        Ok(())
+    })?;
+    budget.spend(0)?;
     Ok(Image { width, height, pixels })
 }
 
 /// Farthest and nearest of what is seen.
 fn depths(samples: &[Sample]) -> [f32; 2] {
-    let found = samples.iter().filter(|s| s.is_something());
-    found.fold([f32::INFINITY, f32::NEG_INFINITY], |[far, near], s| [far.min(s.depth), near.max(s.depth)])
+    let found = samples.par_iter().filter(|s| s.is_something()).map(|s| [s.depth; 2]);
+    found.reduce(|| [f32::INFINITY, f32::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }

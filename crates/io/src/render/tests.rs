@@ -102,3 +102,32 @@ fn limits_hold_and_the_recipe_is_found() {
         assert!(matches!(drawn, Err(Error::Stopped { .. })), "{n}");
     }
 }
+
+/// A bumpy sheet of many triangles, and points over it.
+fn bumpy() -> (TriangleMesh, PointSet<3>) {
+    let at =
+        |k: u32| Vector([f64::from(k % 90) / 90.0, f64::from(k / 90) / 90.0, 0.1 * f64::from(k * 7919 % 100) / 100.0]);
+    let corner = |k: u32| [[k, k + 1, k + 91], [k, k + 91, k + 90]];
+    let triangles = (0..89 * 90).filter(|k| k % 90 < 89).flat_map(corner).collect();
+    let mesh = TriangleMesh { positions: (0..8100).map(at).collect(), triangles, ..TriangleMesh::default() };
+    (mesh, PointSet::at((0..3000).map(|k| at(k * 3 % 8100) + Vector([0.0, 0.0, 0.02])).collect()))
+}
+
+#[test]
+fn pictures_are_the_same_for_any_number_of_threads() {
+    let (mesh, points) = bumpy();
+    let places = [0.0, 0.5, 1.2].map(|x| Similarity::shift(Vector([x, 0.3 * x, 0.0])));
+    let items = [Item::Placed(&mesh, &places), Item::Points(&points)];
+    let drawn = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let budget = Budget::default();
+        let look = Look { extent: Extent::Exactly([211, 173]), ..Look::default() };
+        let image = pool.install(|| draw(&items, &look, &budget).unwrap());
+        (image.pixels, budget.work())
+    };
+    let one = drawn(1);
+    assert!(one.0.iter().any(|p| *p != [255; 4]));
+    for threads in [2, 3, 8] {
+        assert!(drawn(threads) == one, "{threads} threads");
+    }
+}

@@ -164,7 +164,8 @@ impl<'a> Table<'a> {
                 short(text),
                 budget.limits().coordinate
             );
-            Err(Error::input(place(), expected, "correct or remove the line"))
+            let raising = Limits::raising("coordinate", v.abs());
+            Err(Error::input(place(), expected, format!("correct or remove the line{raising}")))
         };
         self.rows
             .iter()

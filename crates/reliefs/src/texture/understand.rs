@@ -18,6 +18,8 @@ use crate::{
     },
 };
 
+/// Cells of the lattice along a patch, at least.
+const LEAST: f64 = 4.0;
 /// Radius in which points count as one surface, in spacings.
 const RADIUS: f64 = 2.5;
 /// Side of a cell of the field, in spacings.
@@ -232,7 +234,16 @@ impl Texture {
             }
         }
         let chosen = params.patch.unwrap_or_else(|| shrink * self.usual_patch(room));
-        let patch = (chosen / cell).round().max(4.0);
+        let patch = (chosen / cell).round().max(LEAST);
+        if params.patch.is_some() && chosen < (LEAST - 0.5) * cell {
+            let message = format!("patches of {} are smaller than this texture can tell apart", rounded(chosen));
+            let advice =
+                format!("they are {} here; give a texture of more points for smaller ones", rounded(LEAST * cell));
+            let warning = Warning::new(message, advice);
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
         if params.patch.is_some() && chosen > room {
             return Err(Error::parameter(
                 "patch",

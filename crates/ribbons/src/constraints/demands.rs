@@ -80,15 +80,18 @@ impl<const D: usize> Plan<'_, D> {
         (0..n).map(farthest).collect()
     }
 
-    /// The least distance from the middle, among those tried, within which piece `k` has a valid position; all of the ribbon where it
-    /// has none.
+    /// The least distance from the middle, among those tried, within which piece `k` has a valid position, by the strictest grade that has
+    /// any: what is cut or covered wherever it lies need not leave the middle for that. All of the ribbon where it has none.
     fn needed(&self, k: usize, demands: &Demands, limit: f64) -> Result<f64> {
         let most = self.strip.height as f64 + self.cage.forms[k].left();
-        let tried = std::iter::successors(Some(limit), |w| Some(w * 1.5)).take_while(|w| *w < most);
         let site = Site { strip: self.strip, form: &self.cage.forms[k], demands, budget: self.budget };
-        for wander in tried {
-            if site.has_any(Some(&self.rows(k, wander)), Grade::Whole)? {
-                return Ok(wander);
+        let grades = if self.params.relax { &Grade::ALL[..] } else { &Grade::ALL[..1] };
+        for &grade in grades {
+            let tried = std::iter::successors(Some(limit), |w| Some(w * 1.5)).take_while(|w| *w < most);
+            for wander in tried.chain([most]) {
+                if site.has_any(Some(&self.rows(k, wander)), grade)? {
+                    return Ok(wander);
+                }
             }
         }
         Ok(most)

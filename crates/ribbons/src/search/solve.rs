@@ -110,15 +110,13 @@ impl Course<'_> {
 
     /// Why no position is valid, and what to do about it.
     fn nowhere(&self, piece: usize) -> Result<Error> {
-        let (form, demands, site) = (&self.forms[piece], &self.demands[piece], self.site(piece));
+        let (demands, site) = (&self.demands[piece], self.site(piece));
         let mut fit = [false; Grade::ALL.len()];
         for (fits, grade) in fit.iter_mut().zip(Grade::ALL) {
             *fits = site.has_any(demands.rows.as_ref(), grade)?;
         }
         let fits = |grade: Grade| fit[grade as usize];
-        let reason = if form.unfolded().is_none() {
-            "the curve turns back on itself within one piece"
-        } else if fits(Grade::Forbidden) {
+        let reason = if fits(Grade::Forbidden) {
             "every way through it puts the pattern on a place to avoid or on a fold of the ribbon"
         } else if fits(Grade::Cut) {
             "the ribbon is too narrow for the pattern, or too tightly bent"
@@ -139,6 +137,7 @@ impl Course<'_> {
                 "avoid less, bend the curve less, or let the pattern be cut there with --relax"
             }
             () if fits(Grade::Cut) => "change --width or --scale, or let the pattern be cut there with --relax",
+            () if self.params.relax => "use shorter pieces (--step), or bend the curve less",
             () => "use shorter pieces (--step), bend the curve less, or let the pattern be cut there with --relax",
         };
         Ok(Error::no_result(problem, advice))

@@ -23,15 +23,20 @@ impl Solid {
     pub fn new(index: Arc<MeshIndex>, volume: f64, fields: Fields<3>) -> Self {
         Self { index, volume, fields }
     }
+
+    /// What is told of structures that do not fill a volume.
+    pub fn shallow() -> Error {
+        Error::Unsupported {
+            what: "a structure inside of a mesh that does not repeat along three directions".into(),
+            advice: "give an exemplar that is as deep as it is wide, say repeats=3, or use --on or --along".into(),
+        }
+    }
 }
 
 impl Territory<3> for Solid {
     fn sites(&self, plan: &SitePlan<3>, budget: &Budget) -> Result<Vec<Site<3>>> {
         if plan.base != [true; 3] {
-            return Err(Error::Unsupported {
-                what: "a structure inside of a mesh that does not repeat along three directions".into(),
-                advice: "give an exemplar that is as deep as it is wide, say repeats=3, or use --on or --along".into(),
-            });
+            return Err(Self::shallow());
         }
         let (smallest, largest) = self.fields.scale.range();
         if !(smallest > 0.0 && largest.is_finite()) {

@@ -1,6 +1,6 @@
 //! Questions about places near a mesh.
 
-use arabesque_core::{Bounds, Budget, Error, Held, Limits, Result, TriangleMesh, Vector};
+use arabesque_core::{Bounds, Budget, Error, Held, Limits, Result, TriangleMesh, Vector, rounded};
 use rayon::prelude::*;
 
 use super::{
@@ -14,6 +14,10 @@ const LOOK: u64 = 12;
 /// Nodes and triangles that a single question may look at for what its loop pays; more are counted by themselves. Many long thin
 /// triangles around one corner have boxes that all overlap.
 const ORDINARY: u64 = 256;
+/// Triangles around one corner from which these are told to be what makes questions dear.
+const CROWD: usize = 200;
+/// Cells along a side of the box around a mesh, in whose middles it is asked how dear questions are.
+const CELLS: usize = 4;
 /// Questions that tell how dear they are.
 const ASKED: usize = 64;
 
@@ -232,6 +236,53 @@ impl MeshIndex {
         Ok(chunks.into_iter().flatten().collect())
     }
 
+    /// Refuses so many questions where a few of them tell that all would be over the limit of work: for those who are going to ask them
+    /// later, after other work.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when they would be; as [`Budget::spend`].
+    pub fn expect(&self, questions: f64, budget: &Budget) -> Result<()> {
+        let size = self.bounds.size();
+        // The middles of a few cells all over the box.
+        let middle = |k: usize, axis: usize| ((k / CELLS.pow(axis as u32) % CELLS) as f64 + 0.5) / CELLS as f64;
+        let place = |k: usize| self.bounds.min + Vector(std::array::from_fn(|axis| size[axis] * middle(k, axis)));
+        let looked: u64 = (0..CELLS.pow(3)).map(|k| self.nearest(place(k)).1).sum();
+        budget.spend(looked * LOOK)?;
+        self.refuse_many(questions * (looked * LOOK) as f64 / CELLS.pow(3) as f64 / 1e6, budget)
+    }
+
+    /// Refuses questions that would take so many million units of work, where that is over the limit.
+    fn refuse_many(&self, expected: f64, budget: &Budget) -> Result<()> {
+        let allowed = (budget.allowed() / 1_000_000) as usize;
+        if expected <= allowed as f64 {
+            return Ok(());
+        }
+        let (count, corner) = self.crowded();
+        let place = shown(corner);
+        let (why, advice) = match count {
+            CROWD.. => (
+                format!(": {count} triangles meet in the corner at {place}, which makes them dear"),
+                "make long thin triangles fewer or shorter (Blender: Remesh, or Decimate)",
+            ),
+            _ => (String::new(), "make it smaller"),
+        };
+        let raising = Limits::raising("work", expected);
+        Err(Error::Limit {
+            what: format!("{}: questions to its triangles, in million units of work{why}", self.name),
+            found: rounded(expected.ceil()),
+            limit: allowed.to_string(),
+            advice: format!("{advice}{raising}"),
+        })
+    }
+
+    /// The vertex with most triangles around it: how many there are, and where it is.
+    fn crowded(&self) -> (usize, Vector<3>) {
+        let mut counts = vec![0_usize; self.topology.points.len()];
+        self.topology.triangles.iter().flatten().for_each(|&v| counts[v as usize] += 1);
+        let most = (0..counts.len()).fold(0, |best, v| if counts[v] > counts[best] { v } else { best });
+        (counts[most], self.topology.points[most])
+    }
+
     /// Refuses so many questions where a few of them tell that all would be over the limit of work.
     fn foresee(&self, points: &[Vector<3>], budget: &Budget, looks: impl Fn(Vector<3>) -> u64) -> Result<()> {
         let asked = points.iter().step_by(points.len().div_ceil(ASKED).max(1));
@@ -242,8 +293,7 @@ impl MeshIndex {
         let looked: u64 = asked.map(|&p| looks(p)).sum();
         budget.spend(looked * LOOK)?;
         let expected = looked as f64 * share * LOOK as f64 / 1e6;
-        let what = format!("{}: questions to its triangles, in million units of work", self.name);
-        budget.within_expected(&what, expected, ("work", (budget.allowed() / 1_000_000) as usize))
+        self.refuse_many(expected, budget)
     }
 
     /// The nearest triangle with its squared distance, and what was looked at.

@@ -1,6 +1,7 @@
 //! The surface of one part.
 
 use arabesque_core::{Budget, Error, PointSet, Result, Vector};
+use rayon::prelude::*;
 
 use super::{
     lid::{is_closed, trimmed},
@@ -30,6 +31,17 @@ const CONTRARY: f64 = 0.2;
 const CRUMB: f64 = 3.0;
 /// Crumbs are told where they are a larger share of the surface.
 const WORTH: f64 = 0.02;
+
+/// Work of sorting one point.
+const PER_SORTED: u64 = 60;
+
+/// Whether most points lie where more than `count` lie at exactly one place.
+fn is_heap(positions: &[Vector<3>], count: usize) -> bool {
+    let mut keys: Vec<_> = positions.iter().map(|p| p.0.map(|c| (c + 0.0).to_bits())).collect();
+    keys.par_sort_unstable();
+    let heaped: usize = keys.chunk_by(|a, b| a == b).map(<[_]>::len).filter(|&n| n > count).sum();
+    2 * heaped > positions.len()
+}
 
 /// What is asked for, with what goes for all parts.
 pub(super) struct Job<'a> {
@@ -174,14 +186,22 @@ impl Job<'_> {
 
     /// The points with normals and spacings.
     fn cloud(&self, points: &PointSet<3>, name: &str, notes: &mut Notes) -> Result<Cloud> {
-        let neighbours = Neighbours::new(&points.positions, self.params.neighbours, self.budget)?;
-        let median = neighbours.median_spacing();
-        if median.is_nan() || median <= 0.0 {
-            return Err(Error::input(
+        let heaped = || {
+            Error::input(
                 name,
                 "most points lie in one place, expected points spread over a surface",
                 "remove points that are there more than once",
-            ));
+            )
+        };
+        // In a heap each point has all others for neighbours, and looking for them takes long.
+        self.budget.spend(PER_SORTED * points.len() as u64)?;
+        if is_heap(&points.positions, self.params.neighbours) {
+            return Err(heaped());
+        }
+        let neighbours = Neighbours::new(&points.positions, self.params.neighbours, self.budget)?;
+        let median = neighbours.median_spacing();
+        if median.is_nan() || median <= 0.0 {
+            return Err(heaped());
         }
         let mut left_out = Vec::new();
         let normals = match (&points.normals, self.params.normals) {

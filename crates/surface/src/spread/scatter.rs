@@ -23,7 +23,7 @@ pub fn scatter(index: &MeshIndex, spacing: f64, seed: u64, budget: &Budget) -> R
     }
     let count = (DENSITY * index.area() / (spacing * spacing)).ceil().max(16.0);
     let limit = ("candidates", budget.limits().candidates);
-    budget.within_expected("points on a surface, in fours", 0.25 * count, limit)?;
+    budget.within_expected("places tried for points over a mesh, in fours", 0.25 * count, limit)?;
     let count = count as usize;
     let _held = budget.hold("points on a surface", count * 32)?;
     budget.foresee(count as u64 * 200)?;

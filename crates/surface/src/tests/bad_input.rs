@@ -49,6 +49,15 @@ fn what_is_no_surface_is_refused() {
 }
 
 #[test]
+fn a_large_heap_is_known_as_one_at_once() {
+    let heap = PointSet::at(vec![Vector([1.0, 2.0, 3.0]); 20_000]);
+    let budget = Budget::default();
+    let error = reconstruct(&heap, &SurfaceParams::default(), None, &budget, &mut Unobserved).unwrap_err();
+    assert!(error.to_string().contains("in one place"), "{error}");
+    assert!(budget.work() < 1000 * 20_000, "{}", budget.work());
+}
+
+#[test]
 fn all_in_one_plane_is_a_sheet() {
     let mut flat = PointSet::at((0..400).map(|k| Vector([f64::from(k % 20), f64::from(k / 20), 0.0])).collect());
     let found = reconstruct(&flat, &SurfaceParams::default(), None, &Budget::default(), &mut Unobserved).unwrap();

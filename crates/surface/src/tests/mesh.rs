@@ -171,7 +171,13 @@ fn dear_questions_are_counted_and_told() {
     let each = (budget.work() - before) as f64 / 50.0;
     assert!(each > 1000.0 && fan.dearness() > 1000.0, "{each} {}", fan.dearness());
     let error = fan.signed_distances(&vec![Vector::ZERO; 1_000_000], &Budget::default()).unwrap_err().to_string();
-    assert!(error.contains("fan.obj: questions to its triangles") && error.contains("--limit work="), "{error}");
+    let corner = "fan.obj: questions to its triangles, in million units of work: 4000 triangles meet in the corner at (0, 0, 0.4)";
+    assert!(error.contains(corner) && error.contains("--limit work="), "{error}");
+    // It is known before any of it is done.
+    let few = Budget::default();
+    assert!(fan.expect(1e6, &few).unwrap_err().to_string().contains(corner));
+    assert!(few.work() < 100_000_000, "{}", few.work());
+    even.expect(1e5, &few).unwrap();
 }
 
 /// Thin triangles from one corner to a circle of radius 1 below it, and back to another corner.

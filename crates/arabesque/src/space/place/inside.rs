@@ -21,12 +21,13 @@ pub(super) struct Inside {
 }
 
 impl Inside {
+    /// How many questions are asked of a mesh in a box.
+    pub(super) fn questions(around: &Bounds<3>) -> f64 {
+        grid(around).1.values.len() as f64
+    }
+
     pub(super) fn new(index: MeshIndex, report: &MeshReport, budget: &Budget) -> Result<Self> {
-        let size = index.bounds().size();
-        let cell = size.0.into_iter().fold(0.0, f64::max) / NODES;
-        let bounds = index.bounds().grown(2.0 * cell);
-        let nodes = bounds.size().0.map(|side| (side / cell).ceil() as usize + 1);
-        let mut distances = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
+        let (cell, mut distances) = grid(&index.bounds());
         let places: Vec<_> = (0..distances.values.len()).map(|n| distances.node(n)).collect();
         let is_sound = report.is_closed() && report.crossings_counted && !report.crossings.any();
         let sense = is_sound.then_some(if report.is_inverted() { -1.0 } else { 1.0 });
@@ -39,6 +40,14 @@ impl Inside {
         };
         Ok(Self { index, volume: report.volume.abs(), sense, distances, cell })
     }
+}
+
+/// A grid around a box, and the side of its cells.
+fn grid(around: &Bounds<3>) -> (f64, Grid<3, f64>) {
+    let cell = around.size().0.into_iter().fold(0.0, f64::max) / NODES;
+    let bounds = around.grown(2.0 * cell);
+    let nodes = bounds.size().0.map(|side| (side / cell).ceil() as usize + 1);
+    (cell, Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] })
 }
 
 impl Region<3> for Inside {

@@ -74,7 +74,7 @@ fn bare(job: &mut Space, filling: Filling<'_>, context: &mut RunContext<'_>) -> 
             Ok(Place { domain: Domain::Box(bounds), fields, ground: floor(bounds.min[up]), shell: None })
         }
         Space { inside: Some(input), .. } => {
-            let (index, report) = filled(input, context)?;
+            let (index, report) = filled(input, Inside::questions, context)?;
             let bounds = index.bounds();
             let solid = Inside::new(index, &report, context.budget())?;
             let fields = turned_fields(job, &bounds, context)?;
@@ -147,7 +147,7 @@ fn on_mesh(job: &mut Space, filling: Filling<'_>, turned: f64, context: &mut Run
 fn masked(avoid: &mut [Input], domain: Domain<3>, context: &mut RunContext<'_>) -> Result<Domain<3>> {
     let mut masks = Vec::with_capacity(avoid.len());
     for input in avoid {
-        let (index, report) = filled(input, context)?;
+        let (index, report) = filled(input, Inside::questions, context)?;
         masks.push(Inside::new(index, &report, context.budget())?);
     }
     Ok(Domain::Region(Arc::new(Masked::new(domain, masks, context.budget())?)))

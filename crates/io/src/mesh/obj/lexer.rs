@@ -60,9 +60,10 @@ impl Lexer<'_> {
         let most = self.budget.limits().coordinate;
         match word.parse::<f64>() {
             Ok(v) if v.is_finite() && v.abs() <= most => Ok(v),
-            Ok(_) => {
+            Ok(v) => {
                 let problem = format!("{} where a coordinate between -{most} and {most} was expected", short(word));
-                self.fail(line, problem, "correct or remove the vertex")
+                let raising = Limits::raising("coordinate", v.abs());
+                self.fail(line, problem, &format!("correct or remove the vertex{raising}"))
             }
             Err(_) => {
                 self.fail(line, format!("\"{}\" is not a number", short(word)), "write numbers like 12.5 or 1.25e1")

@@ -250,7 +250,7 @@ impl Selector<'_, '_, '_> {
             return Ok(());
         }
         let what = format!("{}: elements", source.name);
-        Err(guard::over(what, format!("more than {found}"), ("elements", source.limits.elements)))
+        Err(guard::over(what, found, ("elements", source.limits.elements)))
     }
 
     /// Decides about a node that is, or wraps, a single shape.

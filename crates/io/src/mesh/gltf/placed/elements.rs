@@ -184,8 +184,13 @@ impl GlbElements {
             let own = node.mesh.and_then(|mesh| bounds.get(mesh).copied().flatten());
             let text = NodeText::new(place(text, raw), &node, own)
                 .ok_or_else(|| refused(number, "a rotation that is none".into()))?;
-            let at = place_of(&node, &text, budget.limits().coordinate)
-                .ok_or_else(|| refused(number, "a place that is not finite, or stretched".into()))?;
+            let at = place_of(&node, &text, budget.limits().coordinate).ok_or_else(|| {
+                refused(
+                    number,
+                    "a place that is not finite, beyond the limit of coordinates (--limit coordinate), or stretched"
+                        .into(),
+                )
+            })?;
             if node.mesh.is_some() != node.children.is_empty() {
                 return Err(refused(number, "neither a mesh nor nodes below it, or both".into()));
             }

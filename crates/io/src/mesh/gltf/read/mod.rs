@@ -16,7 +16,7 @@ mod primitives;
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use arabesque_core::{Budget, Error, Matrix, Result, TriangleMesh, Vector, Warning};
+use arabesque_core::{Budget, Error, Limits, Matrix, Result, TriangleMesh, Vector, Warning, rounded};
 
 use self::{
     accessor::Binary,
@@ -148,8 +148,12 @@ impl Reader<'_> {
                 "" => format!("{name}: a node without a name"),
                 called => format!("{name}: node {}", crate::text::short::short(called)),
             };
-            let problem = format!("a vertex at {:?} where coordinates between -{most} and {most} were expected", p.0);
-            return Err(Error::input(place, problem, "scale the mesh down, or move it nearer to the origin"));
+            let [x, y, z] = p.0.map(rounded);
+            let problem =
+                format!("a vertex at ({x}, {y}, {z}) where coordinates between -{most} and {most} were expected");
+            let raising = Limits::raising("coordinate", p.0.iter().fold(0.0, |far: f64, c| far.max(c.abs())));
+            let advice = format!("scale the mesh down, move it nearer to the origin{raising}");
+            return Err(Error::input(place, problem, advice));
         }
         self.complete &= append(&mut self.scene.points, in_place(&parts.points, &placed.place));
         if parts.mesh.triangles.is_empty() {

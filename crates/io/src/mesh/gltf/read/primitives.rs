@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use arabesque_core::{Error, PointSet, Result, TriangleMesh, Vector, Warning};
+use arabesque_core::{Error, Limits, PointSet, Result, TriangleMesh, Vector, Warning};
 
 use super::{
     accessor::Binary,
@@ -116,7 +116,12 @@ impl Reader<'_> {
             // The sign of the place is of no matter here.
             Attribute::Position(0).checked(*c, String::new, limits).is_err()
         }) {
-            return self.fail(format!("{bad} where a coordinate between -{0} and {0} was expected", limits.coordinate));
+            let problem = format!("{bad} where a coordinate between -{0} and {0} was expected", limits.coordinate);
+            if !bad.is_finite() {
+                return self.fail(problem);
+            }
+            let raising = Limits::raising("coordinate", bad.abs());
+            return Err(Error::input(self.place.clone(), problem, format!("scale the mesh down{raising}")));
         }
         let normals = primitive.attributes.get("NORMAL").map(|&n| self.binary.numbers(n, 3)).transpose()?;
         let normals = normals.map(|numbers| vectors(&numbers));

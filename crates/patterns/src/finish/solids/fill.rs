@@ -4,6 +4,7 @@ use arabesque_core::{Buckets, Budget, Matrix, Numbered, Placement, Result, Stage
 
 use super::{
     contact::{Body, contact},
+    place::Place,
     things::Things,
 };
 
@@ -55,17 +56,14 @@ impl<const D: usize> Things<'_, D> {
 
     /// Random places outside of all bodies, with the distance to the nearest centre.
     fn roomy(&self, tries: usize, random: &mut Stream, budget: &Budget) -> Result<Vec<(f64, Vector<D>)>> {
-        let domain = &self.extent.request().domain;
-        let bounds = domain.bounds();
+        let request = self.extent.request();
+        let place = Place::new(&request.domain, 0.0, request.seed);
         let index = self.index();
         let mut meter = budget.meter();
         let mut found = Vec::new();
         for _ in 0..tries {
-            let p = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
             meter.spend(3000)?;
-            if !domain.contains(p) {
-                continue;
-            }
+            let Some((p, _)) = place.draw(random) else { continue };
             let mut deepest = -2.0 * self.widest;
             let looked = index.within(p, self.widest, |j, offset| {
                 let body = &self.bodies[j];

@@ -175,11 +175,8 @@ impl Part {
     fn scaled(&self, s: f32) -> Option<(Pose, SharedShape)> {
         Some(match self {
             Self::Cuboid(pose, half) => {
-                let pose = if *pose == Pose::IDENTITY {
-                    *pose
-                } else {
-                    Pose::from_parts(pose.translation * s, pose.rotation)
-                };
+                let pose =
+                    if *pose == Pose::IDENTITY { *pose } else { Pose::from_parts(pose.translation * s, pose.rotation) };
                 (pose, SharedShape::cuboid(half.x * s, half.y * s, half.z * s))
             }
             Self::Hull(hull) => (Pose::IDENTITY, SharedShape::new(hull.clone().scaled(Vec3::splat(s))?)),
@@ -285,7 +282,8 @@ fn parts_of(
     budget.spend(PER_CORNER * piece.points.len() as u64)?;
     let Some(around) = hull(&piece.points) else { return Ok(Vec::new()) };
     let (own, of_hull) = volumes.unwrap_or_else(|| {
-        let of_hull = f64::from(MassProperties::from_convex_polyhedron(1.0, around.points(), &triangles(&around)).mass());
+        let of_hull =
+            f64::from(MassProperties::from_convex_polyhedron(1.0, around.points(), &triangles(&around)).mass());
         (mesh_volume(&piece.points, &piece.triangles).map_or(of_hull, f64::abs), of_hull)
     });
     if of_hull < SPECK {

@@ -4,7 +4,12 @@ use std::sync::Arc;
 
 use arabesque_core::{Between, Budget, Error, Outcome, Request as EngineRequest, Result};
 
-use crate::{artwork::PhysicsSummary, method::RunContext, recipe::Space, space::{scene::Bodies, stacks::Stacks}};
+use crate::{
+    artwork::PhysicsSummary,
+    method::RunContext,
+    recipe::Space,
+    space::{scene::Bodies, stacks::Stacks},
+};
 
 /// There is none.
 #[derive(Debug)]

@@ -90,8 +90,7 @@ pub(super) fn stacked(name: &str, single: Bodies, budget: &Budget) -> Result<(Bo
     // A stack is where what carries it is, whatever lies on that.
     let exemplar = Arc::make_mut(&mut whole.exemplar);
     for (element, group) in exemplar.elements.iter_mut().zip(&groups) {
-        let (up, centre) = (exemplar.up, single.exemplar.elements[group.root].centre);
-        element.centre = Vector(std::array::from_fn(|k| if k == up { element.centre[k] } else { centre[k] }));
+        element.centre = single.exemplar.elements[group.root].centre;
     }
     Ok((whole, Some(Stacks { single: Arc::new(single), groups })))
 }
@@ -402,8 +401,10 @@ mod tests {
         let stacks = stacks.unwrap();
         assert_eq!((whole.exemplar.elements.len(), stacks.count()), (6, (6, 18)));
         assert_eq!((0..6).filter(|k| stacks.is_held(*k)).count(), 4, "those on the floor stand there");
-        let centres: Vec<_> = whole.exemplar.elements.iter().map(|e| e.centre[0]).collect();
-        assert!(centres.iter().all(|x| x.abs() < 1e-9 || (x - 4.1).abs() < 1e-9), "{centres:?}");
+        for (element, k) in whole.exemplar.elements.iter().zip(0..6) {
+            let board = Vector([4.1 * f64::from(k % 2), 2.0 * f64::from(k / 2), 0.0]);
+            assert!((element.centre - board).norm() < 1e-9, "{:?}", element.centre);
+        }
     }
 
     #[test]

@@ -1,13 +1,16 @@
 //! Random places in a domain.
 
-use arabesque_core::{Domain, Stage, Stream, Vector};
+use arabesque_core::{Bounds, Domain, Lattice, Stage, Stream, Vector};
+use rayon::prelude::*;
 
 const PLACES: Stage = Stage::new(439);
 
-/// A domain fills this share of the box around it at least, else many places are drawn for one that lies in it.
+/// A domain fills this share of the box around it at least, else places are drawn in those cells of the box alone that it reaches into; cells
+/// along a side of the box.
 const FULL: f64 = 0.15;
-/// Most places that are drawn for one.
-const DRAWS: usize = 400;
+const CELLS: usize = 40;
+/// Most places that are drawn for one then.
+const DRAWS: usize = 60;
 /// Places that tell how deep a domain is.
 const TRIED: u64 = 200;
 /// A domain that is less deep than this many radii of the thinnest body is a layer: what is empty in it reaches out of it.
@@ -18,7 +21,8 @@ const MIDDLE: f64 = 0.5;
 /// A domain in which places are drawn.
 pub(super) struct Place<'a, const D: usize> {
     domain: &'a Domain<D>,
-    draws: usize,
+    /// Cells of the box around the domain that it reaches into, where it fills little of that.
+    cells: Option<(Lattice<D>, Vec<u32>)>,
     /// How deep the domain is, where it is a layer.
     layer: Option<f64>,
 }
@@ -27,7 +31,7 @@ impl<'a, const D: usize> Place<'a, D> {
     /// `thinnest`: radius of the largest ball in the thinnest body.
     pub(super) fn new(domain: &'a Domain<D>, thinnest: f64, seed: u64) -> Self {
         let is_sparse = domain.measure() < FULL * domain.bounds().size().0.into_iter().product::<f64>();
-        let mut place = Self { domain, draws: if is_sparse { DRAWS } else { 1 }, layer: None };
+        let mut place = Self { domain, cells: is_sparse.then(|| cells(domain)), layer: None };
         let depths = (0..TRIED).filter_map(|n| place.draw(&mut Stream::new(seed, PLACES, n)));
         let deepest = depths.map(|(_, depth)| depth).fold(0.0, f64::max);
         place.layer = (deepest > 0.0 && deepest < DEEP * thinnest).then_some(deepest);
@@ -36,11 +40,16 @@ impl<'a, const D: usize> Place<'a, D> {
 
     /// A random place in the domain, with how deep it lies in it; nothing where none was found.
     pub(super) fn draw(&self, random: &mut Stream) -> Option<(Vector<D>, f64)> {
-        let bounds = self.domain.bounds();
-        (0..self.draws).find_map(|_| {
+        let within = |random: &mut Stream, bounds: Bounds<D>| {
             let p = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
             let depth = self.domain.signed_distance(p);
             (depth > 0.0).then_some((p, depth))
+        };
+        let Some((lattice, cells)) = &self.cells else { return within(random, self.domain.bounds()) };
+        let half = lattice.cell() * 0.5;
+        (0..if cells.is_empty() { 0 } else { DRAWS }).find_map(|_| {
+            let centre = lattice.centre(cells[random.below(cells.len())] as usize);
+            within(random, Bounds { min: centre - half, max: centre + half })
         })
     }
 
@@ -58,11 +67,20 @@ impl<'a, const D: usize> Place<'a, D> {
     }
 }
 
+/// The cells of the box around a domain that it reaches into.
+fn cells<const D: usize>(domain: &Domain<D>) -> (Lattice<D>, Vec<u32>) {
+    let lattice = Lattice::at_most(domain.bounds(), [CELLS; D], false, CELLS.pow(D as u32));
+    let reach = 0.5 * lattice.cell().norm();
+    let reached = (0..lattice.count() as u32).into_par_iter();
+    let reached = reached.filter(|&c| domain.signed_distance(lattice.centre(c as usize)) > -reach).collect();
+    (lattice, reached)
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
-    use arabesque_core::{Bounds, Region};
+    use arabesque_core::Region;
 
     use super::*;
 

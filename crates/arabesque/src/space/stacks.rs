@@ -182,9 +182,9 @@ fn groups(single: &Bodies, budget: &Budget) -> Result<Option<Vec<Group>>> {
             sets.join(meet.upper, meet.lower);
         }
     }
+    let whole = around(&things, &(0..count).collect::<Vec<_>>(), up);
     let is_small = |group: &Vec<usize>| {
-        let share = around(&things, group, up) / around(&things, &(0..count).collect::<Vec<_>>(), up);
-        group.len() == 1 || group.len() as f64 <= MEMBERS * count as f64 && share <= AREA
+        group.len() == 1 || group.len() as f64 <= MEMBERS * count as f64 && around(&things, group, up) <= AREA * whole
     };
     let sets = sets.groups();
     let stacks = sets.iter().filter(|group| group.len() > 1).count();

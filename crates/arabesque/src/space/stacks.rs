@@ -383,7 +383,7 @@ mod tests {
     fn shelves() -> Bodies {
         let at = |k: usize, x: f64, y: f64| SceneNode::new(format!("n.{k}"), k, Similarity::shift(Vector([x, y, 0.0])));
         let mut nodes = Vec::new();
-        for (x, y) in (0..6).map(|k| (4.1 * f64::from(k % 2), 2.0 * f64::from(k / 2))) {
+        for (x, y) in (0..9).map(|k| (4.1 * f64::from(k % 3), 2.0 * f64::from(k / 3))) {
             nodes.push(SceneNode { class: Some("board".into()), ..at(0, x, y) });
             // Those on boards side by side touch.
             for off in [-1.55, 1.55] {
@@ -399,10 +399,10 @@ mod tests {
     fn boards_that_hang_are_held_with_all_that_lies_on_them() {
         let (whole, stacks) = stacked("t", shelves(), &Budget::default()).unwrap();
         let stacks = stacks.unwrap();
-        assert_eq!((whole.exemplar.elements.len(), stacks.count()), (6, (6, 18)));
-        assert_eq!((0..6).filter(|k| stacks.is_held(*k)).count(), 4, "those on the floor stand there");
-        for (element, k) in whole.exemplar.elements.iter().zip(0..6) {
-            let board = Vector([4.1 * f64::from(k % 2), 2.0 * f64::from(k / 2), 0.0]);
+        assert_eq!((whole.exemplar.elements.len(), stacks.count()), (9, (9, 27)));
+        assert_eq!((0..9).filter(|k| stacks.is_held(*k)).count(), 6, "those on the floor stand there");
+        for (element, k) in whole.exemplar.elements.iter().zip(0..9) {
+            let board = Vector([4.1 * f64::from(k % 3), 2.0 * f64::from(k / 3), 0.0]);
             assert!((element.centre - board).norm() < 1e-9, "{:?}", element.centre);
         }
     }

@@ -387,10 +387,10 @@ mod tests {
             nodes.push(SceneNode { class: Some("board".into()), ..at(0, x, y) });
             // Those on boards side by side touch.
             for off in [-1.55, 1.55] {
-                nodes.push(SceneNode { class: Some("crate".into()), ..at(1, x + off, y + 0.55) });
+                nodes.push(SceneNode { class: Some("crate".into()), ..at(1, x + off, y + 0.65) });
             }
         }
-        let meshes = vec![SceneMesh::new("board", cuboid([4.0, 0.1, 1.0])), SceneMesh::new("crate", cuboid([1.0; 3]))];
+        let meshes = vec![SceneMesh::new("board", cuboid([4.0, 0.3, 1.0])), SceneMesh::new("crate", cuboid([1.0; 3]))];
         let scene = Scene { meshes, nodes, ..Scene::default() };
         Bodies::read("t", scene, (1, &Deform::default(), None), &Budget::default()).unwrap().0
     }

@@ -6,7 +6,7 @@
 //!
 //! | step | module | source |
 //! |---|---|---|
-//! | a mesh becomes a solid: ball, box, convex hull, or several hulls | `shape` | |
+//! | a mesh becomes a solid: ball, box, convex hull, or several hulls; each of its pieces by itself | `shape`, `pieces` | |
 //! | floors, walls, obstacles and containers | `surroundings`, `guard` | [Ma 2011 §5, "domain shape"] |
 //! | a few gentle steps, or steps until all is at rest | `world`, over the sets of the solver in `scene` | [Ma 2011 §5, "interleaved physics solver"; fig. 15] |
 //! | how deep things are in one another, and what floats | `figures` | [Ma 2011 fig. 15] |
@@ -27,6 +27,7 @@ mod clearance;
 mod figures;
 mod guard;
 mod params;
+mod pieces;
 mod scene;
 mod setting;
 mod shape;

@@ -10,7 +10,10 @@ use rapier3d::{
     },
 };
 
-use crate::units::{vec3, vector};
+use crate::{
+    pieces::{Piece, pieces},
+    units::{vec3, vector},
+};
 
 /// Share by which ball, box and hull may differ in volume from the mesh that they stand for.
 const TOLERANCE: f64 = 0.05;
@@ -20,8 +23,11 @@ const CONVEX: f64 = 1.0 - 2.0 * TOLERANCE;
 const MOST_CORNERS: usize = 64;
 /// How far corners are drawn in on which a face does not stand, relative to the radius.
 const DRAWN_IN: f32 = 0.01;
-/// Most hulls for one mesh.
+/// Most hulls for one mesh, and most of its pieces that are looked at by themselves.
 const MOST_PARTS: usize = 32;
+const MOST_PIECES: usize = 256;
+/// A piece that is smaller than this share of what the hull of the mesh holds is no more than a speck.
+const SPECK: f64 = 1e-7;
 /// Most triangles of a mesh that is cut into hulls.
 const MOST_TRIANGLES: usize = 50_000;
 /// Work of cutting a mesh into hulls, and of each of its triangles and corners, in units of the budget.
@@ -58,8 +64,13 @@ pub struct Shape {
 #[derive(Clone)]
 enum Solid {
     Ball(f32),
+    Parts(Vec<Part>),
+}
+
+#[derive(Clone)]
+enum Part {
     Cuboid(Pose, Vec3),
-    Hulls(Vec<ConvexPolyhedron>),
+    Hull(ConvexPolyhedron),
 }
 
 impl std::fmt::Debug for Shape {
@@ -95,9 +106,9 @@ impl Shape {
         }
         let points: Vec<_> = points.iter().map(|&p| p - centre).collect();
         let own = mesh_volume(&points, &mesh.triangles).map_or(hull_volume, f64::abs);
-        let cutting = cutting(mesh, own > CONVEX * hull_volume, name, budget)?;
-        let (solid, kind) = solid(&points, mesh, (own, hull_volume), matches!(cutting, Cutting::Allowed), name)?;
-        let warning = if let Cutting::Refused(warning) = cutting { Some(warning) } else { None };
+        let whole = Piece { points, triangles: mesh.triangles.clone() };
+        let mut warning = None;
+        let (solid, kind) = solid(whole, (own, hull_volume), &mut warning, (name, budget))?;
         let scale = radius.powi(3);
         let inradius = solid.inradius() * radius;
         Ok(Self {
@@ -144,33 +155,49 @@ impl Shape {
     /// The collider, `scale` times as large as the mesh.
     pub(crate) fn scaled(&self, scale: f64) -> Option<SharedShape> {
         let s = (scale * self.radius) as f32;
-        let part = |hull: &ConvexPolyhedron| hull.clone().scaled(Vec3::splat(s));
         Some(match &self.solid {
             Solid::Ball(r) => SharedShape::ball(r * s),
-            Solid::Cuboid(pose, half) if *pose == Pose::IDENTITY => {
-                SharedShape::cuboid(half.x * s, half.y * s, half.z * s)
-            }
-            Solid::Cuboid(pose, half) => {
-                let pose = Pose::from_parts(pose.translation * s, pose.rotation);
-                SharedShape::compound(vec![(pose, SharedShape::cuboid(half.x * s, half.y * s, half.z * s))])
-            }
-            Solid::Hulls(hulls) if hulls.len() == 1 => SharedShape::new(part(&hulls[0])?),
-            Solid::Hulls(hulls) => {
-                let parts: Option<Vec<_>> =
-                    hulls.iter().map(|h| Some((Pose::IDENTITY, SharedShape::new(part(h)?)))).collect();
-                SharedShape::new(Compound::new(parts?))
+            Solid::Parts(parts) => {
+                let mut scaled = parts.iter().map(|part| part.scaled(s)).collect::<Option<Vec<_>>>()?;
+                match scaled.pop() {
+                    Some((pose, only)) if scaled.is_empty() && pose == Pose::IDENTITY => only,
+                    last => {
+                        scaled.extend(last);
+                        SharedShape::new(Compound::new(scaled))
+                    }
+                }
             }
         })
     }
 }
 
+impl Part {
+    fn scaled(&self, s: f32) -> Option<(Pose, SharedShape)> {
+        Some(match self {
+            Self::Cuboid(pose, half) => {
+                let pose =
+                    if *pose == Pose::IDENTITY { *pose } else { Pose::from_parts(pose.translation * s, pose.rotation) };
+                (pose, SharedShape::cuboid(half.x * s, half.y * s, half.z * s))
+            }
+            Self::Hull(hull) => (Pose::IDENTITY, SharedShape::new(hull.clone().scaled(Vec3::splat(s))?)),
+        })
+    }
+
+    /// Distance from its middle to its faces.
+    fn inradius(&self) -> f64 {
+        match self {
+            Self::Cuboid(_, half) => f64::from(half.min_element()),
+            Self::Hull(hull) => hull_inradius(hull),
+        }
+    }
+}
+
 impl Solid {
-    /// Distance from the middle of a part to its faces, of the part where it is largest.
+    /// That of the part where it is largest.
     fn inradius(&self) -> f64 {
         match self {
             Self::Ball(r) => f64::from(*r),
-            Self::Cuboid(_, half) => f64::from(half.min_element()),
-            Self::Hulls(hulls) => hulls.iter().map(hull_inradius).fold(0.0, f64::max),
+            Self::Parts(parts) => parts.iter().map(Part::inradius).fold(0.0, f64::max),
         }
     }
 }
@@ -184,28 +211,22 @@ fn hull_inradius(hull: &ConvexPolyhedron) -> f64 {
     f64::from(depths.fold(f32::INFINITY, f32::min).max(0.0))
 }
 
-/// Whether a mesh is to be cut into hulls.
-enum Cutting {
-    Needless,
-    Allowed,
-    Refused(Warning),
-}
-
-fn cutting(mesh: &TriangleMesh, is_convex: bool, name: &str, budget: &Budget) -> Result<Cutting> {
-    if is_convex {
-        return Ok(Cutting::Needless);
-    }
-    let count = mesh.triangles.len();
+/// Whether a mesh of so many triangles may be cut into hulls; with `warning` where not.
+///
+/// # Errors
+/// When somebody asks to stop.
+fn may_cut(count: usize, warning: &mut Option<Warning>, (name, budget): (&str, &Budget)) -> Result<bool> {
     let work = CUTTING + PER_TRIANGLE * count as u64;
-    let refused = |why: String| {
+    let mut refused = |why: String| {
         let message = format!("{name}: physics takes the mesh for its convex hull, hollows filled, for {why}");
-        Ok(Cutting::Refused(Warning::new(message, "make it simpler, or cut it into convex elements")))
+        warning.get_or_insert(Warning::new(message, "make it simpler, or cut it into convex elements"));
+        Ok(false)
     };
     if count > MOST_TRIANGLES {
         return refused(format!("it has {count} triangles, and at most {MOST_TRIANGLES} are cut into hulls"));
     }
     match budget.foresee(work) {
-        Ok(()) => budget.spend(work).map(|()| Cutting::Allowed),
+        Ok(()) => budget.spend(work).map(|()| true),
         Err(Error::Limit { .. }) => refused("no work is left for cutting it into hulls".into()),
         Err(error) => Err(error),
     }
@@ -213,40 +234,78 @@ fn cutting(mesh: &TriangleMesh, is_convex: bool, name: &str, budget: &Budget) ->
 
 /// The simplest solid that is near enough to the mesh, whose volume is `own` and that of its hull `of_hull`.
 fn solid(
-    points: &[Vec3],
-    mesh: &TriangleMesh,
+    whole: Piece,
     (own, of_hull): (f64, f64),
-    is_cut: bool,
-    name: &str,
+    warning: &mut Option<Warning>,
+    (name, budget): (&str, &Budget),
 ) -> Result<(Solid, Collider)> {
-    let fail = || Error::input(name, "no hull of the mesh could be made", "close its surface, or make it simpler");
-    let near = |a: f64, b: f64| (a - b).abs() <= TOLERANCE * b;
     if own > CONVEX * of_hull {
-        let norms = points.iter().map(|p| p.length());
+        let norms = whole.points.iter().map(|p| p.length());
         let (least, most) = norms.fold((f32::INFINITY, 0.0_f32), |(a, b), r| (a.min(r), b.max(r)));
         let round = 4.0 / 3.0 * std::f64::consts::PI * f64::from(most).powi(3);
         if least > 0.97 * most && own > 0.85 * round {
             return Ok((Solid::Ball((own / round).cbrt() as f32 * most), Collider::Ball));
         }
-        if let Some((pose, half)) = box_around(points, mesh)
-            && near(own, 8.0 * f64::from(half.x * half.y * half.z))
-        {
-            return Ok((Solid::Cuboid(pose, half), Collider::Cuboid));
-        }
-        return Ok((Solid::Hulls(vec![hull(points).ok_or_else(fail)?]), Collider::Hull));
     }
-    if !is_cut {
-        return Ok((Solid::Hulls(vec![hull(points).ok_or_else(fail)?]), Collider::Hull));
+    // What is put together of solid pieces, a shelf of its boards, touches with these, exactly as they are.
+    let several = if own > CONVEX * of_hull { Vec::new() } else { pieces(&whole.points, &whole.triangles) };
+    let mut parts = Vec::new();
+    if (2..=MOST_PIECES).contains(&several.len()) {
+        for piece in &several {
+            parts.extend(parts_of(piece, None, warning, (name, budget))?);
+        }
+    } else {
+        parts = parts_of(&whole, Some((own, of_hull)), warning, (name, budget))?;
+    }
+    let kind = match parts.as_slice() {
+        [] => {
+            return Err(Error::input(
+                name,
+                "no hull of the mesh could be made",
+                "close its surface, or make it simpler",
+            ));
+        }
+        [Part::Cuboid(..)] => Collider::Cuboid,
+        [Part::Hull(_)] => Collider::Hull,
+        _ => Collider::Hulls(parts.len()),
+    };
+    Ok((Solid::Parts(parts), kind))
+}
+
+/// The convex parts of a piece, whose volume and that of its hull may be known; none for a piece that is flat.
+fn parts_of(
+    piece: &Piece,
+    volumes: Option<(f64, f64)>,
+    warning: &mut Option<Warning>,
+    (name, budget): (&str, &Budget),
+) -> Result<Vec<Part>> {
+    budget.spend(PER_CORNER * piece.points.len() as u64)?;
+    let Some(around) = hull(&piece.points) else { return Ok(Vec::new()) };
+    let (own, of_hull) = volumes.unwrap_or_else(|| {
+        let of_hull =
+            f64::from(MassProperties::from_convex_polyhedron(1.0, around.points(), &triangles(&around)).mass());
+        (mesh_volume(&piece.points, &piece.triangles).map_or(of_hull, f64::abs), of_hull)
+    });
+    if of_hull < SPECK {
+        return Ok(Vec::new());
+    }
+    if own > CONVEX * of_hull {
+        let near = |a: f64, b: f64| (a - b).abs() <= TOLERANCE * b;
+        return Ok(match box_around(piece) {
+            Some((pose, half)) if near(own, 8.0 * f64::from(half.x * half.y * half.z)) => {
+                vec![Part::Cuboid(pose, half)]
+            }
+            _ => vec![Part::Hull(around)],
+        });
+    }
+    if !may_cut(piece.triangles.len(), warning, (name, budget))? {
+        return Ok(vec![Part::Hull(around)]);
     }
     let parameters =
         VHACDParameters { resolution: 48, max_convex_hulls: MOST_PARTS as u32, concavity: 0.02, ..Default::default() };
-    let parts = VHACD::decompose(&parameters, points, &mesh.triangles, false).compute_convex_hulls(4);
-    let mut hulls: Vec<_> = parts.iter().filter_map(|(points, _)| hull(points)).take(MOST_PARTS).collect();
-    if hulls.is_empty() {
-        hulls.push(hull(points).ok_or_else(fail)?);
-    }
-    let kind = if hulls.len() == 1 { Collider::Hull } else { Collider::Hulls(hulls.len()) };
-    Ok((Solid::Hulls(hulls), kind))
+    let cut = VHACD::decompose(&parameters, &piece.points, &piece.triangles, false).compute_convex_hulls(4);
+    let hulls: Vec<_> = cut.iter().filter_map(|(points, _)| hull(points)).take(MOST_PARTS).map(Part::Hull).collect();
+    Ok(if hulls.is_empty() { vec![Part::Hull(around)] } else { hulls })
 }
 
 /// The hull of points, of at most [`MOST_CORNERS`] corners, standing on four corners of each face; `None` where they lie in a plane.
@@ -336,10 +395,10 @@ pub(crate) fn mesh_volume(points: &[Vec3], triangles: &[[u32; 3]]) -> Option<f64
     (sum.norm() < 1e-3 * area && volume.abs() > 1e-6).then_some(volume)
 }
 
-/// The box around the points whose sides lie as the largest faces of the mesh do: its pose and half its sides.
-fn box_around(points: &[Vec3], mesh: &TriangleMesh) -> Option<(Pose, Vec3)> {
+/// The box around the points whose sides lie as the largest faces of the piece do: its pose and half its sides.
+fn box_around(Piece { points, triangles }: &Piece) -> Option<(Pose, Vec3)> {
     let normals: Vec<_> =
-        mesh.triangles.iter().map(|t| t.map(|k| points[k as usize])).map(|[a, b, c]| (b - a).cross(c - a)).collect();
+        triangles.iter().map(|t| t.map(|k| points[k as usize])).map(|[a, b, c]| (b - a).cross(c - a)).collect();
     let largest = |weight: &dyn Fn(Vec3) -> f32| {
         let best = (0..normals.len())
             .fold(0, |best, k| if weight(normals[k]) > 1.001 * weight(normals[best]) { k } else { best });

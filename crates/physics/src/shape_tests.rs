@@ -75,3 +75,44 @@ fn a_mesh_with_hollows_is_taken_for_its_hull_where_no_work_is_left_and_that_is_t
     assert!(shape.warning().unwrap().message.contains("dumbbell: physics takes the mesh for its convex hull"));
     assert!(Shape::new(&sphere(), "plum", &budget).unwrap().warning().is_none());
 }
+
+/// Boxes as one mesh: the middle and the sides of each.
+fn boxes(all: &[([f64; 3], [f64; 3])]) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    for (middle, sides) in all {
+        let first = mesh.positions.len() as u32;
+        let corner = |k: u32| {
+            let at = |a: usize| middle[a] + sides[a] * if k >> a & 1 == 1 { 0.5 } else { -0.5 };
+            Vector([at(0), at(1), at(2)])
+        };
+        mesh.positions.extend((0..8).map(corner));
+        let split = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]].map(|t| t.map(|k| first + k));
+        mesh.triangles.extend(faces.into_iter().flat_map(split));
+    }
+    mesh
+}
+
+#[test]
+fn a_table_is_its_board_and_its_legs_exactly() {
+    let leg = |x: f64, z: f64| ([x, 0.5, z], [0.1, 1.0, 0.1]);
+    let board = ([0.0, 1.05, 0.0], [4.0, 0.1, 1.2]);
+    let table = boxes(&[board, leg(-1.9, -0.5), leg(-1.9, 0.5), leg(1.9, -0.5), leg(1.9, 0.5)]);
+    let shape = Shape::new(&table, "table", &Budget::default()).unwrap();
+    assert_eq!(shape.collider(), Collider::Hulls(5));
+    // What is hollow stays so: it has the volume of its parts, and reaches just as far.
+    assert!((shape.volume() - (0.48 + 0.04)).abs() < 1e-3, "{}", shape.volume());
+    let around = shape.scaled(1.0).unwrap().compute_aabb(&Pose::IDENTITY);
+    let height = f64::from(around.maxs.y - around.mins.y);
+    assert!((height - 1.1).abs() < 1e-3, "{height}");
+    assert!((shape.inradius() - 0.05).abs() < 1e-3);
+}
+
+#[test]
+fn faces_with_corners_of_their_own_hang_together() {
+    let welded = boxes(&[([0.0; 3], [1.0; 3]), ([0.0, 2.0, 0.0], [1.0; 3])]);
+    let points: Vec<_> = welded.triangles.iter().flatten().map(|&k| vec3(welded.positions[k as usize])).collect();
+    let triangles: Vec<_> = (0..welded.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let found = pieces(&points, &triangles);
+    assert_eq!(found.iter().map(|p| (p.points.len(), p.triangles.len())).collect::<Vec<_>>(), [(8, 12), (8, 12)]);
+}

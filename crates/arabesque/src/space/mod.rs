@@ -175,7 +175,7 @@ impl Volume {
             let kept = scene_of(input, &bytes, context.files)?;
             request.frozen = bodies.kept(input.name(), &kept, context.budget())?;
         }
-        let physical = Physical::new(&mut space, self.bodies.as_deref(), &request, context)?;
+        let physical = Physical::new(&mut space, (self.bodies.as_deref(), self.stacks.as_ref()), &request, context)?;
         request.between = physical.as_ref().and_then(Physical::between);
         context.job = Job::Space(space);
         request.seed = context.seed;

@@ -4,7 +4,12 @@ use std::sync::Arc;
 
 use arabesque_core::{Between, Budget, Error, Outcome, Request as EngineRequest, Result};
 
-use crate::{artwork::PhysicsSummary, method::RunContext, recipe::Space, space::scene::Bodies};
+use crate::{
+    artwork::PhysicsSummary,
+    method::RunContext,
+    recipe::Space,
+    space::{scene::Bodies, stacks::Stacks},
+};
 
 /// There is none.
 #[derive(Debug)]
@@ -14,7 +19,7 @@ impl Physical {
     /// Refuses physics.
     pub(super) fn new(
         job: &mut Space,
-        _: Option<&Bodies>,
+        _: (Option<&Bodies>, Option<&Stacks>),
         _: &EngineRequest<3>,
         _: &mut RunContext<'_>,
     ) -> Result<Option<Arc<Self>>> {

@@ -18,7 +18,7 @@ use crate::{
     method::RunContext,
     recipe::{Physics, Space},
     solid::read::{indexed_mesh, mesh},
-    space::scene::Bodies,
+    space::{scene::Bodies, stacks::Stacks},
 };
 
 /// The strongest gravity, where that of the earth is 1.
@@ -45,6 +45,8 @@ pub(super) struct Physical {
     shapes: BTreeMap<usize, Arc<Shape>>,
     /// The mesh of each element of the exemplar, and how it lies there.
     sources: Vec<(usize, Similarity<3>)>,
+    /// Whether each is held where it is by what is not shown.
+    is_held: Vec<bool>,
     /// How much larger than elements their colliders are, so that what touches keeps the gap that it has in the exemplar.
     larger: f64,
     /// Whether the exemplar is a heap, of which most elements touch others.
@@ -68,7 +70,7 @@ impl Physical {
     /// a volume.
     pub(super) fn new(
         job: &mut Space,
-        bodies: Option<&Bodies>,
+        (bodies, stacks): (Option<&Bodies>, Option<&Stacks>),
         request: &EngineRequest<3>,
         context: &mut RunContext<'_>,
     ) -> Result<Option<Arc<Self>>> {
@@ -118,9 +120,11 @@ impl Physical {
                 .push(Warning::new(message, "give --floor, so that they lie on a floor as those of the exemplar do"));
         }
         let substeps = if let Physics::Substeps(count) = physics { count } else { 0 };
+        let is_held = (0..sources.len()).map(|k| stacks.is_some_and(|stacks| stacks.is_held(k))).collect();
         Ok(Some(Arc::new(Self {
             shapes,
             sources,
+            is_held,
             surroundings,
             larger,
             is_heap,
@@ -253,7 +257,8 @@ impl Physical {
             let towards = |ground: &MeshIndex| -ground.closest(pose.apply(shape.centre())).normal;
             let gravity = self.ground.as_ref().map(towards);
             let pose = pose.after(&resized(&shape, self.larger));
-            Body { pose, shape, frozen: placement.frozen.is_some(), gravity }
+            let frozen = placement.frozen.is_some() || self.is_held[placement.source];
+            Body { pose, shape, frozen, gravity }
         };
         world.place(placements.iter().map(body).collect())?;
         Ok(world)

@@ -112,3 +112,51 @@ fn what_physics_cannot_do_is_refused() {
     let recipe = Recipe::new(Input::file("p.csv").embedding(("x,y,z\n".to_owned() + &points).as_bytes()), job);
     assert!(run(&recipe).unwrap_err().to_string().contains("physics for points and curves"));
 }
+
+/// Boards on a wall at two heights, three crates on each, and the same on the floor.
+fn shelves() -> Vec<u8> {
+    let sized = |size: [f64; 3]| {
+        let mut mesh = cube(1.0);
+        mesh.positions.iter_mut().for_each(|p| *p = Vector([0, 1, 2].map(|a| p[a] * size[a])));
+        mesh
+    };
+    let mut nodes = Vec::new();
+    let mut node = |mesh: usize, at: [f64; 3]| {
+        let name = format!("{} {}", ["board", "crate"][mesh], nodes.len());
+        nodes.push(SceneNode { name, mesh, transform: Similarity::shift(Vector(at)), ..SceneNode::default() });
+    };
+    for k in 0..18_u32 {
+        let at = [k % 3, k / 3 % 3, k / 9].map(f64::from);
+        let (x, y, z) = (3.2 * at[0] + 1.6, 1.8 * at[1] + 0.05, 2.5 * at[2] + 0.6);
+        node(0, [x, y, z]);
+        for n in 0..3_u32 {
+            let shaken = 0.05 * f64::from((k + n) % 3);
+            node(1, [x + 0.9 * (f64::from(n) - 1.0) + shaken, y + 0.35, z + shaken]);
+        }
+    }
+    let meshes = vec![SceneMesh::new("board", sized([3.0, 0.1, 1.0])), SceneMesh::new("crate", sized([0.6; 3]))];
+    let scene = Scene { meshes, nodes, ..Scene::of_points(arabesque_core::PointSet::default()) };
+    write_scene(&scene, None, &Budget::default()).unwrap()
+}
+
+#[test]
+fn boards_that_hang_stay_and_every_crate_stands_on_one() {
+    let mut job = Space { floor: true, ..Space::new("13x5.4x9".parse().unwrap()) };
+    job.physics = Some(Physics::default());
+    let artwork = run(&Recipe::new(Input::file("shelves.glb").embedding(&shelves()), job)).unwrap();
+    assert_eq!(artwork.summary().physics.unwrap().floating, 0);
+    let scene = read_scene("out.glb", &bytes(&artwork), &Budget::default()).unwrap();
+    let places = |mesh: &str| {
+        let shown = scene.nodes.iter().filter(|n| scene.meshes[n.mesh].name == mesh);
+        shown.map(|n| n.transform.translation).collect::<Vec<_>>()
+    };
+    let (boards, crates) = (places("board"), places("crate"));
+    assert!(boards.len() > 20 && crates.len() == 3 * boards.len(), "{} {}", boards.len(), crates.len());
+    for place in crates {
+        let stands = |board: &Vector<3>| {
+            let off = place - *board;
+            (off[1] - 0.35).abs() < 0.02 && off[0].abs() < 1.4 && off[2].abs() < 0.5
+        };
+        assert!(boards.iter().any(stands), "{place:?}");
+    }
+}

@@ -27,6 +27,8 @@ const ACROSS: f64 = 8.0;
 const ALONG: f64 = 64.0;
 const MARGIN: f64 = 3.0;
 const THINNEST: f64 = 12.0;
+/// Cells of that grid across the walls of what is hollow.
+const WALL: f64 = 2.0;
 /// What is nearer to the floor than this share of its size stands on it.
 const NEAR: f64 = 0.12;
 /// What is over the floor by more than this share of its own height does not stand on it.
@@ -372,7 +374,7 @@ fn bodies(name: &str, scene: &Scene, budget: &Budget) -> Result<BTreeMap<usize, 
         let mut points: Vec<_> = found.iter().map(|c| c.point).collect();
         points.extend(corners(&shape.mesh));
         let centre = centre(&shape.mesh, &points);
-        let solid = Arc::new(solid(&index, &points, centre, budget)?);
+        let solid = Arc::new(solid((&index, thickness(&shape.mesh, area)), &points, centre, budget)?);
         let symmetry =
             if is_many { Symmetry::default() } else { Symmetry::of(&shape.mesh, &index, (centre, &points), budget)? };
         Ok((number, Body { centre, points, colour: colour(&shape.mesh), solid, symmetry }))
@@ -380,18 +382,34 @@ fn bodies(name: &str, scene: &Scene, budget: &Budget) -> Result<BTreeMap<usize, 
     shown.into_iter().map(one).collect()
 }
 
-/// The volume of a mesh: its distances on a grid around it.
-fn solid(index: &MeshIndex, points: &[Vector<3>], centre: Vector<3>, budget: &Budget) -> Result<Solid<3>> {
+/// The volume of a mesh, whose walls are about so thick: its distances on a grid around it.
+fn solid(
+    (index, thickness): (&MeshIndex, f64),
+    points: &[Vector<3>],
+    centre: Vector<3>,
+    budget: &Budget,
+) -> Result<Solid<3>> {
     let size = index.bounds().size();
     let longest = size.0.into_iter().fold(0.0, f64::max);
     let thinnest = size.0.into_iter().fold(f64::INFINITY, f64::min).max(longest / THINNEST);
-    let step = (thinnest / ACROSS).max(longest / ALONG);
+    let step = (thinnest / ACROSS).min(thickness / WALL).max(longest / ALONG);
     let bounds = index.bounds().grown(MARGIN * step);
     let nodes = bounds.size().0.map(|side| (side / step).ceil() as usize + 1);
     let mut grid = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
     let places: Vec<_> = (0..grid.values.len()).map(|n| grid.node(n)).collect();
     grid.values = index.signed_distances(&places, budget)?;
     Ok(Solid::new(grid, index.bounds(), points.to_vec(), centre))
+}
+
+/// How thick the walls of a mesh of this area are in the mean: what is hollow is thin. Without end where it encloses nothing.
+fn thickness(mesh: &TriangleMesh, area: f64) -> f64 {
+    let middle = mesh.bounds().centre();
+    let of_triangle = |t| {
+        let [a, b, c] = mesh.corners(t).map(|p| p - middle);
+        a.dot(b.cross(c)) / 6.0
+    };
+    let volume = (0..mesh.triangles.len()).map(of_triangle).sum::<f64>().abs();
+    if volume > 1e-6 * area.powf(1.5) { 2.0 * volume / area } else { f64::INFINITY }
 }
 
 /// Corners far from one another, those that stick out first.

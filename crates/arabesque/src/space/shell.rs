@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Ground, Matrix, Region, Rotations, Vector};
+use arabesque_core::{Bounds, Budget, Grid, Ground, Matrix, Region, Result, Rotations, Vector};
 use arabesque_surface::{Closest, DirectionField, MeshIndex};
+
+/// Nodes of the grid of distances along the longest side of the box around a layer.
+const NODES: f64 = 48.0;
 
 /// A layer on a mesh: what lies between two heights over it.
 #[derive(Debug)]
@@ -18,6 +21,8 @@ pub(super) struct Shell {
     /// The axis of the exemplar that runs along the normal, and what lies on the mesh along it.
     across: usize,
     pub(super) under: f64,
+    /// Distances from the mesh on a grid with cells of this size: most places in the box around a layer are far from it.
+    far: Option<(Grid<3, f64>, f64)>,
 }
 
 /// How the exemplar lies over a mesh.
@@ -34,7 +39,37 @@ pub(super) struct Lying {
 impl Shell {
     pub(super) fn new(index: &Arc<MeshIndex>, field: DirectionField, lying: Lying) -> Self {
         let Lying { turned, heights, reach, across, under } = lying;
-        Self { index: Arc::clone(index), field, turned: turned.to_radians(), heights, reach, across, under }
+        let index = Arc::clone(index);
+        Self { index, field, turned: turned.to_radians(), heights, reach, across, under, far: None }
+    }
+
+    /// The same, knowing which places are far from the mesh.
+    ///
+    /// # Errors
+    /// When the budget is used up, or somebody asks to stop.
+    pub(super) fn with_distances(mut self, budget: &Budget) -> Result<Self> {
+        let inner = self.bounds();
+        let cell = inner.size().0.into_iter().fold(0.0, f64::max) / NODES;
+        let bounds = inner.grown(cell);
+        let nodes = bounds.size().0.map(|side| (side / cell).ceil() as usize + 1);
+        let mut distances = Grid { bounds, nodes, values: vec![0.0; nodes.iter().product()] };
+        let places: Vec<_> = (0..distances.values.len()).map(|n| distances.node(n)).collect();
+        distances.values = self.index.closest_all(&places, budget)?.into_iter().map(|c| c.distance).collect();
+        self.far = Some((distances, cell));
+        Ok(self)
+    }
+
+    /// How far outside of the layer a place is at least that is far from it.
+    fn beyond(&self, p: Vector<3>) -> Option<f64> {
+        let (distances, cell) = self.far.as_ref()?;
+        if !distances.bounds.contains(p) {
+            return None;
+        }
+        let mut distance = 0.0;
+        distances.interpolate(p, |weight, value| distance += weight * value);
+        // Distances differ by no more than places do, and a place by less than a cell from the nodes around it, in the mean of them.
+        let beyond = distance - cell - self.reach[0].abs().max(self.reach[1].abs());
+        (beyond > 0.0).then_some(beyond)
     }
 
     /// The rotation of the exemplar at a point of the mesh.
@@ -69,6 +104,9 @@ impl Region<3> for Shell {
     }
 
     fn signed_distance(&self, p: Vector<3>) -> f64 {
+        if let Some(beyond) = self.beyond(p) {
+            return -beyond;
+        }
         let (height, foot) = self.foot(p);
         // Beyond the edge of an open mesh the way to the foot leaves the normal.
         let away = p - foot.point;

@@ -1,23 +1,35 @@
-//! Stacks on a floor: elements of which one lies on another, apart from all others. Each is placed as one thing, so that what lies on
-//! something in the exemplar lies on it in the result, exactly as there.
+//! Stacks on a floor, and shelves: elements of which one lies on another, apart from all others. Each is placed as one thing, so that what
+//! lies on something in the exemplar lies on it in the result, exactly as there.
+//!
+//! A stack begins with what stands on the floor, or with what is held by something that the exemplar does not show, as boards on a wall are:
+//! elements that lie on nothing and carry others.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
-use arabesque_core::{Bounds, Budget, DisjointSets, Element, Exemplar, Placement, Result, Similarity, Vector};
+use arabesque_core::{Bounds, Budget, DisjointSets, Element, Placement, Result, Similarity, Solid, Vector};
 use arabesque_io::mesh::{
     gltf::{Scene, SceneNode},
     scene::Classes,
 };
+use arabesque_surface::MeshIndex;
 
 use super::scene::Bodies;
 
-/// Work of a point that is looked at, and of a pair of elements.
+/// Work of a point that is looked at, in a grid and on a mesh, and of a pair of elements.
 const PER_POINT: u64 = 60;
+const PER_CLOSEST: u64 = 1500;
 const PER_PAIR: u64 = 40;
 /// What is nearer than this share of the thinner of two touches.
 const TOUCH: f64 = 0.06;
 /// What is nearer to the floor than this share of its own height stands on it.
 const STANDS: f64 = 0.1;
+/// One thing lies on another where the surface between them is no steeper than this, as the height of its normal.
+const LEVEL: f64 = 0.5;
+/// Grids of distances do not show what is thinner than so many of their steps.
+const SHOWN: f64 = 1.5;
+/// Of the elements of a class that hang in the air this share has to lie on nothing, and this one to carry something, for all to be held.
+const HANGS: f64 = 0.9;
+const CARRIES: f64 = 0.5;
 /// Fewest groups, and fewest of them that are stacks.
 const GROUPS: usize = 3;
 const STACKS: usize = 2;
@@ -29,8 +41,17 @@ const AREA: f64 = 0.34;
 #[derive(Clone, Debug)]
 pub(super) struct Stacks {
     pub(super) single: Arc<Bodies>,
-    /// The elements of the scene as it was that each element is.
-    members: Vec<Vec<usize>>,
+    groups: Vec<Group>,
+}
+
+/// The elements of the scene as it was that one element is.
+#[derive(Clone, Debug)]
+struct Group {
+    members: Vec<usize>,
+    /// What all others lie on.
+    root: usize,
+    /// Whether that is held by what is not shown.
+    is_held: bool,
 }
 
 impl Stacks {
@@ -38,15 +59,20 @@ impl Stacks {
     pub(super) fn taken_apart(&self, placements: &[Placement<3>]) -> Vec<Placement<3>> {
         let own = |p: &Placement<3>| {
             let single = |&source: &usize| Placement { source, control: Vec::new(), ..p.clone() };
-            self.members.get(p.source).into_iter().flatten().map(single).collect::<Vec<_>>()
+            self.groups.get(p.source).into_iter().flat_map(|group| &group.members).map(single).collect::<Vec<_>>()
         };
         placements.iter().flat_map(own).collect()
     }
 
     /// How many of them are made of several elements, and of how many.
     pub(super) fn count(&self) -> (usize, usize) {
-        let several = self.members.iter().filter(|members| members.len() > 1);
-        several.fold((0, 0), |(stacks, elements), members| (stacks + 1, elements + members.len()))
+        let several = self.groups.iter().map(|group| group.members.len()).filter(|members| *members > 1);
+        several.fold((0, 0), |(stacks, elements), members| (stacks + 1, elements + members))
+    }
+
+    /// Whether a stack is held where it is, and does not fall.
+    pub(super) fn is_held(&self, source: usize) -> bool {
+        self.groups.get(source).is_some_and(|group| group.is_held)
     }
 }
 
@@ -57,10 +83,16 @@ impl Stacks {
 /// As [`Bodies::of`].
 pub(super) fn stacked(name: &str, single: Bodies, budget: &Budget) -> Result<(Bodies, Option<Stacks>)> {
     let budget = budget.stage("looking for stacks");
-    let Some(members) = members(&single.exemplar, &budget)? else { return Ok((single, None)) };
+    let Some(groups) = groups(&single, &budget)? else { return Ok((single, None)) };
+    let members: Vec<_> = groups.iter().map(|group| group.members.clone()).collect();
     let scene = together(&single.scene, &members);
-    let whole = Bodies::of(name, scene, single.exemplar.up, &budget)?;
-    Ok((whole, Some(Stacks { single: Arc::new(single), members })))
+    let mut whole = Bodies::of(name, scene, single.exemplar.up, &budget)?;
+    // A stack is where what carries it is, whatever lies on that.
+    let exemplar = Arc::make_mut(&mut whole.exemplar);
+    for (element, group) in exemplar.elements.iter_mut().zip(&groups) {
+        element.centre = single.exemplar.elements[group.root].centre;
+    }
+    Ok((whole, Some(Stacks { single: Arc::new(single), groups })))
 }
 
 /// A scene with a node for each group of nodes.
@@ -105,17 +137,29 @@ struct Thing<'a> {
     thinnest: f64,
     element: &'a Element<3>,
     stands: bool,
+    /// Whether something is below it, or it lies on something.
+    carries: bool,
+    lies: bool,
+    /// Whether it hangs in the air as others of its class do that carry something.
+    is_held: bool,
+}
+
+impl Thing<'_> {
+    /// Whether a stack may begin with it.
+    fn is_root(&self) -> bool {
+        self.stands || self.is_held
+    }
 }
 
 /// The elements of every stack, those alone included; `None` where they are no stacks.
-fn members(exemplar: &Exemplar<3>, budget: &Budget) -> Result<Option<Vec<Vec<usize>>>> {
+fn groups(single: &Bodies, budget: &Budget) -> Result<Option<Vec<Group>>> {
+    let exemplar = &*single.exemplar;
     let up = exemplar.up;
     let count = exemplar.elements.len();
     if count <= GROUPS || exemplar.solids.len() != count || !exemplar.softs.is_empty() {
         return Ok(None);
     }
-    let thing = |element| thing(element, up);
-    let mut things: Vec<Thing<'_>> = exemplar.elements.iter().map(thing).collect();
+    let mut things: Vec<Thing<'_>> = exemplar.elements.iter().map(|element| thing(element, up)).collect();
     let floor = things.iter().map(|t| t.around.min[up]).fold(f64::INFINITY, f64::min);
     for thing in &mut things {
         thing.stands = thing.around.min[up] - floor <= STANDS * thing.around.size()[up];
@@ -123,27 +167,62 @@ fn members(exemplar: &Exemplar<3>, budget: &Budget) -> Result<Option<Vec<Vec<usi
     if things.iter().all(|thing| thing.stands) {
         return Ok(None);
     }
+    let meets = Touching { single, things: &things, fine: fine(single, budget)? }.all(budget)?;
+    for meet in meets.iter().filter(|meet| meet.is_level) {
+        (things[meet.upper].lies, things[meet.lower].carries) = (true, true);
+    }
+    hold(&mut things);
+    let has_shelves = things.iter().any(|thing| thing.is_held);
     let mut sets = DisjointSets::new(count);
-    for (a, b) in touching(exemplar, &things, budget)? {
-        if !(things[a].stands && things[b].stands) {
-            sets.join(a, b);
+    for meet in &meets {
+        let [a, b] = [meet.upper, meet.lower].map(|k| &things[k]);
+        // What stands side by side on shelves lies on them, and not on one another.
+        let is_beside = has_shelves && !meet.is_level && [a, b].iter().all(|thing| thing.is_root() || thing.lies);
+        if !(is_beside || a.is_root() && b.is_root()) {
+            sets.join(meet.upper, meet.lower);
         }
     }
-    let groups = sets.groups();
-    let has_floor = |group: &Vec<usize>| group.iter().any(|&k| things[k].stands);
-    let around = |group: &mut dyn Iterator<Item = usize>| {
-        let all = group.fold(Bounds::EMPTY, |all: Bounds<3>, k| all.union(&things[k].around)).size();
-        (0..3).filter(|axis| *axis != up).map(|axis| all[axis]).product::<f64>()
-    };
-    let floor_area = around(&mut (0..count));
+    let whole = around(&things, &(0..count).collect::<Vec<_>>(), up);
     let is_small = |group: &Vec<usize>| {
-        group.len() == 1
-            || group.len() as f64 <= MEMBERS * count as f64 && around(&mut group.iter().copied()) <= AREA * floor_area
+        group.len() == 1 || group.len() as f64 <= MEMBERS * count as f64 && around(&things, group, up) <= AREA * whole
     };
-    let stacks = groups.iter().filter(|group| group.len() > 1).count();
-    let are_stacks =
-        groups.len() >= GROUPS && stacks >= STACKS && groups.iter().all(|group| has_floor(group) && is_small(group));
-    Ok(are_stacks.then_some(groups))
+    let sets = sets.groups();
+    let stacks = sets.iter().filter(|group| group.len() > 1).count();
+    if sets.len() < GROUPS || stacks < STACKS || !sets.iter().all(is_small) {
+        return Ok(None);
+    }
+    let group = |members: Vec<usize>| {
+        let wide = |k: &usize| around(&things, &[*k], up);
+        let roots = members.iter().copied().filter(|&k| things[k].is_root());
+        let root = roots.max_by(|a, b| wide(a).total_cmp(&wide(b)).then(b.cmp(a)))?;
+        let is_held = !members.iter().any(|&k| things[k].stands);
+        Some(Group { members, root, is_held })
+    };
+    Ok(sets.into_iter().map(group).collect())
+}
+
+/// The area of the box around some of them, seen from above.
+fn around(things: &[Thing<'_>], group: &[usize], up: usize) -> f64 {
+    let all = group.iter().fold(Bounds::EMPTY, |all: Bounds<3>, &k| all.union(&things[k].around)).size();
+    (0..3).filter(|axis| *axis != up).map(|axis| all[axis]).product::<f64>()
+}
+
+/// Finds out what is held by what the exemplar does not show: elements of classes that lie on nothing where they are off the floor, and
+/// carry something mostly.
+fn hold(things: &mut [Thing<'_>]) {
+    let mut of_class: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+    for thing in things.iter().filter(|thing| !thing.stands) {
+        let [all, hanging, carrying] = of_class.entry(thing.element.class).or_default();
+        *all += 1.0;
+        if !thing.lies {
+            *hanging += 1.0;
+            *carrying += f64::from(u8::from(thing.carries));
+        }
+    }
+    for thing in things.iter_mut().filter(|thing| !thing.stands && !thing.lies) {
+        let [all, hanging, carrying] = of_class[&thing.element.class];
+        thing.is_held = hanging >= HANGS * all && carrying >= CARRIES * hanging;
+    }
 }
 
 fn thing(element: &Element<3>, up: usize) -> Thing<'_> {
@@ -151,42 +230,103 @@ fn thing(element: &Element<3>, up: usize) -> Thing<'_> {
     let around = Bounds::around(points.iter().copied());
     let size = around.size();
     let thinnest = size.0.into_iter().fold(f64::INFINITY, f64::min).max(0.1 * size[up]);
-    Thing { points, around, thinnest, element, stands: false }
+    Thing { points, around, thinnest, element, stands: false, carries: false, lies: false, is_held: false }
 }
 
-/// All pairs of elements that touch.
-fn touching(exemplar: &Exemplar<3>, things: &[Thing<'_>], budget: &Budget) -> Result<Vec<(usize, usize)>> {
-    let axis = if exemplar.up == 0 { 1 } else { 0 };
-    let mut order: Vec<usize> = (0..things.len()).collect();
-    order.sort_by(|&a, &b| things[a].around.min[axis].total_cmp(&things[b].around.min[axis]));
-    let mut found = Vec::new();
-    for (at, &a) in order.iter().enumerate() {
-        let reach = TOUCH * things[a].thinnest;
-        for &b in &order[at + 1..] {
-            budget.spend(PER_PAIR)?;
-            if things[b].around.min[axis] > things[a].around.max[axis] + reach {
-                break;
-            }
-            let near = reach.min(TOUCH * things[b].thinnest);
-            if !things[a].around.grown(near).intersects(&things[b].around) {
-                continue;
-            }
-            budget.spend(PER_POINT * (things[a].points.len() + things[b].points.len()) as u64)?;
-            if reaches(exemplar, (a, &things[b]), near) || reaches(exemplar, (b, &things[a]), near) {
-                found.push((a, b));
-            }
+/// Two elements that touch: the lower one, if one lies on the other.
+struct Meet {
+    upper: usize,
+    lower: usize,
+    is_level: bool,
+}
+
+/// The meshes of which a grid of distances does not show enough.
+fn fine(single: &Bodies, budget: &Budget) -> Result<BTreeMap<usize, MeshIndex>> {
+    let mut fine = BTreeMap::new();
+    for (node, solid) in single.scene.nodes.iter().zip(&single.exemplar.solids) {
+        if is_thin(solid) && !fine.contains_key(&node.mesh) {
+            let shape = &single.scene.meshes[node.mesh];
+            fine.insert(node.mesh, MeshIndex::new(&shape.mesh, &shape.name, budget)?);
         }
     }
-    Ok(found)
+    Ok(fine)
 }
 
-/// Whether a point of a thing is in an element, or nearer than `near`.
-fn reaches(exemplar: &Exemplar<3>, (element, other): (usize, &Thing<'_>), near: f64) -> bool {
-    let (pose, solid) = (&exemplar.elements[element].pose, &exemplar.solids[element]);
-    let back = pose.inverse();
-    let centre = other.element.centre;
-    let points = other.points.iter().copied().chain([centre]);
-    points.map(|p| solid.depth(back.apply(p)) * pose.scale).any(|depth| depth >= -near)
+fn is_thin(solid: &Solid<3>) -> bool {
+    let (grid, size) = (&solid.distance, solid.distance.bounds.size());
+    let step = (0..3).map(|k| size[k] / (grid.nodes[k].max(2) - 1) as f64).fold(0.0, f64::max);
+    solid.inradius() < SHOWN * step
+}
+
+/// Looks for elements that touch.
+struct Touching<'a> {
+    single: &'a Bodies,
+    things: &'a [Thing<'a>],
+    fine: BTreeMap<usize, MeshIndex>,
+}
+
+impl Touching<'_> {
+    /// All pairs of elements that touch.
+    fn all(&self, budget: &Budget) -> Result<Vec<Meet>> {
+        let (things, up) = (self.things, self.single.exemplar.up);
+        let axis = if up == 0 { 1 } else { 0 };
+        let mut order: Vec<usize> = (0..things.len()).collect();
+        order.sort_by(|&a, &b| things[a].around.min[axis].total_cmp(&things[b].around.min[axis]));
+        let mut found = Vec::new();
+        for (at, &a) in order.iter().enumerate() {
+            let reach = TOUCH * things[a].thinnest;
+            for &b in &order[at + 1..] {
+                budget.spend(PER_PAIR)?;
+                if things[b].around.min[axis] > things[a].around.max[axis] + reach {
+                    break;
+                }
+                let near = reach.min(TOUCH * things[b].thinnest);
+                if !things[a].around.grown(near).intersects(&things[b].around) {
+                    continue;
+                }
+                // How level the surface of each is where the other one touches it, seen from below.
+                let [on_a, on_b] = [self.reached((a, b), near, budget)?, self.reached((b, a), near, budget)?];
+                if on_a.is_none() && on_b.is_none() {
+                    continue;
+                }
+                let most = |one: Option<[f64; 2]>, k: usize| one.map_or(0.0, |levels| levels[k]);
+                let (b_lies, a_lies) = (most(on_a, 1).max(-most(on_b, 0)), most(on_b, 1).max(-most(on_a, 0)));
+                let (upper, lower) = if a_lies >= b_lies { (a, b) } else { (b, a) };
+                found.push(Meet { upper, lower, is_level: a_lies.max(b_lies) > LEVEL });
+            }
+        }
+        Ok(found)
+    }
+
+    /// How far down and up the surface of an element looks where points of another one are in it, or nearer than `near`; nothing where none are.
+    fn reached(&self, (element, other): (usize, usize), near: f64, budget: &Budget) -> Result<Option<[f64; 2]>> {
+        let exemplar = &self.single.exemplar;
+        let (pose, solid) = (&exemplar.elements[element].pose, &exemplar.solids[element]);
+        let (back, other) = (pose.inverse(), &self.things[other]);
+        let mesh = self.fine.get(&self.single.scene.nodes[element].mesh);
+        budget.spend(if mesh.is_some() { PER_CLOSEST } else { PER_POINT } * other.points.len() as u64)?;
+        let mut levels: Option<[f64; 2]> = None;
+        let reach = near / pose.scale.max(f64::MIN_POSITIVE);
+        let box_around = solid.bounds.grown(reach);
+        let points = other.points.iter().copied().chain([other.element.centre]);
+        for own in points.map(|p| back.apply(p)).filter(|own| box_around.contains(*own)) {
+            let way = match mesh {
+                None => (solid.depth(own) >= -reach).then(|| solid.outwards(own)),
+                Some(mesh) => {
+                    let closest = mesh.closest(own);
+                    let [a, b, c] = mesh.corners(closest.triangle);
+                    let is_near = closest.distance <= reach || mesh.is_inside(own);
+                    is_near.then(|| (b - a).cross(c - a).unit_or_zero())
+                }
+            };
+            if let Some(way) = way {
+                let level = pose.rotation.apply(way)[exemplar.up];
+                let [low, high] = levels.get_or_insert([0.0; 2]);
+                (*low, *high) = (low.min(level), high.max(level));
+            }
+        }
+        Ok(levels)
+    }
 }
 
 #[cfg(test)]
@@ -237,6 +377,34 @@ mod tests {
         assert_eq!(apart.iter().map(|p| p.source).collect::<Vec<_>>(), [0, 1, 2]);
         let upper = stacks.single.placed(&apart, None).nodes[1].transform.translation;
         assert!((upper - Vector([5.1, 1.52, 0.0])).norm() < 1e-9);
+    }
+
+    /// Boards on a wall, at three heights, with crates on them; each board is one long mesh.
+    fn shelves() -> Bodies {
+        let at = |k: usize, x: f64, y: f64| SceneNode::new(format!("n.{k}"), k, Similarity::shift(Vector([x, y, 0.0])));
+        let mut nodes = Vec::new();
+        for (x, y) in (0..9).map(|k| (4.1 * f64::from(k % 3), 2.0 * f64::from(k / 3))) {
+            nodes.push(SceneNode { class: Some("board".into()), ..at(0, x, y) });
+            // Those on boards side by side touch.
+            for off in [-1.55, 1.55] {
+                nodes.push(SceneNode { class: Some("crate".into()), ..at(1, x + off, y + 0.65) });
+            }
+        }
+        let meshes = vec![SceneMesh::new("board", cuboid([4.0, 0.3, 1.0])), SceneMesh::new("crate", cuboid([1.0; 3]))];
+        let scene = Scene { meshes, nodes, ..Scene::default() };
+        Bodies::read("t", scene, (1, &Deform::default(), None), &Budget::default()).unwrap().0
+    }
+
+    #[test]
+    fn boards_that_hang_are_held_with_all_that_lies_on_them() {
+        let (whole, stacks) = stacked("t", shelves(), &Budget::default()).unwrap();
+        let stacks = stacks.unwrap();
+        assert_eq!((whole.exemplar.elements.len(), stacks.count()), (9, (9, 27)));
+        assert_eq!((0..9).filter(|k| stacks.is_held(*k)).count(), 6, "those on the floor stand there");
+        for (element, k) in whole.exemplar.elements.iter().zip(0..9) {
+            let board = Vector([4.1 * f64::from(k % 3), 2.0 * f64::from(k / 3), 0.0]);
+            assert!((element.centre - board).norm() < 1e-9, "{:?}", element.centre);
+        }
     }
 
     #[test]

@@ -136,7 +136,7 @@ fn on_mesh(job: &mut Space, filling: Filling<'_>, turned: f64, context: &mut Run
             Shell::new(&index, field, lying)
         }
     };
-    let shell = Arc::new(shell);
+    let shell = Arc::new(shell.with_distances(context.budget())?);
     let rotations: Arc<dyn Rotations<3>> = shell.clone();
     let ground: Option<Arc<dyn Ground<3>>> = if across == up { Some(shell.clone()) } else { None };
     let fields = Fields { orientation: Some(OrientationField::Of(rotations)), ..Fields::default() };

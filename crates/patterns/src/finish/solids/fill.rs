@@ -4,6 +4,7 @@ use arabesque_core::{Buckets, Budget, Matrix, Numbered, Placement, Result, Stage
 
 use super::{
     contact::{Body, contact},
+    place::Place,
     things::Things,
 };
 
@@ -12,6 +13,10 @@ const PLACES: Stage = Stage::new(437);
 /// Candidate places for each missing element, and sources tried at each.
 const TRIES: usize = 40;
 const SOURCES: usize = 6;
+/// After so many places in a row at which nothing fits, and as many more as this share of what is missing, the others have no room either: they
+/// have less.
+const VAIN: f64 = 60.0;
+const VAIN_SHARE: f64 = 0.25;
 /// Steps by which a candidate moves to where it fits.
 const STEPS: usize = 8;
 /// A candidate fits where it lies too deep by no more than this share of its inner radius. Where much is missing, what is around makes room for it in the
@@ -38,16 +43,19 @@ impl<const D: usize> Things<'_, D> {
         roomy.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut short = short;
         let mut near = self.buckets();
+        let (mut vain, most) = (0.0, VAIN + VAIN_SHARE * missing as f64);
         for (_, place) in roomy {
             let Some(class) = (0..short.len()).max_by(|&a, &b| short[a].total_cmp(&short[b])) else { break };
-            if short[class] <= 0.0 {
+            if short[class] <= 0.0 || vain > most {
                 break;
             }
+            vain += 1.0;
             if let Some(placement) = self.fitting((class as u32, place, fits), &near, &mut random, budget)? {
                 let body = self.body(placement.source, &placement.transform);
                 near.insert(self.bodies.len() as u32, body.centre);
                 self.put(placement, body);
                 short[class] -= 1.0;
+                vain = 0.0;
             }
         }
         Ok(())
@@ -55,17 +63,14 @@ impl<const D: usize> Things<'_, D> {
 
     /// Random places outside of all bodies, with the distance to the nearest centre.
     fn roomy(&self, tries: usize, random: &mut Stream, budget: &Budget) -> Result<Vec<(f64, Vector<D>)>> {
-        let domain = &self.extent.request().domain;
-        let bounds = domain.bounds();
+        let request = self.extent.request();
+        let place = Place::new(&request.domain, 0.0, request.seed);
         let index = self.index();
         let mut meter = budget.meter();
         let mut found = Vec::new();
         for _ in 0..tries {
-            let p = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
             meter.spend(3000)?;
-            if !domain.contains(p) {
-                continue;
-            }
+            let Some((p, _)) = place.draw(random) else { continue };
             let mut deepest = -2.0 * self.widest;
             let looked = index.within(p, self.widest, |j, offset| {
                 let body = &self.bodies[j];

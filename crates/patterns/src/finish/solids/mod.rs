@@ -7,6 +7,7 @@
 mod contact;
 mod fill;
 mod pairs;
+mod place;
 mod relax;
 mod things;
 mod voids;

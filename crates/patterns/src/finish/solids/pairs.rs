@@ -53,7 +53,7 @@ impl<const D: usize> Things<'_, D> {
         let mut known = self.pairs[i].iter().copied().peekable();
         let mut cost = 100;
         let mut found = Vec::new();
-        for (j, offset) in self.around(index, body, i).into_iter().filter(|(j, _)| *j > i) {
+        for (j, offset) in self.around(index, body, |j| j > i) {
             while known.next_if(|(k, _)| (*k as usize) < j).is_some() {}
             let before = known.next_if(|(k, _)| *k as usize == j).map(|(_, pair)| pair);
             let gone = self.gone[i] + self.gone[j];

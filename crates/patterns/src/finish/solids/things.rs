@@ -1,6 +1,7 @@
 //! The elements of the output as solids.
 
 use arabesque_core::{Budget, Exemplar, GridIndex, Numbered, Placement, Result, Similarity, Vector};
+use rayon::prelude::*;
 
 use super::contact::{Allowed, Body, Pair, contact};
 use crate::{border::Extent, exemplar::library::Library};
@@ -77,34 +78,47 @@ impl<'a, const D: usize> Things<'a, D> {
         GridIndex::new(&centres, self.widest.max(1e-9), &self.extent.request().domain)
     }
 
-    /// The bodies that may touch one, with the way to each.
-    pub(super) fn around(&self, index: &GridIndex<D>, body: &Body<'_, D>, except: usize) -> Vec<(usize, Vector<D>)> {
+    /// The bodies that may touch one, of those with numbers that are `asked` for, with the way to each.
+    pub(super) fn around(
+        &self,
+        index: &GridIndex<D>,
+        body: &Body<'_, D>,
+        asked: impl Fn(usize) -> bool,
+    ) -> Vec<(usize, Vector<D>)> {
         let mut near = Vec::new();
         index.within(body.centre, body.radius + self.widest, |j, offset| {
-            if j != except && offset.norm() < body.radius + self.bodies[j].radius {
+            if asked(j) && offset.norm2() < (body.radius + self.bodies[j].radius).powi(2) {
                 near.push((j, offset));
             }
         });
-        near.sort_by_key(|(j, _)| *j);
+        near.sort_unstable_by_key(|(j, _)| *j);
         near
     }
 
     /// By how much each element lies too deep in others, in sum.
     pub(super) fn excess(&self, budget: &Budget) -> Result<Vec<f64>> {
         let index = self.index();
-        let mut sums = vec![0.0; self.bodies.len()];
-        let mut meter = budget.meter();
-        for i in 0..self.bodies.len() {
+        let over = |i: usize| -> Result<Vec<(usize, f64)>> {
+            let mut meter = budget.meter();
+            let mut found = Vec::new();
             let a = &self.bodies[i];
-            for (j, offset) in self.around(&index, a, i).into_iter().filter(|(j, _)| *j > i) {
-                let (found, cost) = contact(a, &self.bodies[j], offset);
+            for (j, offset) in self.around(&index, a, |j| j > i) {
+                let (contact, cost) = contact(a, &self.bodies[j], offset);
                 meter.spend(cost)?;
-                let Some(found) = found else { continue };
-                let over = found.depth - self.allowed.of(self.class(i), self.class(j));
+                let over = contact.map_or(0.0, |c| c.depth - self.allowed.of(self.class(i), self.class(j)));
                 if over > 0.0 {
-                    sums[i] += over;
-                    sums[j] += over;
+                    found.push((j, over));
                 }
+            }
+            Ok(found)
+        };
+        let found: Vec<_> = (0..self.bodies.len()).into_par_iter().map(over).collect::<Result<_>>()?;
+        budget.spend(0)?;
+        let mut sums = vec![0.0; self.bodies.len()];
+        for (i, list) in found.into_iter().enumerate() {
+            for (j, over) in list {
+                sums[i] += over;
+                sums[j] += over;
             }
         }
         Ok(sums)
@@ -127,9 +141,13 @@ impl<'a, const D: usize> Things<'a, D> {
             }
             let body = &self.bodies[i];
             let inner = body.solid.inradius() * body.pose.scale;
+            // With others gone it is no more than it was.
+            if excess[i] <= WORSE * inner {
+                continue;
+            }
             // What was taken out already is in nobody's way.
             let mut now = 0.0;
-            for (j, offset) in self.around(&index, body, i).into_iter().filter(|(j, _)| !gone[*j]) {
+            for (j, offset) in self.around(&index, body, |j| j != i && !gone[j]) {
                 let (found, cost) = contact(body, &self.bodies[j], offset);
                 meter.spend(cost)?;
                 if let Some(found) = found {

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::{
     contact::{Body, Contact},
+    place::Place,
     relax::Push,
     things::Things,
 };
@@ -53,15 +54,22 @@ impl<const D: usize> Between<'_, D> {
     /// than the widest body.
     fn room(&self, p: Vector<D>, enough: f64) -> (f64, u64) {
         let (mut room, mut cost) = ((REACH - 1.0) * self.widest, 200);
-        let mut near = Vec::new();
+        let (mut near, mut nearest) = (Vec::new(), (f64::INFINITY, 0));
         cost += 10
             * self.index.within(p, REACH * self.widest, |j, offset| {
-                near.push((offset.norm() - self.bodies[j].radius, j, offset));
+                let least = offset.norm() - self.bodies[j].radius;
+                if least < room {
+                    nearest = if least < nearest.0 { (least, near.len()) } else { nearest };
+                    near.push((least, j, offset));
+                }
             });
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // What is nearest leaves little room for the rest to be looked at.
+        if !near.is_empty() {
+            near.swap(0, nearest.1);
+        }
         for (least, j, offset) in near {
             if least >= room {
-                break;
+                continue;
             }
             let body = &self.bodies[j];
             let seen = body.centre - offset;
@@ -85,28 +93,25 @@ impl<const D: usize> Between<'_, D> {
         (room, cost)
     }
 
-    /// Empty balls at random places that lie within the domain as a whole, largest first; of those
+    /// Empty balls at random places that lie within the domain as a whole, or in a layer within its sides, largest first; of those
     /// that are larger than `natural` there where it is not 0.
     fn voids(
         &self,
-        domain: &Domain<D>,
+        place: &Place<'_, D>,
         (count, natural): (usize, &(dyn Fn(Vector<D>) -> f64 + Sync)),
         (seed, round): (u64, u64),
         budget: &Budget,
     ) -> Result<Vec<Void<D>>> {
-        let bounds = domain.bounds();
         let one = |n: usize| -> Result<Option<Void<D>>> {
             let mut random = Stream::new(seed, PLACES, round << 32 | n as u64);
-            let centre = Vector(std::array::from_fn(|k| random.range(bounds.min[k], bounds.max[k])));
-            let depth = domain.signed_distance(centre);
-            if depth <= 0.0 {
-                return Ok(None);
-            }
+            let Some((centre, depth)) = place.draw(&mut random) else { return Ok(None) };
             let natural = natural(centre);
             let (radius, cost) = self.room(centre, natural);
             budget.spend(cost)?;
             let excess = radius - natural;
-            let counts = (natural == 0.0 || excess > 0.0) && depth >= radius && radius < (REACH - 1.0) * self.widest;
+            let counts = (natural == 0.0 || excess > 0.0)
+                && place.holds(centre, depth, radius)
+                && radius < (REACH - 1.0) * self.widest;
             Ok(counts.then_some(Void { centre, radius, excess }))
         };
         let found: Result<Vec<_>> = (0..count).into_par_iter().with_min_len(64).map(one).collect();
@@ -127,7 +132,8 @@ impl<const D: usize> Things<'_, D> {
         let index = GridIndex::new(&centres, widest.max(1e-9), &domain);
         let between = Between { bodies: &bodies, index: &index, widest };
         let count = (DENSE * bodies.len()).max(LEAST);
-        let found = between.voids(&domain, (count, &|_| 0.0), (0, 0), budget)?;
+        let place = Place::new(&domain, thinnest(&bodies), 0);
+        let found = between.voids(&place, (count, &|_| 0.0), (0, 0), budget)?;
         let all = found.len();
         Ok((all >= ENOUGH).then(|| found[((1.0 - QUANTILE) * all as f64) as usize].radius))
     }
@@ -144,11 +150,12 @@ impl<const D: usize> Things<'_, D> {
             let frame = request.fields.frame(p);
             natural * frame.element_scale + spacing * (frame.spacing_scale - frame.element_scale)
         };
+        let place = Place::new(&request.domain, thinnest(&self.bodies), request.seed);
         for round in 0..ROUNDS {
             let index = self.index();
             let between = Between { bodies: &self.bodies, index: &index, widest: self.widest };
             let count = (DENSE * self.bodies.len()).max(LEAST);
-            let voids = between.voids(&request.domain, (count, &natural_at), (request.seed, round + 1), budget)?;
+            let voids = between.voids(&place, (count, &natural_at), (request.seed, round + 1), budget)?;
             let voids = apart(voids, &request.domain);
             if voids.is_empty() {
                 break;
@@ -187,6 +194,11 @@ impl<const D: usize> Things<'_, D> {
             }
         }
     }
+}
+
+/// The radius of the largest ball in the thinnest of some bodies.
+fn thinnest<const D: usize>(bodies: &[Body<'_, D>]) -> f64 {
+    bodies.iter().map(|b| b.solid.inradius() * b.pose.scale).fold(f64::INFINITY, f64::min)
 }
 
 /// The largest voids that do not reach into one another.

@@ -416,6 +416,18 @@ fn a_gap_in_a_wall_is_closed_in_bond_and_by_the_seed() {
 }
 
 #[test]
+fn a_gap_at_the_border_is_closed_as_far_as_the_scan_reaches() {
+    let scan = bumps(8.0, |x, y| (x - 0.9).hypot(y - 4.0) > 0.9);
+    let all = scan.bounds();
+    let engine = Prepared::with_gap(&scan, None, &ReliefParams::default(), &Budget::default()).unwrap();
+    let made = engine.run(&ReliefRequest::new(Ground::Hole), &mut Unobserved).unwrap();
+    let reach = made.points.bounds();
+    // Points are evened out along seams, by less than half a spacing.
+    assert!((0..2).all(|k| reach.min[k] > all.min[k] - 0.05 && reach.max[k] < all.max[k] + 0.05), "{reach:?} {all:?}");
+    assert!(widest_gap(&made.points.positions, [0.2, 3.2], [1.8, 4.8]) < 0.2, "the gap is open");
+}
+
+#[test]
 fn tiles_keep_the_bond_or_say_which_would() {
     let engine = Prepared::new(&wall(|_, _| true), None, &ReliefParams::default(), &Budget::default()).unwrap();
     assert_eq!(engine.better_tile([7.0, 9.0]), None);

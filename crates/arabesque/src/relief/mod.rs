@@ -77,7 +77,8 @@ fn renamed(error: Error, name: &str) -> Error {
 impl Ready for Texture {
     fn understood(&self) -> String {
         let engine = &self.engine;
-        let [w, d, h] = engine.size();
+        let ([w, d, h], patch, spacing) =
+            (engine.size().map(rounded), rounded(engine.patch()), rounded(engine.spacing()));
         let lean = match engine.axes().lean() {
             0.0 => String::new(),
             lean => format!(", from which it leans by {lean:.1} degrees"),
@@ -85,16 +86,14 @@ impl Ready for Texture {
         let across = ["x", "y", "z"][engine.axes().across_axis()];
         let repeats = match engine.repetition() {
             Some(length) => {
-                format!("repeats after {length:.4} ({:.0} %){}", 100.0 * engine.regularity(), lattice(engine))
+                format!("repeats after {} ({:.0} %){}", rounded(length), 100.0 * engine.regularity(), lattice(engine))
             }
             None => "does not repeat".to_owned(),
         };
         format!(
-            "exemplar: a relief of {} points ({}), {:.4} apart, across {across}{lean}; its box is {w:.4} by {d:.4} and {h:.4} high; it {repeats}; patches of {:.4}",
+            "exemplar: a relief of {} points ({}), {spacing} apart, across {across}{lean}; its box is {w} by {d} and {h} high; it {repeats}; patches of {patch}",
             engine.points(),
             self.kind,
-            engine.spacing(),
-            engine.patch()
         )
     }
 

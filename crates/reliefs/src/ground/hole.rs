@@ -92,7 +92,9 @@ impl<'a> HoleCanvas<'a> {
             s.is_at_seam |= site.mask.is_at_seam(p, seam);
             site.mask.replaces(&Sample { at: p, ..*s })
         });
-        laid.samples.iter().for_each(|s| self.store.insert(Sample { at: s.at + origin, ..*s }));
+        // A gap ends where the scan does.
+        let placed = laid.samples.iter().map(|s| Sample { at: s.at + origin, ..*s });
+        placed.filter(|s| self.gap.is_framed(s.at[0], s.at[1])).for_each(|s| self.store.insert(s));
         self.laid.push((corner, laid.place));
         Ok(Some(laid.notes))
     }

@@ -162,8 +162,10 @@ impl Site<'_> {
         if places.is_empty() {
             places.clone_from(&texture.places);
         }
-        // What repeats strictly goes on in one way only, however little of that an overlap shows.
-        let latitude = texture.repetition.latitude();
+        // What repeats strictly goes on in one way only, however little of that an overlap shows; where places are held to it and may lie side by
+        // side, as in a gap, all that are left do.
+        let is_held = self.params.apart == 0.0 && self.goes_on.is_some() && texture.repetition.repeat.is_some();
+        let latitude = if is_held { 1.0 } else { texture.repetition.latitude() };
         let floor = latitude * FLOOR * (overlap.nodes.len() * texture.field.planes.len()) as f64;
         let tolerance = latitude * self.params.tolerance;
         let found = best(

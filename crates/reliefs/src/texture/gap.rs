@@ -120,6 +120,8 @@ pub(crate) struct Gap {
     cell: f64,
     width: usize,
     height: usize,
+    /// Sides of the box, in cells.
+    size: [f64; 2],
     is_gap: Vec<bool>,
     /// Cells of the gap below and left of each corner.
     sums: Vec<u32>,
@@ -160,6 +162,7 @@ impl Gap {
             cell: cells.cell,
             width: cells.width,
             height: cells.height,
+            size: [0, 1].map(|k| all.size()[k] / cells.cell),
             is_gap: vec![false; far.len()],
             sums: Vec::new(),
             bounds: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
@@ -220,7 +223,13 @@ impl Gap {
         is_in && self.is_gap[at[1] as usize * self.width + at[0] as usize]
     }
 
-    /// Whether a rectangle meets the gap.
+    /// Whether a place lies within the box of the scan.
+    pub(crate) fn is_framed(&self, x: f64, y: f64) -> bool {
+        let at = [(x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell];
+        (0..2).all(|k| at[k] >= 0.0 && at[k] <= self.size[k])
+    }
+
+    /// How many cells of the gap a rectangle meets.
     fn count(&self, low: [f64; 2], high: [f64; 2]) -> u32 {
         let limit = [self.width as f64, self.height as f64];
         let [x0, y0] = [0, 1].map(|k| ((low[k] - self.origin[k]) / self.cell).floor().clamp(0.0, limit[k]) as usize);

@@ -141,13 +141,17 @@ fn contradictions(points: &OrientedPoints, radius: f64, budget: &Budget) -> Resu
 }
 
 /// Refuses normals of which too large a share contradicts itself, and tells of fewer.
-pub(super) fn told(share: f64) -> Result<Option<Warning>> {
-    let advice =
-        "leave the normals out, so that they are estimated, or turn them to one side; lower the heights of a picture";
+pub(super) fn told(share: f64, is_estimated: bool) -> Result<Option<Warning>> {
+    let advice = if is_estimated {
+        "give normals, or more points: what lies closer together than a few spacings is not told apart, and what fills a volume is no surface"
+    } else {
+        "if they are wrong, leave them out, so that they are estimated; two sides of something thin may be right; lower the heights of a picture"
+    };
+    let whose = if is_estimated { "neighbouring normals, which were estimated," } else { "neighbouring normals" };
     if share > REFUSED {
-        return Err(fail("neighbouring normals face opposite ways", advice));
+        return Err(fail(format!("{whose} face opposite ways"), advice));
     }
-    let message = || format!("{:.1} % of neighbouring normals face opposite ways", 100.0 * share);
+    let message = || format!("{:.1} % of {whose} face opposite ways", 100.0 * share);
     Ok((share > TOLD).then(|| Warning::new(message(), advice)))
 }
 

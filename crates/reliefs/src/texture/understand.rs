@@ -115,7 +115,7 @@ impl Texture {
         let all = Bounds::around(positions.iter().copied());
         let (points, contradicted) =
             surface(positions, (normals, scattered.normals.is_none()), (spacing, radius), budget)?;
-        warnings.extend(told(contradicted)?);
+        warnings.extend(told(contradicted, scattered.normals.is_none())?);
         let lattice = lattice(&all, spacing, params);
         let nodes = [0, 1].map(|k| (all.size()[k] / lattice.cell).floor() as usize);
         if nodes.iter().fold(lattice.heights.len(), |all, n| all.saturating_mul(*n)) > NODES {

@@ -292,7 +292,11 @@ impl Touching<'_> {
                 let most = |one: Option<[f64; 2]>, k: usize| one.map_or(0.0, |levels| levels[k]);
                 let (b_lies, a_lies) = (most(on_a, 1).max(-most(on_b, 0)), most(on_b, 1).max(-most(on_a, 0)));
                 let (upper, lower) = if a_lies >= b_lies { (a, b) } else { (b, a) };
-                found.push(Meet { upper, lower, is_level: a_lies.max(b_lies) > LEVEL });
+                // What stands as low lies on nothing there: along edges that coincide, distances do not say which way they lead.
+                let low = |k: usize| things[k].around.min[up];
+                let lower_size = things[a].around.size()[up].min(things[b].around.size()[up]);
+                let is_above = low(upper) - low(lower) > TOUCH * lower_size;
+                found.push(Meet { upper, lower, is_level: is_above && a_lies.max(b_lies) > LEVEL });
             }
         }
         Ok(found)

@@ -106,7 +106,7 @@ fn meshes_and_curves_that_are_none_are_refused() {
         ("cube.ply --inside flat.obj", "it encloses nothing"),
         ("sheet.ply --on flat.obj", "no triangle has an area"),
         ("sheet.ply --on empty.obj", "points without faces"),
-        ("sheet.ply --inside open.obj", "open.obj"),
+        ("sheet.ply --inside open.obj", "does not repeat along three directions"),
         ("sheet.ply --along point.obj", "no line of any length"),
     ] {
         let message = folder.fails(3, &format!("fill {place} -o out.ply"));

@@ -122,10 +122,11 @@ pub(crate) fn is_late() -> bool {
 /// # Errors
 /// When the system gives no thread.
 pub(crate) fn watch(orders: Orders, stopper: Stopper) -> Result<(), Failure> {
-    let signals = Signals::listen();
+    let mut sentinel = Sentinel { orders, stopper, signals: Signals::listen() };
+    // What has no time at all does not depend on when the thread comes to run.
+    sentinel.look_at_the_clock();
     let watch = move || {
-        memory::limit(orders.limits.memory);
-        let mut sentinel = Sentinel { orders, stopper, signals };
+        memory::limit(sentinel.orders.limits.memory);
         loop {
             sentinel.look();
             thread::sleep(TICK);
@@ -150,12 +151,16 @@ impl Sentinel {
         for code in came {
             self.on_signal(code);
         }
+        self.look_at_the_clock();
+        if (self.orders.piped || self.orders.json) && is_reader_gone() {
+            self.leave(FAILURE, &format!("standard output: whoever reads it went away; {}", written_in_words()));
+        }
+    }
+
+    fn look_at_the_clock(&self) {
         let late = self.orders.time_limit.is_some_and(|limit| began().elapsed() >= limit);
         if late && !TIME.swap(true, Ordering::SeqCst) {
             self.on_time();
-        }
-        if (self.orders.piped || self.orders.json) && is_reader_gone() {
-            self.leave(FAILURE, &format!("standard output: whoever reads it went away; {}", written_in_words()));
         }
     }
 

@@ -72,7 +72,7 @@ pub(crate) fn repetition(field: &Field, budget: &Budget) -> Result<Repetition> {
         let (best, shortest) = shortest(&all);
         let strength = (1.0 - best).clamp(0.0, 1.0);
         let repeats = best <= ALIKE;
-        if repeats > found.length.is_some() || found.length.is_none() && strength > found.strength {
+        if found.length.is_none() && (repeats || strength > found.strength) {
             found = Repetition { length: repeats.then_some(shortest * scale), strength, ..found };
         }
         if found.repeat.is_none() {

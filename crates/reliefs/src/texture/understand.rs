@@ -222,27 +222,11 @@ impl Texture {
         let cell = self.lattice.cell;
         let short = all.size()[0].min(all.size()[1]);
         let room = given.map_or(short, |b| b.size()[0].min(b.size()[1]));
-        if let Some(given) = given {
-            let slack = 1e-6 * short;
-            if (0..2).any(|k| given.min[k] < all.min[k] - slack || given.max[k] > all.max[k] + slack) {
-                let shown = [0, 1].map(|k| format!("{:.4}..{:.4}", all.min[k], all.max[k]));
-                return Err(Error::parameter(
-                    "box",
-                    format!("{:.4}..{:.4} and {:.4}..{:.4}", given.min[0], given.max[0], given.min[1], given.max[1]),
-                    format!("a box within the points, which reach over {} and {} along the plane", shown[0], shown[1]),
-                ));
-            }
-        }
+        given.map_or(Ok(()), |given| check_box(&given, all))?;
         let chosen = params.patch.unwrap_or_else(|| shrink * self.usual_patch(room));
         let patch = (chosen / cell).round().max(LEAST);
         if params.patch.is_some() && chosen < (LEAST - 0.5) * cell {
-            let message = format!("patches of {} are smaller than this texture can tell apart", rounded(chosen));
-            let advice =
-                format!("they are {} here; give a texture of more points for smaller ones", rounded(LEAST * cell));
-            let warning = Warning::new(message, advice);
-            if !self.warnings.contains(&warning) {
-                self.warnings.push(warning);
-            }
+            self.tell_enlarged(chosen);
         }
         if params.patch.is_some() && chosen > room {
             return Err(Error::parameter(
@@ -304,6 +288,17 @@ impl Texture {
         let (x0, x1, y0, y1) = (x0 as u32, x1 as u32, y0 as u32, y1 as u32);
         self.places = (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| [x, y])).collect();
         Ok(())
+    }
+
+    /// Tells that patches are larger than was asked for.
+    fn tell_enlarged(&mut self, chosen: f64) {
+        let message = format!("patches of {} are smaller than this texture can tell apart", rounded(chosen));
+        let least = rounded(LEAST * self.lattice.cell);
+        let advice = format!("they are {least} here; give a texture of more points for smaller ones");
+        let warning = Warning::new(message, advice);
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
     }
 
     /// Settles a patch of so many cells a side, and what of it lies over others.
@@ -392,6 +387,21 @@ impl Texture {
             0.0,
         ])
     }
+}
+
+/// The box of the texture proper has to lie within the points.
+fn check_box(given: &Bounds<3>, all: &Bounds<3>) -> Result<()> {
+    let slack = 1e-6 * all.size()[0].min(all.size()[1]);
+    if (0..2).all(|k| given.min[k] >= all.min[k] - slack && given.max[k] <= all.max[k] + slack) {
+        return Ok(());
+    }
+    let shown = |bounds: &Bounds<3>, k: usize| format!("{:.4}..{:.4}", bounds.min[k], bounds.max[k]);
+    let (x, y) = (shown(all, 0), shown(all, 1));
+    Err(Error::parameter(
+        "box",
+        format!("{} and {}", shown(given, 0), shown(given, 1)),
+        format!("a box within the points, which reach over {x} and {y} along the plane"),
+    ))
 }
 
 /// Where the nodes of the field are.

@@ -156,8 +156,9 @@ impl Repeat {
         let det = mm[0][0] * mm[1][1] - mm[0][1] * mm[1][0];
         let row = |i: usize, j: usize| mm[1 - i][1 - i] * ms[i][j] - mm[i][1 - i] * ms[1 - i][j];
         let shifts = [0, 1].map(|i| [0, 1].map(|j| row(i, j) / det));
-        let is_sound = shifts.iter().flatten().all(|v| v.is_finite()) && length(shifts[0]).min(length(shifts[1])) > 1.0;
-        Ok(is_sound.then_some(Self { shifts }))
+        let found = Self { shifts };
+        let is_sound = shifts.iter().all(|s| length(*s).is_finite() && length(*s) > 1.0) && found.cell() > 1.0;
+        Ok(is_sound.then_some(found))
     }
 
     /// How much the field differs from itself at the shifts of the lattice, if most of them carry it into itself.

@@ -64,7 +64,7 @@ impl<const D: usize> Things<'_, D> {
     /// Random places outside of all bodies, with the distance to the nearest centre.
     fn roomy(&self, tries: usize, random: &mut Stream, budget: &Budget) -> Result<Vec<(f64, Vector<D>)>> {
         let request = self.extent.request();
-        let place = Place::new(&request.domain, 0.0, request.seed);
+        let place = Place::new(&request.domain, 0.0, request.seed, budget)?;
         let index = self.index();
         let mut meter = budget.meter();
         let mut found = Vec::new();

@@ -1,6 +1,6 @@
 //! Random places in a domain.
 
-use arabesque_core::{Bounds, Domain, Lattice, Stage, Stream, Vector};
+use arabesque_core::{Bounds, Budget, Domain, Lattice, Result, Stage, Stream, Vector};
 use rayon::prelude::*;
 
 const PLACES: Stage = Stage::new(439);
@@ -11,6 +11,8 @@ const FULL: f64 = 0.15;
 const CELLS: usize = 40;
 /// Most places that are drawn for one then.
 const DRAWS: usize = 60;
+/// Work of a question how deep a place lies.
+const PER_QUESTION: u64 = 600;
 /// Places that tell how deep a domain is.
 const TRIED: u64 = 200;
 /// A domain that is less deep than this many radii of the thinnest body is a layer: what is empty in it reaches out of it.
@@ -29,13 +31,20 @@ pub(super) struct Place<'a, const D: usize> {
 
 impl<'a, const D: usize> Place<'a, D> {
     /// `thinnest`: radius of the largest ball in the thinnest body.
-    pub(super) fn new(domain: &'a Domain<D>, thinnest: f64, seed: u64) -> Self {
+    ///
+    /// # Errors
+    /// When the budget is used up, or a stop is asked for.
+    pub(super) fn new(domain: &'a Domain<D>, thinnest: f64, seed: u64, budget: &Budget) -> Result<Self> {
         let is_sparse = domain.measure() < FULL * domain.bounds().size().0.into_iter().product::<f64>();
-        let mut place = Self { domain, cells: is_sparse.then(|| cells(domain)), layer: None };
+        let mut place = Self { domain, cells: None, layer: None };
+        if is_sparse {
+            place.cells = Some(cells(domain, budget)?);
+        }
+        budget.spend(TRIED * PER_QUESTION)?;
         let depths = (0..TRIED).filter_map(|n| place.draw(&mut Stream::new(seed, PLACES, n)));
         let deepest = depths.map(|(_, depth)| depth).fold(0.0, f64::max);
         place.layer = (deepest > 0.0 && deepest < DEEP * thinnest).then_some(deepest);
-        place
+        Ok(place)
     }
 
     /// A random place in the domain, with how deep it lies in it; nothing where none was found.
@@ -68,12 +77,15 @@ impl<'a, const D: usize> Place<'a, D> {
 }
 
 /// The cells of the box around a domain that it reaches into.
-fn cells<const D: usize>(domain: &Domain<D>) -> (Lattice<D>, Vec<u32>) {
+fn cells<const D: usize>(domain: &Domain<D>, budget: &Budget) -> Result<(Lattice<D>, Vec<u32>)> {
     let lattice = Lattice::at_most(domain.bounds(), [CELLS; D], false, CELLS.pow(D as u32));
     let reach = 0.5 * lattice.cell().norm();
-    let reached = (0..lattice.count() as u32).into_par_iter();
-    let reached = reached.filter(|&c| domain.signed_distance(lattice.centre(c as usize)) > -reach).collect();
-    (lattice, reached)
+    let reached = |c: u32| {
+        budget.spend(PER_QUESTION)?;
+        Ok((domain.signed_distance(lattice.centre(c as usize)) > -reach).then_some(c))
+    };
+    let all: Result<Vec<Option<u32>>> = (0..lattice.count() as u32).into_par_iter().map(reached).collect();
+    Ok((lattice, all?.into_iter().flatten().collect()))
 }
 
 #[cfg(test)]
@@ -109,22 +121,22 @@ mod tests {
     #[test]
     fn places_are_found_in_thin_layers_and_empty_balls_reach_out_of_them() {
         let domain = Domain::Region(Arc::new(Sheet));
-        let place = Place::new(&domain, 0.1, 3);
+        let place = Place::new(&domain, 0.1, 3, &Budget::default()).unwrap();
         let drawn = (0..100).filter_map(|n| place.draw(&mut Stream::new(1, Stage::TEST, n)));
         let depths: Vec<f64> = drawn.map(|(_, depth)| depth).collect();
         assert!(depths.len() > 95 && depths.iter().all(|depth| (0.0..=0.1).contains(depth)), "{}", depths.len());
         let at = |y: f64| place.holds(Vector([0.0, y, 0.0]), 0.1 - y, 2.0);
         assert!(at(0.02) && !at(0.08));
         // Nothing of what is as small as a pebble in it is in a layer.
-        assert!(!Place::new(&domain, 0.01, 3).holds(Vector::ZERO, 0.1, 2.0));
+        assert!(!Place::new(&domain, 0.01, 3, &Budget::default()).unwrap().holds(Vector::ZERO, 0.1, 2.0));
     }
 
     #[test]
     fn empty_balls_in_a_flat_box_lie_within_its_sides() {
         let domain = Domain::Box(Bounds::new(Vector::ZERO, Vector([8.0, 0.2, 8.0])));
-        let place = Place::new(&domain, 0.1, 3);
+        let place = Place::new(&domain, 0.1, 3, &Budget::default()).unwrap();
         assert!(place.holds(Vector([4.0, 0.1, 4.0]), 0.1, 2.0) && !place.holds(Vector([1.0, 0.1, 4.0]), 0.1, 2.0));
         let deep = Domain::Box(Bounds::new(Vector::ZERO, Vector::splat(8.0)));
-        assert!(!Place::new(&deep, 0.1, 3).holds(Vector([4.0, 0.1, 4.0]), 0.1, 2.0));
+        assert!(!Place::new(&deep, 0.1, 3, &Budget::default()).unwrap().holds(Vector([4.0, 0.1, 4.0]), 0.1, 2.0));
     }
 }

@@ -132,7 +132,7 @@ impl<const D: usize> Things<'_, D> {
         let index = GridIndex::new(&centres, widest.max(1e-9), &domain);
         let between = Between { bodies: &bodies, index: &index, widest };
         let count = (DENSE * bodies.len()).max(LEAST);
-        let place = Place::new(&domain, thinnest(&bodies), 0);
+        let place = Place::new(&domain, thinnest(&bodies), 0, budget)?;
         let found = between.voids(&place, (count, &|_| 0.0), (0, 0), budget)?;
         let all = found.len();
         Ok((all >= ENOUGH).then(|| found[((1.0 - QUANTILE) * all as f64) as usize].radius))
@@ -150,7 +150,7 @@ impl<const D: usize> Things<'_, D> {
             let frame = request.fields.frame(p);
             natural * frame.element_scale + spacing * (frame.spacing_scale - frame.element_scale)
         };
-        let place = Place::new(&request.domain, thinnest(&self.bodies), request.seed);
+        let place = Place::new(&request.domain, thinnest(&self.bodies), request.seed, budget)?;
         for round in 0..ROUNDS {
             let index = self.index();
             let between = Between { bodies: &self.bodies, index: &index, widest: self.widest };

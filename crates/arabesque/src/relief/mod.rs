@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Unobserved, Vector, Warning, Watch, rounded};
 use arabesque_reliefs::{Ground, Prepared as Engine, ReliefOutcome, ReliefRequest};
-use arabesque_surface::{DirectionField, MeshReport, reconstruct};
+use arabesque_surface::{DirectionField, Directions, MeshIndex, MeshReport, reconstruct};
 
 use crate::{
     artwork::Artwork,
@@ -21,6 +21,11 @@ use crate::{
 };
 use heights::Grid;
 use made::{ReliefMade, ReliefMesh};
+
+/// Edges of meshes are rounded by so many spacings at least.
+const BEND: f64 = 8.0;
+/// And by no more than this share of the shortest side of the box around the mesh.
+const THIN: f64 = 0.2;
 
 /// A relief, understood.
 #[derive(Debug)]
@@ -146,7 +151,8 @@ impl Texture {
             context.warnings.extend(warnings);
             let report = MeshReport::new(&index, context.budget())?;
             context.warnings.extend(report.surface_of(input.name())?);
-            let field = DirectionField::new(&index, &directions(&mut job.direction, context)?, context.budget())?;
+            let directions = directions(&mut job.direction, context)?;
+            let (index, field) = self.shell(index, &directions, job.scale.unwrap_or(1.0), context)?;
             context.warnings.extend(field.warnings().iter().cloned());
             return Ok(Ground::Mesh(Arc::new(index), Arc::new(field), job.scale.unwrap_or(1.0)));
         }
@@ -160,6 +166,38 @@ impl Texture {
             Some(size) => Ok(Ground::Plane(size)),
             None => Ok(Ground::Hole),
         }
+    }
+
+    /// The mesh with no edge sharper than the relief can bend over, since a convex edge would tear it and a hollow one fold it; and which way the
+    /// relief runs there.
+    fn shell(
+        &self,
+        mesh: MeshIndex,
+        directions: &Directions,
+        scale: f64,
+        context: &mut RunContext<'_>,
+    ) -> Result<(MeshIndex, DirectionField)> {
+        let [_, _, height] = self.engine.size();
+        let thinnest = mesh.bounds().size().0.into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+        let radius = ((0.5 * height).max(BEND * self.engine.spacing()) * scale).min(THIN * thinnest);
+        let Some(round) = mesh.with_round_edges(radius, context.budget())? else {
+            let field = DirectionField::new(&mesh, directions, context.budget())?;
+            return Ok((mesh, field));
+        };
+        let message = format!(
+            "the mesh has sharp edges: they are rounded by about {}, so that the relief goes on over them",
+            rounded(radius)
+        );
+        context.warnings.push(Warning::new(message, "bevel them in the mesh to say how"));
+        // How the mesh bends at its edges says nothing of which way the relief runs between them.
+        let field = match directions {
+            Directions::Curvature(_) => {
+                let field = DirectionField::new(&mesh, directions, context.budget())?;
+                field.carried_over(&mesh, &round, context.budget())?
+            }
+            _ => DirectionField::new(&round, directions, context.budget())?,
+        };
+        Ok((round, field))
     }
 
     /// What to say of a tile after whose sides a strictly repeating texture does not come again.

@@ -69,6 +69,27 @@ impl DirectionField {
         Ok(field)
     }
 
+    /// The field of the mesh `from`, on another mesh near it: as it is at the nearest places.
+    ///
+    /// # Errors
+    /// As [`Budget::spend`].
+    pub fn carried_over(&self, from: &MeshIndex, to: &MeshIndex, budget: &Budget) -> Result<Self> {
+        let points = &to.topology.points;
+        let found = from.closest_all(points, budget)?;
+        let corners = |c: &Closest| from.topology.triangles[c.triangle].map(|v| self.strengths[v as usize]);
+        let strength = |c: &Closest| corners(c).iter().zip(c.barycentric).map(|(s, w)| s * w).sum();
+        let direction = |(c, &normal): (&Closest, &Vector<3>)| {
+            let there = self.frame(from, c).tangent;
+            super::transport::carried(there, c.normal, normal)
+        };
+        Ok(Self {
+            directions: found.iter().zip(&to.normals).map(direction).collect(),
+            strengths: found.iter().map(strength).collect(),
+            are_lines: self.are_lines,
+            warnings: self.warnings.clone(),
+        })
+    }
+
     /// What the user should know.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings

@@ -79,6 +79,11 @@ impl MeshIndex {
         self.bounds
     }
 
+    /// What errors call it.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.topology.triangles.len()

@@ -2,7 +2,9 @@
 
 mod crossings;
 mod index;
+mod refine;
 mod report;
+mod round;
 pub(crate) mod topology;
 mod triangle;
 

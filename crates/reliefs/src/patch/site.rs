@@ -98,7 +98,12 @@ impl Site<'_> {
             return Ok(Some(Laid { samples, place, notes: Notes { patches: 1, ..Notes::default() } }));
         }
         let around = self.around()?;
-        let overlap = Overlap::new(&around.points, &self.texture.lattice, nodes, self.budget)?;
+        let mut overlap = Overlap::new(&around.points, &self.texture.lattice, nodes, self.budget)?;
+        let tint = self.texture.field.tint;
+        if tint > 0.0 {
+            let colour = |i: usize| around.samples[i].colour;
+            overlap.add_colours(&around.points, colour, (&self.texture.lattice, tint), self.budget)?;
+        }
         let candidates = self.candidates(&overlap, random)?;
         let mut best: Option<Laid> = None;
         for (n, candidate) in candidates.iter().enumerate() {

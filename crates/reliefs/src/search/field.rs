@@ -10,6 +10,10 @@ use rayon::prelude::*;
 pub(crate) const CHANNELS: usize = 4;
 /// Places of a row that are compared at once; behind each plane stand so many numbers that mean nothing.
 pub(crate) const ABREAST: usize = 16;
+/// Share of the differences of coloured textures that is their colours'.
+const TINT: f32 = 0.35;
+/// Colours that spread less than this are one colour.
+const PLAIN: f32 = 1e-4;
 /// Work units of a projection.
 pub(crate) const PROJECTION: u64 = 3000;
 
@@ -35,6 +39,22 @@ impl Lattice {
         }
     }
 
+    /// The colour of the topmost surface near a column.
+    fn colour(&self, points: &OrientedPoints, (x, y): (f64, f64), colour: impl Fn(usize) -> [f32; 3]) -> [f32; 3] {
+        let (low, high) = (self.heights[0], self.heights[self.heights.len() - 1]);
+        let reach = high - low + 2.0 * self.reach;
+        let Some((first, _)) = points.nearest(Vector([x, y, high + self.reach]), reach, |_| true) else {
+            return [0.5; 3];
+        };
+        let (mut sum, mut count) = ([0.0; 3], 0.0);
+        points.around(points.positions()[first], self.cell, |i, _| {
+            let c = colour(i);
+            sum = std::array::from_fn(|k| sum[k] + c[k]);
+            count += 1.0;
+        });
+        sum.map(|c| c / count)
+    }
+
     /// Distance and gradient at one node; zeros where there is no surface within reach.
     fn at(&self, points: &OrientedPoints, x: Vector<3>) -> [f32; CHANNELS] {
         let Some(foot) = points.project(x, self.reach, None) else { return [1.0, 0.0, 0.0, 0.0] };
@@ -57,6 +77,8 @@ pub(crate) struct Field {
     pub(crate) planes: Vec<Vec<f32>>,
     /// The columns of a gap, which tell nothing of the texture; empty where there is none.
     unknown: Vec<bool>,
+    /// What colours are multiplied by in the last three planes; 0 where there are none.
+    pub(crate) tint: f32,
     _held: Held,
 }
 
@@ -85,7 +107,37 @@ impl Field {
             (0..count).map(|k| mean(&rows, k, self.width, ends(k))).collect()
         };
         let planes = self.planes.par_iter().map(smooth).collect();
-        Ok(Self { planes, width: self.width, height: self.height, unknown: self.unknown.clone(), _held: held })
+        Ok(Self { planes, width: self.width, height: self.height, unknown: self.unknown.clone(), tint: self.tint, _held: held })
+    }
+
+    /// Adds the colours of points, so that they have a say in what fits; nothing where all is of one colour.
+    pub(crate) fn add_colours(
+        &mut self,
+        points: &OrientedPoints,
+        colours: &[[f64; 3]],
+        (lattice, origin): (&Lattice, [f64; 2]),
+        budget: &Budget,
+    ) -> Result<()> {
+        let count = self.width * self.height;
+        budget.spend(count as u64 * PROJECTION)?;
+        let of = |k: usize| {
+            let at = [k % self.width, k / self.width].map(|i| (i as f64 + 0.5) * lattice.cell);
+            let colour = |i: usize| colours[i].map(|c| c as f32);
+            lattice.colour(points, (origin[0] + at[0], origin[1] + at[1]), colour)
+        };
+        let seen: Vec<[f32; 3]> = (0..count).into_par_iter().map(of).collect();
+        let colours: f32 = (0..3).map(|c| variance(seen.iter().map(|rgb| rgb[c]))).sum();
+        if colours < PLAIN {
+            return Ok(());
+        }
+        let shape: f32 = self.planes.iter().map(|p| variance(p[..count].iter().copied())).sum();
+        let most = (lattice.heights.len() as f32).sqrt();
+        self.tint = (TINT / (1.0 - TINT) * shape / colours).sqrt().min(most);
+        for c in 0..3 {
+            let numbers = seen.iter().map(|rgb| rgb[c] * self.tint);
+            self.planes.push(numbers.chain([0.0; ABREAST]).collect());
+        }
+        Ok(())
     }
 
     /// Whether column `k` tells of the texture.
@@ -120,7 +172,7 @@ impl Field {
             let numbers = rows.iter().flat_map(|row| row.iter().skip(p).step_by(planes).copied());
             numbers.chain([0.0; ABREAST]).collect()
         };
-        Ok(Self { width, height, planes: (0..planes).map(plane).collect(), unknown: Vec::new(), _held: held })
+        Ok(Self { width, height, planes: (0..planes).map(plane).collect(), unknown: Vec::new(), tint: 0.0, _held: held })
     }
 }
 
@@ -153,4 +205,30 @@ impl Overlap {
         let plane = |p: usize| columns.iter().map(|c| c[p]).collect();
         Ok(Self { planes: (0..planes).map(plane).collect(), nodes })
     }
+
+    /// Adds the colours of points, multiplied by `tint` as those of the field are.
+    pub(crate) fn add_colours(
+        &mut self,
+        points: &OrientedPoints,
+        colour: impl Fn(usize) -> [f32; 3] + Sync,
+        (lattice, tint): (&Lattice, f32),
+        budget: &Budget,
+    ) -> Result<()> {
+        budget.spend(self.nodes.len() as u64 * PROJECTION)?;
+        let of = |node: &[u32; 2]| {
+            let [x, y] = node.map(|k| (f64::from(k) + 0.5) * lattice.cell);
+            lattice.colour(points, (x, y), &colour)
+        };
+        let seen: Vec<[f32; 3]> = self.nodes.par_iter().map(of).collect();
+        self.planes.extend((0..3).map(|c| seen.iter().map(|rgb| rgb[c] * tint).collect::<Vec<_>>()));
+        Ok(())
+    }
+}
+
+/// The mean square of how far numbers are from their mean.
+fn variance(values: impl Iterator<Item = f32> + Clone) -> f32 {
+    let (mut sum, mut count) = (0.0_f64, 0.0_f64);
+    values.clone().for_each(|v| (sum, count) = (sum + f64::from(v), count + 1.0));
+    let mean = sum / count.max(1.0);
+    (values.map(|v| (f64::from(v) - mean).powi(2)).sum::<f64>() / count.max(1.0)) as f32
 }

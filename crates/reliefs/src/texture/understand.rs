@@ -135,6 +135,10 @@ impl Texture {
             field.leave_out(&lattice, |x, y| empty.contains(origin[0] + x, origin[1] + y));
         }
         let repetition = repetition(&field, budget)?;
+        // What repeats is told by the shape alone: stones of a bond may have any colour.
+        if let Some(colours) = &set.colours {
+            field.add_colours(&points, colours, (&lattice, origin), budget)?;
+        }
         budget.spend(points.len() as u64 * 900)?;
         let variations: Vec<f32> = points.variations();
         let upright = points.normals().iter().filter(|n| n[2] > UPRIGHT).count();

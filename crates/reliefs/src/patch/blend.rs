@@ -56,7 +56,13 @@ impl Site<'_> {
     }
 
     /// Moves points in the overlap towards what is there, along their normals if that leads to it, and keeps those that are pasted.
-    pub(super) fn blended(&self, bent: Vec<Sample>, around: &Around, notes: &mut Notes) -> Result<Vec<Sample>> {
+    /// `cut` is the share of the result in the colours, by cells, where that is not the same.
+    pub(super) fn blended(
+        &self,
+        bent: Vec<Sample>,
+        (around, cut): (&Around, Option<&[f64]>),
+        notes: &mut Notes,
+    ) -> Result<Vec<Sample>> {
         let texture = self.texture;
         let near: Vec<&Sample> =
             bent.iter().filter(|s| s.piece == 0 && self.mask.is_near_overlap(s.at, texture.radius)).collect();
@@ -74,11 +80,12 @@ impl Site<'_> {
             }
             let sample = Sample { is_at_seam, ..*s };
             let share = self.mask.share(s.at);
-            if share <= 0.0 {
+            let paint = cut.map_or(share, |cut| self.mask.share_by(cut, s.at));
+            if share <= 0.0 && paint <= 0.0 {
                 return Ok(Some((sample, 0)));
             }
             self.budget.spend(9000)?;
-            Ok(Some(self.moved(sample, share, (around, &own))))
+            Ok(Some(self.moved(sample, [share, paint], (around, &own))))
         };
         // What bends and blends lies between what was there: nothing comes to lie higher or lower than in the texture.
         let (low, high) = (texture.bounds.min[2], texture.bounds.max[2]);
@@ -99,7 +106,12 @@ impl Site<'_> {
 
     /// A point moved by a share of what leads from the surface of the patch to that of what is there; and how: 1 along its normal, 2 by
     /// projection, 3 not at all. Both surfaces are as smooth, so that edges stay where both have them.
-    fn moved(&self, mut sample: Sample, share: f64, (around, own): (&Around, &OrientedPoints)) -> (Sample, u8) {
+    fn moved(
+        &self,
+        mut sample: Sample,
+        [share, paint]: [f64; 2],
+        (around, own): (&Around, &OrientedPoints),
+    ) -> (Sample, u8) {
         let reach = (0.6 * self.reach()).max(3.0 * self.texture.spacing);
         let (at, normal) = (sample.at, sample.normal);
         let height = self.texture.bounds.max[2] - self.texture.bounds.min[2];
@@ -116,9 +128,9 @@ impl Site<'_> {
         sample.at = at + (foot.point - from) * share;
         let turned = normal + (foot.normal - facing) * share;
         sample.normal = turned.unit_if_longer(1e-9).unwrap_or(normal);
-        let mix = |a: f32, b: f32| a + (b - a) * share as f32;
-        sample.variation = mix(sample.variation, other.variation);
-        sample.colour = std::array::from_fn(|k| mix(sample.colour[k], other.colour[k]));
+        let mix = |a: f32, b: f32, share: f64| a + (b - a) * share as f32;
+        sample.variation = mix(sample.variation, other.variation, share);
+        sample.colour = std::array::from_fn(|k| mix(sample.colour[k], other.colour[k], paint));
         (sample, how)
     }
 

@@ -5,10 +5,13 @@
 
 use arabesque_core::Vector;
 
-use crate::{distance::distances, sample::Sample};
+use crate::{distance::distances, patch::cut::sides, sample::Sample};
 
 /// Where a patch ceases to be bent, as a share of its side, from the overlap on: beyond, it is as it is in the texture.
 const FADE: f64 = 0.3;
+
+/// How far on each side of a cut colours are blended, in cells.
+const FRINGE: f64 = 1.0;
 
 /// Cells around the place of a patch, whose corner is the origin.
 #[derive(Clone, Debug)]
@@ -172,6 +175,43 @@ impl Mask {
         self.smoothed(&self.shares, p).0
     }
 
+    /// The share of the result at the middle of each cell where it gives way to the patch along a cut, on which the two `differ` least: numbers for
+    /// the cells of the overlap, as [`Mask::overlapped`] tells them.
+    pub(crate) fn cut(&self, differ: &[f32]) -> Vec<f64> {
+        let mut numbers = differ.iter();
+        let decide = |kind: &Kind| match kind {
+            Kind::Kept => (Some(true), 0.0),
+            Kind::Free => (Some(false), 0.0),
+            Kind::Overlap => (None, numbers.next().copied().unwrap_or(0.0)),
+        };
+        let (decided, difference): (Vec<_>, Vec<_>) = self.kinds.iter().map(decide).unzip();
+        let is_result = sides(&decided, &difference, self.side);
+        let from = |is_marked: &dyn Fn(usize) -> bool| {
+            let is_marked: Vec<bool> = (0..self.kinds.len()).map(is_marked).collect();
+            distances(&is_marked, (self.side, self.side), false)
+        };
+        let (to_patch, to_result) = (from(&|k| !is_result[k]), from(&|k| is_result[k]));
+        let from_free = from(&|k| self.kinds[k] == Kind::Free);
+        let share = |k: usize| {
+            let (far, end) = if is_result[k] { (to_patch[k], self.from_kept[k]) } else { (to_result[k], from_free[k]) };
+            // The outermost cells are wholly of their side, so that there is no step beyond them.
+            let x = 0.5 * ((far - 0.5) / FRINGE.min(far + end - 1.5)).min(1.0);
+            let x = if is_result[k] { 0.5 + x } else { 0.5 - x };
+            x * x * (3.0 - 2.0 * x)
+        };
+        let of = |k: usize| match self.kinds[k] {
+            Kind::Kept => 1.0,
+            Kind::Overlap if self.from_kept[k].is_finite() => share(k),
+            _ => 0.0,
+        };
+        (0..self.kinds.len()).map(of).collect()
+    }
+
+    /// The share of the result by `cells` at a place, as smooth as they tell it.
+    pub(crate) fn share_by(&self, cells: &[f64], p: Vector<3>) -> f64 {
+        self.smoothed(cells, p).0
+    }
+
     /// How much of its bend a patch keeps at a place, and how that grows along x and y.
     pub(crate) fn bend(&self, p: Vector<3>) -> (f64, [f64; 2]) {
         self.smoothed(&self.bends, p)
@@ -239,6 +279,17 @@ mod tests {
             let drop = of(x).0 - of(x + 0.01).0;
             assert!((-1e-12..0.004).contains(&drop), "{x}: {drop}");
         }
+    }
+
+    #[test]
+    fn a_cut_is_sharp_and_runs_where_colours_are_alike() {
+        let mask = Mask::new(1.0, (12, 6, 2), |x, _| x < 6.0);
+        let alike = 3;
+        let differ: Vec<f32> = mask.overlapped().iter().map(|[x, _]| if *x == alike { 0.0 } else { 1.0 }).collect();
+        let cells = mask.cut(&differ);
+        let share = |x: f64| mask.share_by(&cells, Vector([x, 6.0, 0.0]));
+        assert_eq!((share(-0.5), share(1.5), share(6.5)), (1.0, 1.0, 0.0));
+        assert!((0.05..0.95).contains(&share(3.5)) && share(5.0) < 0.1, "{} {}", share(3.5), share(5.0));
     }
 
     #[test]

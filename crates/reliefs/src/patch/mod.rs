@@ -1,6 +1,7 @@
 //! One patch: found, bent, blended.
 
 pub(crate) mod blend;
+pub(crate) mod cut;
 pub(crate) mod mask;
 pub(crate) mod notes;
 pub(crate) mod pairing;

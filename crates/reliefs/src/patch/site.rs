@@ -47,17 +47,18 @@ const BESIDE: f64 = 1.0;
 /// How far pairs listen to one another, as a share of the patch.
 const LISTENING: f64 = 0.15;
 
-/// Every second node, again and again, while there are more than enough: by turns as on a chessboard, and in every second row and column.
-fn thinned(mut nodes: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
+/// The numbers of every second node, again and again, while there are more than enough: by turns as on a chessboard, and in every second row and column.
+fn thinned(nodes: &[[u32; 2]]) -> Vec<usize> {
+    let mut some: Vec<usize> = (0..nodes.len()).collect();
     let mut step = 1;
-    while nodes.len() > ENOUGH {
-        nodes.retain(|[x, y]| (x / step + y / step) % 2 == 0);
-        if nodes.len() > ENOUGH {
+    while some.len() > ENOUGH {
+        some.retain(|&k| (nodes[k][0] / step + nodes[k][1] / step) % 2 == 0);
+        if some.len() > ENOUGH {
             step *= 2;
-            nodes.retain(|[x, y]| x % step == 0 && y % step == 0);
+            some.retain(|&k| nodes[k].iter().all(|v| v % step == 0));
         }
     }
-    nodes
+    some
 }
 
 /// A map of which a share counts, with the columns of its Jacobian matrix: `x + share (W(x) - x)`.
@@ -91,23 +92,22 @@ impl Site<'_> {
         if self.texture.places.is_empty() {
             return Ok(None);
         }
-        let nodes = thinned(self.mask.overlapped());
+        let nodes = self.mask.overlapped();
         if nodes.is_empty() || self.samples.is_empty() {
             let place = self.texture.places[random.below(self.texture.places.len())];
             let samples = self.source(place).into_iter().filter(|s| self.mask.replaces(s)).collect();
             return Ok(Some(Laid { samples, place, notes: Notes { patches: 1, ..Notes::default() } }));
         }
         let around = self.around()?;
-        let mut overlap = Overlap::new(&around.points, &self.texture.lattice, nodes, self.budget)?;
-        let tint = self.texture.field.tint;
-        if tint > 0.0 {
-            let colour = |i: usize| around.samples[i].colour;
-            overlap.add_colours(&around.points, colour, (&self.texture.lattice, tint), self.budget)?;
-        }
+        let (some, lattice) = (thinned(&nodes), &self.texture.lattice);
+        let compared = some.iter().map(|&k| nodes[k]).collect();
+        let mut overlap = Overlap::new(&around.points, lattice, compared, self.budget)?;
+        let paints = self.paints(&around, nodes)?;
+        overlap.planes.extend(paints.iter().flat_map(|paints| paints.only(&some).planes));
         let candidates = self.candidates(&overlap, random)?;
         let mut best: Option<Laid> = None;
         for (n, candidate) in candidates.iter().enumerate() {
-            let mut laid = self.fitted(candidate.place, &around)?;
+            let mut laid = self.fitted(candidate.place, &around, paints.as_ref())?;
             laid.notes.passed = n;
             let is_good = laid.notes.torn() <= TORN && laid.notes.unbent == 0;
             let folds = laid.notes.folds + best.as_ref().map_or(0, |b| b.notes.folds);
@@ -123,6 +123,16 @@ impl Site<'_> {
             }
         }
         Ok(best)
+    }
+
+    /// The colours of what is there already, where colours matter.
+    fn paints(&self, around: &Around, nodes: Vec<[u32; 2]>) -> Result<Option<Overlap>> {
+        let tint = self.texture.field.tint;
+        if tint <= 0.0 {
+            return Ok(None);
+        }
+        let colour = |i: usize| around.samples[i].colour;
+        Overlap::colours(&around.points, colour, (&self.texture.lattice, tint), nodes, self.budget).map(Some)
     }
 
     /// What is there already, prepared: no more of it than projections and rays from the overlap may meet.
@@ -249,7 +259,7 @@ impl Site<'_> {
     }
 
     /// The patch of a place, bent and blended.
-    fn fitted(&self, place: [u32; 2], around: &Around) -> Result<Laid> {
+    fn fitted(&self, place: [u32; 2], around: &Around, paints: Option<&Overlap>) -> Result<Laid> {
         let source = self.source(place);
         let mut notes = Notes { patches: 1, overlapped: around.overlapped.len(), ..Notes::default() };
         let bent = self.bent(&source, around, &mut notes)?;
@@ -257,7 +267,8 @@ impl Site<'_> {
             notes.unbent = 1;
             source
         });
-        let samples = self.blended(bent, around, &mut notes)?;
+        let cut = paints.map(|paints| self.mask.cut(&paints.differences(&self.texture.field, place)));
+        let samples = self.blended(bent, (around, cut.as_deref()), &mut notes)?;
         let samples = self.apart(samples, &mut notes)?;
         notes.cracks = self.cracks(&samples, around)?;
         Ok(Laid { samples, place, notes })
@@ -363,10 +374,10 @@ mod tests {
     #[test]
     fn nodes_are_thinned_evenly_and_some_are_left() {
         let nodes: Vec<[u32; 2]> = (0..60 * 60).map(|k| [k % 60, k / 60]).filter(|[x, y]| *x < 8 || *y < 8).collect();
-        let thin = thinned(nodes.clone());
+        let thin: Vec<_> = thinned(&nodes).into_iter().map(|k| nodes[k]).collect();
         assert!(thin.len() <= ENOUGH && 3 * thin.len() > ENOUGH, "{}", thin.len());
         let far = |n: &[u32; 2]| thin.iter().map(|t| n[0].abs_diff(t[0]) + n[1].abs_diff(t[1])).min().unwrap();
         assert!(nodes.iter().all(|n| far(n) <= 4), "{:?}", nodes.iter().map(far).max());
-        assert_eq!(thinned(nodes[..ENOUGH].to_vec()), nodes[..ENOUGH]);
+        assert!(thinned(&nodes[..ENOUGH]).into_iter().eq(0..ENOUGH));
     }
 }

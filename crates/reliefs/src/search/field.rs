@@ -107,7 +107,14 @@ impl Field {
             (0..count).map(|k| mean(&rows, k, self.width, ends(k))).collect()
         };
         let planes = self.planes.par_iter().map(smooth).collect();
-        Ok(Self { planes, width: self.width, height: self.height, unknown: self.unknown.clone(), tint: self.tint, _held: held })
+        Ok(Self {
+            planes,
+            width: self.width,
+            height: self.height,
+            unknown: self.unknown.clone(),
+            tint: self.tint,
+            _held: held,
+        })
     }
 
     /// Adds the colours of points, so that they have a say in what fits; nothing where all is of one colour.
@@ -172,7 +179,14 @@ impl Field {
             let numbers = rows.iter().flat_map(|row| row.iter().skip(p).step_by(planes).copied());
             numbers.chain([0.0; ABREAST]).collect()
         };
-        Ok(Self { width, height, planes: (0..planes).map(plane).collect(), unknown: Vec::new(), tint: 0.0, _held: held })
+        Ok(Self {
+            width,
+            height,
+            planes: (0..planes).map(plane).collect(),
+            unknown: Vec::new(),
+            tint: 0.0,
+            _held: held,
+        })
     }
 }
 
@@ -206,22 +220,39 @@ impl Overlap {
         Ok(Self { planes: (0..planes).map(plane).collect(), nodes })
     }
 
-    /// Adds the colours of points, multiplied by `tint` as those of the field are.
-    pub(crate) fn add_colours(
-        &mut self,
+    /// Some of the nodes, by their numbers.
+    pub(crate) fn only(&self, some: &[usize]) -> Self {
+        let plane = |p: &Vec<f32>| some.iter().map(|&k| p[k]).collect();
+        Self { nodes: some.iter().map(|&k| self.nodes[k]).collect(), planes: self.planes.iter().map(plane).collect() }
+    }
+
+    /// The colours of points at `nodes`, multiplied by `tint` as those of the field are: three planes.
+    pub(crate) fn colours(
         points: &OrientedPoints,
         colour: impl Fn(usize) -> [f32; 3] + Sync,
         (lattice, tint): (&Lattice, f32),
+        nodes: Vec<[u32; 2]>,
         budget: &Budget,
-    ) -> Result<()> {
-        budget.spend(self.nodes.len() as u64 * PROJECTION)?;
+    ) -> Result<Self> {
+        budget.spend(nodes.len() as u64 * PROJECTION)?;
         let of = |node: &[u32; 2]| {
             let [x, y] = node.map(|k| (f64::from(k) + 0.5) * lattice.cell);
             lattice.colour(points, (x, y), &colour)
         };
-        let seen: Vec<[f32; 3]> = self.nodes.par_iter().map(of).collect();
-        self.planes.extend((0..3).map(|c| seen.iter().map(|rgb| rgb[c] * tint).collect::<Vec<_>>()));
-        Ok(())
+        let seen: Vec<[f32; 3]> = nodes.par_iter().map(of).collect();
+        let plane = |c: usize| seen.iter().map(|rgb| rgb[c] * tint).collect();
+        Ok(Self { planes: (0..3).map(plane).collect(), nodes })
+    }
+
+    /// How much the colours of each node differ from those of the field where the corner of the patch is at `place`.
+    pub(crate) fn differences(&self, field: &Field, place: [u32; 2]) -> Vec<f32> {
+        let at = |[x, y]: [u32; 2]| (y + place[1]) as usize * field.width + (x + place[0]) as usize;
+        let others = &field.planes[field.planes.len() - self.planes.len()..];
+        let squares = |k: usize| {
+            let of = |(own, other): (&Vec<f32>, &Vec<f32>)| (own[k] - other[at(self.nodes[k])]).powi(2);
+            self.planes.iter().zip(others).map(of).sum()
+        };
+        (0..self.nodes.len()).map(squares).collect()
     }
 }
 

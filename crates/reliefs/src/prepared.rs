@@ -16,6 +16,7 @@ use crate::{
     sample::Sample,
     texture::{axes::Axes, understand::Texture},
 };
+use arabesque_surface::MeshIndex;
 
 /// Work units that a point of the result may take, at most.
 const EACH: f64 = 60_000.0;
@@ -133,6 +134,18 @@ impl Prepared {
     /// What was noticed.
     pub fn warnings(&self) -> &[Warning] {
         &self.texture.warnings
+    }
+
+    /// Whether a mesh may be covered at this scale: for those who have work to do before that.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when there would be more points than the limit `output-elements`.
+    pub fn foresee(&self, mesh: &MeshIndex, scale: f64, budget: &Budget) -> Result<()> {
+        let expected = self.expected(mesh.area() / (scale * scale));
+        let limit = budget.limits().output_elements;
+        budget.within_expected("points of the result", expected, ("output-elements", limit))?;
+        budget.allow_elements(expected * EACH / 1e6);
+        Ok(())
     }
 
     /// Makes as much as the request wants. Stopped early, it gives the best so far.

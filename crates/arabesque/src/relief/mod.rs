@@ -177,6 +177,7 @@ impl Texture {
         scale: f64,
         context: &mut RunContext<'_>,
     ) -> Result<(MeshIndex, DirectionField)> {
+        self.engine.foresee(&mesh, scale, &context.budget().stage("laying patches"))?;
         let [_, _, height] = self.engine.size();
         let thinnest = mesh.bounds().size().0.into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
         let radius = ((0.5 * height).max(BEND * self.engine.spacing()) * scale).min(THIN * thinnest);

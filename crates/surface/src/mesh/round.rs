@@ -18,7 +18,7 @@ use crate::{oriented::OrientedPoints, tree::Tree};
 /// Cosine of the angle between the normals of two triangles from which their edge is sharp: 40 degrees.
 const SHARP: f64 = 0.766;
 /// Length of edges beside sharp ones, as a share of the reach.
-const FINE: f64 = 0.2;
+const FINE: f64 = 0.3;
 /// Side of the cells in which triangles count as one, as a share of the reach.
 const CELL: f64 = 0.15;
 /// How far the mean reaches for a radius of 1: a right angle is rounded by about that radius.

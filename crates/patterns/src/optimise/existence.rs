@@ -27,7 +27,8 @@ const OWN_ROOM: f64 = 0.6;
 /// Adding stops at this multiple of the target number of a class.
 const MAX_SURPLUS: f64 = 1.03;
 
-/// Fewest samples whose votes one thread counts by itself.
+/// Most pieces in which votes are counted, and fewest samples of one: their number must not depend on that of the threads.
+const PIECES: usize = 8;
 const ALONE: usize = 512;
 
 /// Nanoseconds for a sample, element or vote that is looked at.
@@ -111,8 +112,8 @@ fn confidences<const D: usize>(state: &State<'_, D>, budget: &Budget) -> Result<
         }
         Ok(votes)
     };
-    // Each thread counts for all items: as many counts as there are threads are added up, whole numbers in any order.
-    let piece = state.living().len().div_ceil(rayon::current_num_threads()).max(ALONE);
+    // Each piece counts for all items: whole numbers can be added up in any order.
+    let piece = state.living().len().div_ceil(PIECES).max(ALONE);
     let counted: Vec<_> = state.living().par_chunks(piece).map(count).collect::<Result<_>>()?;
     budget.spend(0)?;
     let share = |(all, kept)| if all > 0 { f64::from(kept) / f64::from(all) } else { 1.0 };

@@ -185,3 +185,30 @@ impl DistanceMap {
         self.between(a, b) + ((u - a) * (u - a) + (v - b) * (v - b)).sqrt() * self.step
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Outline, Stage, Stream};
+
+    use super::*;
+
+    #[test]
+    fn distances_are_those_to_the_nearest_edge() {
+        for seed in 0..5 {
+            let mut random = Stream::new(seed, Stage::TEST, 0);
+            let corner = |k: u32| {
+                let turn = std::f64::consts::TAU * f64::from(k) / 23.0;
+                Vector::xy(turn.cos(), turn.sin()) * random.range(2.0, 9.0)
+            };
+            let outline = Outline { rings: vec![(0..23).map(corner).collect()] };
+            let map = DistanceMap::new(&outline, 0.37, 5.0);
+            let edges: Vec<Segment<2>> = outline.edges().collect();
+            for (c, &value) in map.value.iter().enumerate() {
+                let place = map.place(c % map.counts[0], c / map.counts[0]);
+                let nearest = edges.iter().map(|&e| segment::distance(e, place)).fold(f64::INFINITY, f64::min);
+                assert!((f64::from(value.abs()) - nearest).abs() < 0.02, "seed {seed}: {value} for {nearest}");
+                assert_eq!(value < 0.0, outline.contains(place), "seed {seed}: {place:?}");
+            }
+        }
+    }
+}

@@ -1,5 +1,9 @@
 //! Least squares for positions that predict one another: the graph of predictions as linear equations.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::{
     budget::Budget,
     error::Result,
@@ -36,39 +40,57 @@ pub struct Pull<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct NormalEquations<const D: usize> {
     diagonal: Vec<f64>,
+    right: Vec<Vector<D>>,
+    /// What else is in the rows, so many at a time; the last of them may be fewer.
+    pieces: Vec<Entries>,
+    /// Rows in each of them.
+    rows: usize,
+    fixed: Vec<bool>,
+}
+
+/// What stands beside the diagonal in rows that follow one another.
+#[derive(Clone, Debug)]
+struct Entries {
     starts: Vec<u32>,
     /// Other unknown and weight, row by row.
     entries: Vec<(u32, f64)>,
-    right: Vec<Vector<D>>,
-    fixed: Vec<bool>,
 }
+
+/// Rows of the equations that follow one another.
+struct Rows<const D: usize> {
+    diagonal: Vec<f64>,
+    right: Vec<Vector<D>>,
+    entries: Entries,
+}
+
+/// Fewest rows that one thread sets up by itself: it reads all predictions for them.
+const FEWEST: usize = 1024;
 
 impl<const D: usize> NormalEquations<D> {
     /// Equations for `n` displacements; `pulls[i]` belongs to unknown `i`, unknowns with `fixed[i]` stay at zero.
     pub fn new(predictions: &[Prediction<D>], pulls: &[Pull<D>], fixed: Vec<bool>) -> Self {
-        let n = pulls.len();
-        let mut diagonal: Vec<f64> = pulls.iter().map(|p| p.weight).collect();
-        let mut right: Vec<_> = pulls.iter().map(|p| p.target * p.weight).collect();
-        let mut starts = vec![0_u32; n + 1];
-        for p in predictions {
-            starts[p.from as usize + 1] += 1;
-            starts[p.to as usize + 1] += 1;
+        Self::of_groups(&[predictions], |i, _| pulls[i], fixed)
+    }
+
+    /// Equations for as many displacements as `fixed` has entries, from predictions in groups; `pull(i, weight)` belongs to unknown `i`,
+    /// whose predictions weigh `weight` together, and unknowns with `fixed[i]` stay at zero. The same for any number of threads.
+    pub fn of_groups<G: AsRef<[Prediction<D>]> + Sync>(
+        groups: &[G],
+        pull: impl Fn(usize, f64) -> Pull<D> + Sync,
+        fixed: Vec<bool>,
+    ) -> Self {
+        let n = fixed.len();
+        let rows = n.div_ceil(rayon::current_num_threads()).max(FEWEST);
+        let piece = |k: usize| Rows::new(groups, k * rows..n.min((k + 1) * rows), &pull);
+        let made: Vec<Rows<D>> = (0..n.div_ceil(rows)).into_par_iter().map(piece).collect();
+        let (mut diagonal, mut right) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        let mut pieces = Vec::with_capacity(made.len());
+        for mut piece in made {
+            diagonal.append(&mut piece.diagonal);
+            right.append(&mut piece.right);
+            pieces.push(piece.entries);
         }
-        for i in 1..=n {
-            starts[i] += starts[i - 1];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![(0, 0.0); predictions.len() * 2];
-        for p in predictions {
-            for (a, b, sign) in [(p.from, p.to, -1.0), (p.to, p.from, 1.0)] {
-                let slot = &mut next[a as usize];
-                entries[*slot as usize] = (b, p.weight);
-                *slot += 1;
-                diagonal[a as usize] += p.weight;
-                right[a as usize] += p.offset * (sign * p.weight);
-            }
-        }
-        Self { diagonal, starts, entries, right, fixed }
+        Self { diagonal, right, pieces, rows, fixed }
     }
 
     /// Solves the equations from zero, until the residual is `tolerance` of the start or after `most` steps. Never raises the sum of squares
@@ -81,12 +103,55 @@ impl<const D: usize> NormalEquations<D> {
     }
 }
 
+impl<const D: usize> Rows<D> {
+    /// The rows in a range; each adds up what is predicted in the order of the predictions.
+    fn new<G: AsRef<[Prediction<D>]>>(
+        groups: &[G],
+        range: Range<usize>,
+        pull: &impl Fn(usize, f64) -> Pull<D>,
+    ) -> Self {
+        let (first, count) = (range.start as u32, range.len());
+        let ends = |p: &Prediction<D>| [(p.from, p.to, -1.0), (p.to, p.from, 1.0)];
+        // Rows before the first wrap around to what is beyond the last.
+        let row = |unknown: u32| Some(unknown.wrapping_sub(first) as usize).filter(|&row| row < count);
+        let all = || groups.iter().flat_map(|group| group.as_ref());
+        let (mut starts, mut weight) = (vec![0_u32; count + 1], vec![0.0; count]);
+        for p in all() {
+            for row in ends(p).into_iter().filter_map(|(a, ..)| row(a)) {
+                starts[row + 1] += 1;
+                weight[row] += p.weight;
+            }
+        }
+        for i in 1..=count {
+            starts[i] += starts[i - 1];
+        }
+        let pulls: Vec<Pull<D>> = range.zip(weight).map(|(i, weight)| pull(i, weight)).collect();
+        let mut diagonal: Vec<f64> = pulls.iter().map(|p| p.weight).collect();
+        let mut right: Vec<_> = pulls.iter().map(|p| p.target * p.weight).collect();
+        let mut next = starts.clone();
+        let mut entries = vec![(0, 0.0); starts.last().map_or(0, |&n| n as usize)];
+        for p in all() {
+            for (a, b, sign) in ends(p) {
+                let Some(row) = row(a) else { continue };
+                let slot = &mut next[row];
+                entries[*slot as usize] = (b, p.weight);
+                *slot += 1;
+                diagonal[row] += p.weight;
+                right[row] += p.offset * (sign * p.weight);
+            }
+        }
+        Self { diagonal, right, entries: Entries { starts, entries } }
+    }
+}
+
 impl<const D: usize> Equations<D> for NormalEquations<D> {
     fn row(&self, i: usize, x: &[Vector<D>]) -> Vector<D> {
         if self.fixed[i] {
             return Vector::ZERO;
         }
-        let entries = &self.entries[self.starts[i] as usize..self.starts[i + 1] as usize];
+        let Entries { starts, entries } = &self.pieces[i / self.rows];
+        let row = i % self.rows;
+        let entries = &entries[starts[row] as usize..starts[row + 1] as usize];
         entries.iter().fold(x[i] * self.diagonal[i], |sum, &(j, w)| sum - x[j as usize] * w)
     }
 
@@ -99,11 +164,11 @@ impl<const D: usize> Equations<D> for NormalEquations<D> {
     }
 
     fn count(&self) -> usize {
-        self.right.len()
+        self.fixed.len()
     }
 
     fn price(&self) -> u64 {
-        self.entries.len() as u64 * 2
+        self.pieces.iter().map(|piece| piece.entries.len() as u64 * 2).sum()
     }
 }
 
@@ -164,6 +229,25 @@ mod tests {
             for i in 0..n {
                 assert!((0..2).all(|k| (got[i][k] - want[(i, k)]).abs() < 1e-7), "{n} {i}");
             }
+        }
+    }
+
+    #[test]
+    fn the_solution_is_the_same_for_any_number_of_threads_and_groups() {
+        let n = 5 * FEWEST / 2;
+        let (predictions, pulls) = problem(n, 7);
+        let on = |threads: usize, groups: &[&[Prediction<2>]]| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let solve = || {
+                let pull = |i: usize, weight: f64| Pull { weight: pulls[i].weight + 0.05 * weight, ..pulls[i] };
+                NormalEquations::of_groups(groups, pull, vec![false; n]).solve(1e-6, 200, &Budget::default()).unwrap()
+            };
+            pool.install(solve)
+        };
+        let want = on(1, &[&predictions]);
+        let groups: Vec<&[Prediction<2>]> = predictions.chunks(7).collect();
+        for threads in [1, 2, 3, 8] {
+            assert!(on(threads, &groups) == want, "{threads} threads");
         }
     }
 

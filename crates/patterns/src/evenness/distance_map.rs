@@ -29,6 +29,29 @@ pub(crate) fn cells(outline: &Outline<2>, step: f64, margin: f64) -> [usize; 2] 
     size.0.map(|side| (side / step).ceil().max(1.0) as usize + 1)
 }
 
+/// The edge nearest to a cell, with the square of its distance: cells are offered many edges, and each but one is dropped.
+#[derive(Clone, Copy)]
+struct Nearest {
+    edge: u32,
+    distance2: f64,
+}
+
+impl Nearest {
+    const NONE: Self = Self { edge: NONE, distance2: f64::INFINITY };
+
+    /// Takes an edge that is nearer to the place of the cell than the one that is known.
+    #[inline]
+    fn offer(&mut self, edge: u32, ends: Segment<2>, place: Vector<2>) {
+        if edge == self.edge {
+            return;
+        }
+        let distance2 = (segment::nearest(ends, place) - place).norm2();
+        if distance2 < self.distance2 {
+            *self = Self { edge, distance2 };
+        }
+    }
+}
+
 impl DistanceMap {
     /// Measures `outline`, in cells of `step`, up to `margin` beyond it.
     pub(crate) fn new(outline: &Outline<2>, step: f64, margin: f64) -> Self {
@@ -44,9 +67,8 @@ impl DistanceMap {
         };
         let edges: Vec<Segment<2>> = outline.edges().collect();
         let nearest = map.nearest_edges(&edges);
-        for (c, &edge) in nearest.iter().enumerate() {
-            let place = map.place(c % counts[0], c / counts[0]);
-            map.value[c] = edges.get(edge as usize).map_or(f32::MAX, |&e| segment::distance(e, place) as f32);
+        for (value, found) in map.value.iter_mut().zip(nearest) {
+            *value = if found.edge == NONE { f32::MAX } else { found.distance2.sqrt() as f32 };
         }
         map.mark_ink(&edges);
         map
@@ -57,20 +79,23 @@ impl DistanceMap {
     }
 
     /// The edge nearest to each cell, or one that is hardly farther.
-    fn nearest_edges(&self, edges: &[Segment<2>]) -> Vec<u32> {
+    fn nearest_edges(&self, edges: &[Segment<2>]) -> Vec<Nearest> {
         let [width, height] = self.counts;
-        let mut nearest = vec![NONE; width * height];
+        let mut nearest = vec![Nearest::NONE; width * height];
         for (e, &edge) in (0..).zip(edges) {
-            self.sow(e, edge, edges, &mut nearest);
+            self.sow(e, edge, &mut nearest);
         }
         for _ in 0..2 {
             for (flip, c) in (0..width * height).map(|c| (1, c)).chain((0..width * height).rev().map(|c| (-1, c))) {
                 let (x, y) = ((c % width) as isize, (c / width) as isize);
+                let place = self.place(x as usize, y as usize);
                 for (dx, dy) in BEFORE {
                     let (u, v) = (x + flip * dx, y + flip * dy);
                     if (0..width as isize).contains(&u) && (0..height as isize).contains(&v) {
-                        let offered = nearest[v as usize * width + u as usize];
-                        self.offer(c, offered, edges, &mut nearest);
+                        let offered = nearest[v as usize * width + u as usize].edge;
+                        if let Some(&edge) = edges.get(offered as usize) {
+                            nearest[c].offer(offered, edge, place);
+                        }
                     }
                 }
             }
@@ -79,28 +104,17 @@ impl DistanceMap {
     }
 
     /// Offers an edge to the cells that it runs through.
-    fn sow(&self, e: u32, (a, b): Segment<2>, edges: &[Segment<2>], nearest: &mut [u32]) {
+    fn sow(&self, e: u32, edge: Segment<2>, nearest: &mut [Nearest]) {
+        let (a, b) = edge;
         let pieces = ((b - a).norm() / self.step).ceil().max(1.0) as usize;
         for k in 0..=pieces {
             let p = (a + (b - a) * (k as f64 / pieces as f64) - self.origin) * (1.0 / self.step);
             for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                 let (x, y) = (p[0] as usize + dx, p[1] as usize + dy);
                 if x < self.counts[0] && y < self.counts[1] {
-                    self.offer(y * self.counts[0] + x, e, edges, nearest);
+                    nearest[y * self.counts[0] + x].offer(e, edge, self.place(x, y));
                 }
             }
-        }
-    }
-
-    fn offer(&self, c: usize, offered: u32, edges: &[Segment<2>], nearest: &mut [u32]) {
-        let known = nearest[c];
-        if offered == NONE || offered == known {
-            return;
-        }
-        let p = self.place(c % self.counts[0], c / self.counts[0]);
-        let distance = |e: u32| (segment::nearest(edges[e as usize], p) - p).norm2();
-        if known == NONE || distance(offered) < distance(known) {
-            nearest[c] = offered;
         }
     }
 
@@ -169,5 +183,32 @@ impl DistanceMap {
         let inner = |x: f64, count: usize| x.clamp(0.0, (count - 1) as f64 * (1.0 - 1e-12) - 1e-9);
         let (a, b) = (inner(u, self.counts[0]), inner(v, self.counts[1]));
         self.between(a, b) + ((u - a) * (u - a) + (v - b) * (v - b)).sqrt() * self.step
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use arabesque_core::{Outline, Stage, Stream};
+
+    use super::*;
+
+    #[test]
+    fn distances_are_those_to_the_nearest_edge() {
+        for seed in 0..5 {
+            let mut random = Stream::new(seed, Stage::TEST, 0);
+            let corner = |k: u32| {
+                let turn = std::f64::consts::TAU * f64::from(k) / 23.0;
+                Vector::xy(turn.cos(), turn.sin()) * random.range(2.0, 9.0)
+            };
+            let outline = Outline { rings: vec![(0..23).map(corner).collect()] };
+            let map = DistanceMap::new(&outline, 0.37, 5.0);
+            let edges: Vec<Segment<2>> = outline.edges().collect();
+            for (c, &value) in map.value.iter().enumerate() {
+                let place = map.place(c % map.counts[0], c / map.counts[0]);
+                let nearest = edges.iter().map(|&e| segment::distance(e, place)).fold(f64::INFINITY, f64::min);
+                assert!((f64::from(value.abs()) - nearest).abs() < 0.02, "seed {seed}: {value} for {nearest}");
+                assert_eq!(value < 0.0, outline.contains(place), "seed {seed}: {place:?}");
+            }
+        }
     }
 }

@@ -311,7 +311,8 @@ where
         let is_wanted = |&source: &u32| self.wants(self.library.class[source]);
         let wanted: Vec<u32> = candidates.into_iter().filter(is_wanted).collect();
         let sorted = self.priced(&scene, &wanted, p, before + HOPELESS, meter)?;
-        let mut rate = |(start, pose): &(f64, Pose<D>)| {
+        let rate = |(start, pose): &(f64, Pose<D>)| {
+            let meter = &mut self.budget.meter();
             let (pose, price) = self.descend(&scene, (*start, *pose), (far, before + CROWDED), meter)?;
             if !self.admits(&pose) {
                 return Ok(None);
@@ -319,7 +320,10 @@ where
             let rise = price - before;
             Ok(Some((rise + AGREEMENT * self.disagreement(&pose, None, meter)?, rise, pose)))
         };
-        let rated = sorted.iter().take(CANDIDATES.1).map(&mut rate).collect::<Result<Vec<_>>>()?;
+        // Also in parallel within a hole: towards the end of a round there are few holes at a time.
+        let tried = &sorted[..sorted.len().min(CANDIDATES.1)];
+        let rated = tried.par_iter().map(rate).collect::<Result<Vec<_>>>()?;
+        self.budget.spend(0)?;
         Ok(rated.into_iter().flatten().collect())
     }
 

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use arabesque_core::{Budget, Domain, Held, Lattice, Matrix, Meter, Request, Result, Vector};
+use rayon::prelude::*;
 
 use crate::{
     border::Extent,
@@ -24,6 +25,9 @@ const LISTS: (f64, usize) = (1.5, 1 << 22);
 
 /// What lies beyond the border counts as ink at this distance from it, in tolerated ones: there may be some, or none.
 const BORDER: f64 = 0.5;
+
+/// Elements around which distances are measured before they are entered.
+const TOGETHER: usize = 64;
 
 /// No element.
 pub(crate) const NOBODY: u32 = u32::MAX;
@@ -124,11 +128,8 @@ where
         let counts = around.size().0.map(|side| ((side / part).ceil().max(1.0) as usize).min(1 << 20));
         let parts = Lattice::at_most(around, counts, is_periodic, LISTS.1);
         let (mut cells, held) = budget.list("places of the page", lattice.count())?;
-        let mut meter = budget.meter();
-        for c in 0..lattice.count() {
-            meter.spend(20 * PRICE.0)?;
-            cells.push(still(extent, lattice.centre(c), &measures));
-        }
+        budget.spend(20 * PRICE.0 * lattice.count() as u64)?;
+        cells.par_extend((0..lattice.count()).into_par_iter().map(|c| still(extent, lattice.centre(c), &measures)));
         let (lists, homes) = (vec![Vec::new(); parts.count()], vec![Vec::new(); parts.count()]);
         let reach = measures.reach;
         let is_neutral = request.fields.are_neutral();
@@ -147,15 +148,11 @@ where
             reach,
             _held: Some(held),
         };
+        let mut meter = budget.meter();
         for k in 0..page.strokes.places.len() {
             page.draw(page.strokes.places[k], &mut meter)?;
         }
-        for b in 0..page.bodies.len() as u32 {
-            if page.bodies[b as usize].alive {
-                page.enter(b);
-                page.spread(b, &mut meter)?;
-            }
-        }
+        page.spread_all(budget)?;
         Ok(page)
     }
 }
@@ -280,6 +277,38 @@ impl<const D: usize> Page<'_, D> {
         looked
     }
 
+    /// Calls `visit(cell)` for the same places, where their distances do not matter.
+    fn places_around(&self, pose: &Pose<D>, mut visit: impl FnMut(usize)) -> u64 {
+        let mut looked = 0;
+        let reach = self.inks.radius(pose) + self.reach;
+        self.lattice.around(pose.centre, reach, |c, at| {
+            looked += 1;
+            if (self.lattice.centre_at(at) - pose.centre).norm2() < reach * reach {
+                visit(c);
+            }
+        });
+        looked
+    }
+
+    /// Tells the places around all elements of them: distances are measured at the same time, and entered in order.
+    fn spread_all(&mut self, budget: &Budget) -> Result<()> {
+        let living: Vec<u32> = (0..self.bodies.len() as u32).filter(|&b| self.body(b).alive).collect();
+        for some in living.chunks(TOGETHER) {
+            let measured = |&b: &u32| {
+                let mut found = Vec::new();
+                let looked = self.around(&self.body(b).pose, |c, distance| found.push((c, distance)));
+                budget.spend(PRICE.1 * looked)?;
+                Ok(found)
+            };
+            let measured: Vec<Vec<(usize, f32)>> = some.par_iter().map(measured).collect::<Result<_>>()?;
+            for (&b, found) in some.iter().zip(measured) {
+                self.enter(b);
+                found.into_iter().for_each(|(c, distance)| self.cells[c].insert(b, distance));
+            }
+        }
+        Ok(())
+    }
+
     /// Tells the places around an element of it.
     fn spread(&mut self, b: u32, meter: &mut Meter<'_>) -> Result<()> {
         let pose = self.body(b).pose;
@@ -371,7 +400,7 @@ impl<const D: usize> Page<'_, D> {
             }
         }
         let far = (self.inks.radius(&pose) + self.reach) * (1.0 - 1e-9);
-        looked += self.around(&before, |c, _| {
+        looked += self.places_around(&before, |c| {
             let is_far = || self.domain().offset(pose.centre, self.lattice.centre(c)).norm2() >= far * far;
             if self.cells[c].near.contains(&b) && is_far() {
                 open.push(c);
@@ -398,7 +427,7 @@ impl<const D: usize> Page<'_, D> {
         self.bodies[b as usize].alive = false;
         let pose = self.body(b).pose;
         let mut open = Vec::new();
-        let looked = self.around(&pose, |c, _| {
+        let looked = self.places_around(&pose, |c| {
             if self.cells[c].near.contains(&b) {
                 open.push(c);
             }

@@ -27,6 +27,10 @@ const OWN_ROOM: f64 = 0.6;
 /// Adding stops at this multiple of the target number of a class.
 const MAX_SURPLUS: f64 = 1.03;
 
+/// Most pieces in which votes are counted, and fewest samples of one: their number must not depend on that of the threads.
+const PIECES: usize = 8;
+const ALONE: usize = 512;
+
 /// Nanoseconds for a sample, element or vote that is looked at.
 const LOOK: u64 = 5;
 
@@ -97,16 +101,24 @@ fn remove<const D: usize>(
 
 /// Share of the overlapping neighbourhoods in which each item had a partner; 1 where none overlaps [Tu 2020 eq. 16].
 fn confidences<const D: usize>(state: &State<'_, D>, budget: &Budget) -> Result<Numbered<f64>> {
-    let mut meter = budget.meter();
-    let mut votes = Numbered::filled((0_u32, 0_u32), state.items().len());
-    for &s in state.living() {
-        let Some(matched) = &state.sample(s).matched else { continue };
-        meter.spend(LOOK * matched.members.len() as u64)?;
-        matched.members.iter().for_each(|&o| votes[state.sample(o).item].0 += 1);
-        matched.pairs.iter().for_each(|&(o, _)| votes[state.sample(o).item].1 += 1);
-    }
+    let count = |living: &[u32]| -> Result<Numbered<(u32, u32)>> {
+        let mut meter = budget.meter();
+        let mut votes = Numbered::filled((0_u32, 0_u32), state.items().len());
+        for &s in living {
+            let Some(matched) = &state.sample(s).matched else { continue };
+            meter.spend(LOOK * matched.members.len() as u64)?;
+            matched.members.iter().for_each(|&o| votes[state.sample(o).item].0 += 1);
+            matched.pairs.iter().for_each(|&(o, _)| votes[state.sample(o).item].1 += 1);
+        }
+        Ok(votes)
+    };
+    // Each piece counts for all items: whole numbers can be added up in any order.
+    let piece = state.living().len().div_ceil(PIECES).max(ALONE);
+    let counted: Vec<_> = state.living().par_chunks(piece).map(count).collect::<Result<_>>()?;
+    budget.spend(0)?;
     let share = |(all, kept)| if all > 0 { f64::from(kept) / f64::from(all) } else { 1.0 };
-    let mut confidence: Numbered<f64> = votes.into_iter().map(share).collect();
+    let sum = |i: u32| counted.iter().fold((0, 0), |sum, votes| (sum.0 + votes[i].0, sum.1 + votes[i].1));
+    let mut confidence: Numbered<f64> = state.items().numbers().map(|i| share(sum(i))).collect();
     for i in crowded(state, &confidence, budget)? {
         confidence[i] *= HALF;
     }
@@ -146,12 +158,13 @@ fn loses<const D: usize>(
 
 /// Makes the neighbours of the dead search again.
 fn announce_removed<const D: usize>(state: &mut State<'_, D>) {
-    for s in state.samples().numbers() {
-        let matched = state.sample(s).matched.as_ref();
-        if matched.is_some_and(|m| m.members.iter().any(|&o| !state.is_alive(o))) {
-            state.mark_dirty(s);
-        }
-    }
+    let misses = |s: &u32| {
+        let matched = state.sample(*s).matched.as_ref();
+        matched.is_some_and(|m| m.members.iter().any(|&o| !state.is_alive(o)))
+    };
+    let samples = state.samples().numbers().into_par_iter().with_min_len(ALONE);
+    let missing: Vec<u32> = samples.filter(misses).collect();
+    missing.into_iter().for_each(|s| state.mark_dirty(s));
 }
 
 /// An element that a neighbourhood misses.
@@ -239,17 +252,21 @@ fn wanted<const D: usize>(state: &State<'_, D>, targets: &Numbered<f64>, budget:
     let mut meter = budget.meter();
     let clusters = clusters(state, &mut meter)?;
     let mut counts = class_counts(state);
-    let mut accepted = Vec::new();
-    for cluster in &clusters {
+    let accept = |cluster: &Cluster<D>| {
+        let mut meter = budget.meter();
         let n = cluster.votes.len() as f64;
         let position = cluster.centre + cluster.shift * (1.0 / n);
         let class = cluster.class;
         // Fewer than there should be: half the votes will do when a fifth is wanting.
         let share = ((counts[class] / targets[class].max(1.0) - 0.8) * 2.5 + 0.5).clamp(0.5, 1.0);
-        if n >= HALF * share * covering(state, position, &mut meter)? {
-            accepted.push((n, position, source(state, &cluster.votes, &mut meter)?));
+        if n < HALF * share * covering(state, position, &mut meter)? {
+            return Ok(None);
         }
-    }
+        Ok(Some((n, position, source(state, &cluster.votes, &mut meter)?)))
+    };
+    let accepted: Vec<Option<_>> = clusters.par_iter().with_min_len(8).map(accept).collect::<Result<_>>()?;
+    budget.spend(0)?;
+    let mut accepted: Vec<_> = accepted.into_iter().flatten().collect();
     // The surest first, so that of two that collide the better one stays.
     accepted.sort_by(|a, b| b.0.total_cmp(&a.0));
     let reach = state.library.spacing * state.extent.largest_spacing_scale;

@@ -29,15 +29,11 @@ pub(crate) fn assign<const D: usize>(state: &State<'_, D>) -> Result<Numbered<Ve
         slot_of[s] = Some(slot as u32);
     }
     let predictions = predictions(state, &slot_of);
-    budget.spend(PRICE.0 * predictions.len() as u64 + PRICE.1 * state.living().len() as u64)?;
-    let mut weight = Numbered::filled(0.0, state.living().len());
-    for p in &predictions {
-        weight[p.from] += p.weight;
-        weight[p.to] += p.weight;
-    }
-    let pulls: Vec<_> = state.living().iter().zip(&weight).map(|(&s, &w)| pull(state, s, w)).collect();
+    let count: usize = predictions.iter().map(Vec::len).sum();
+    budget.spend(PRICE.0 * count as u64 + PRICE.1 * state.living().len() as u64)?;
+    let pull = |slot: usize, weight: f64| pull(state, state.living()[slot], weight);
     let fixed = state.living().iter().map(|&s| state.is_frozen(s)).collect();
-    let moves = NormalEquations::new(&predictions, &pulls, fixed).solve(1e-3, 200, &budget)?;
+    let moves = NormalEquations::of_groups(&predictions, pull, fixed).solve(1e-3, 200, &budget)?;
     let mut position: Numbered<_> = state.samples().iter().map(|s| s.position).collect();
     for (&s, &step) in state.living().iter().zip(&moves) {
         position[s] += step;
@@ -45,9 +41,9 @@ pub(crate) fn assign<const D: usize>(state: &State<'_, D>) -> Result<Numbered<Ve
     Ok(position)
 }
 
-/// Predictions as differences from the present offsets, since the unknowns are displacements.
-fn predictions<const D: usize>(state: &State<'_, D>, slot_of: &Numbered<Option<u32>>) -> Vec<Prediction<D>> {
-    state.living().par_iter().flat_map_iter(|&s| predictions_of(state, slot_of, s)).collect()
+/// Predictions of each living sample, as differences from the present offsets, since the unknowns are displacements.
+fn predictions<const D: usize>(state: &State<'_, D>, slot_of: &Numbered<Option<u32>>) -> Vec<Vec<Prediction<D>>> {
+    state.living().par_iter().map(|&s| predictions_of(state, slot_of, s)).collect()
 }
 
 /// What the match of sample `s` says about its neighbours.

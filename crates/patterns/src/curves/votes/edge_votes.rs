@@ -15,6 +15,9 @@ const DISCOUNT: f64 = 8.0;
 /// Nanoseconds for a pair of a neighbourhood that is looked at, and for a vote.
 const PRICE: (u64, u64) = (1, 150);
 
+/// Pairs of samples, or samples, whose votes one thread sorts and counts by itself.
+const ALONE: usize = 64;
+
 /// A pair of output samples that some neighbourhood wants joined.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
@@ -76,9 +79,12 @@ pub(crate) fn collect<const D: usize>(state: &State<'_, D>, net: &Net<D>) -> Res
         opinions.par_iter().map(|o| joined_pairs(state, net, o, &budget)).collect::<Result<_>>()?;
     budget.spend(0)?;
     let joined = sorted(&found, state.samples().len(), &budget)?;
-    let mut candidates: Vec<Candidate> = joined.chunk_by(|a, b| a.0 == b.0).map(candidate).collect();
-    weigh(state, &opinions, &mut candidates, &budget)?;
-    Ok(Votes { candidates, degree: degrees(state, net, &opinions) })
+    let of_pairs: Vec<&[Vote]> = joined.chunk_by(|a, b| a.0 == b.0).collect();
+    let mut candidates: Vec<Candidate> = of_pairs.into_par_iter().with_min_len(ALONE).map(candidate).collect();
+    let (weighed, degree) =
+        rayon::join(|| weigh(state, &opinions, &mut candidates, &budget), || degrees(state, net, &opinions));
+    weighed?;
+    Ok(Votes { candidates, degree })
 }
 
 /// All votes by their ends and then by their pieces, those alike in the order in which they came: first put with those of the same
@@ -99,10 +105,10 @@ fn sorted(found: &[Vec<Vote>], samples: usize, budget: &Budget) -> Result<Vec<Vo
         votes[*slot as usize] = *vote;
         *slot += 1;
     }
-    for of_end in starts.windows(2) {
-        let votes = &mut votes[of_end[0] as usize..of_end[1] as usize];
+    let mut of_ends: Vec<&mut [Vote]> = votes.chunk_by_mut(|a, b| a.0.0 == b.0.0).collect();
+    of_ends.par_iter_mut().with_min_len(ALONE).for_each(|votes| {
         votes.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.line.cmp(&b.1.line)).then(a.1.from.total_cmp(&b.1.from)));
-    }
+    });
     Ok(votes)
 }
 

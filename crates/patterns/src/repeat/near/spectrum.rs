@@ -1,6 +1,7 @@
 //! The lattice of places with one of them in each cell, by the waves that add up over it.
 
 use arabesque_core::{Budget, Result, Vector};
+use rayon::prelude::*;
 
 use crate::repeat::{lattice::Lattice, near::places::Places};
 
@@ -78,7 +79,7 @@ impl Waves {
         let count = (most / step).ceil() as usize;
         let wide = 2 * count + 1;
         budget.spend(WAVE * (wide * (count + 1) * self.places.len()) as u64)?;
-        let rows: Vec<Vec<f64>> = (0..=count).map(|j| self.row(j as f64 * step, count, step)).collect();
+        let rows: Vec<Vec<f64>> = (0..=count).into_par_iter().map(|j| self.row(j as f64 * step, count, step)).collect();
         let mut peaks = Vec::new();
         for (j, row) in rows.iter().enumerate() {
             for (i, &here) in row.iter().enumerate() {
@@ -103,7 +104,7 @@ impl Waves {
         peaks.sort_by(|(_, a), (_, b)| b.total_cmp(a));
         peaks.truncate(FOLLOWED);
         budget.spend(WAVE * (peaks.len() * 48 * self.places.len()) as u64 * 8)?;
-        Ok(peaks.into_iter().map(|(wave, amplitude)| self.followed(wave, amplitude, step)).collect())
+        Ok(peaks.into_par_iter().map(|(wave, amplitude)| self.followed(wave, amplitude, step)).collect())
     }
 
     /// The amplitudes of waves along a row, each a turn of the last.

@@ -1,5 +1,6 @@
 //! Surfaces of points.
 
+mod after;
 mod made;
 
 use std::sync::Arc;
@@ -14,6 +15,7 @@ use crate::{
     solid::read::{cloud, indexed_mesh, raised},
 };
 
+pub(crate) use after::{Surfaced, surfaced};
 pub(crate) use made::SurfaceMade;
 
 /// What is being done where points become a surface.

@@ -2,6 +2,7 @@
 
 mod crossings;
 mod index;
+mod pieces;
 mod report;
 pub(crate) mod topology;
 mod triangle;

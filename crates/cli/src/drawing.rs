@@ -18,7 +18,11 @@ const TICK: Duration = Duration::from_millis(5);
 /// thread of its own, for which nobody waits then.
 ///
 /// `None` also where the system gives no thread.
-pub(crate) fn unless_asked(artwork: &Artwork, output: &OutputOptions, threads: Option<usize>) -> Option<Result<Encoded>> {
+pub(crate) fn unless_asked(
+    artwork: &Artwork,
+    output: &OutputOptions,
+    threads: Option<usize>,
+) -> Option<Result<Encoded>> {
     if sentinel::signal().is_some() {
         return None;
     }

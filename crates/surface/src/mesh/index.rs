@@ -4,7 +4,6 @@ use arabesque_core::{Bounds, Budget, Error, Held, Limits, Result, TriangleMesh, 
 use rayon::prelude::*;
 
 use super::{
-    pieces::Pieces,
     topology::{NONE, Topology},
     triangle,
 };
@@ -46,8 +45,6 @@ pub struct MeshIndex {
     /// Normals at the vertices of the topology, weighted by the angles of the triangles around them.
     pub(crate) normals: Vec<Vector<3>>,
     tree: Tree,
-    /// Where there are many long thin triangles.
-    pieces: Option<Pieces>,
     dipoles: Dipoles,
     bounds: Bounds<3>,
     name: String,
@@ -70,12 +67,11 @@ impl MeshIndex {
         let boxes: Vec<_> =
             (0..topology.triangles.len() as u32).into_par_iter().map(|t| Bounds::around(topology.corners(t))).collect();
         let tree = Tree::new(&boxes, budget)?;
-        let pieces = Pieces::new(&topology, budget)?;
         let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
         let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
         let normals = vertex_normals(&topology);
         let (bounds, name, budget) = (tree.nodes[0].bounds, name.to_owned(), budget.clone());
-        Ok(Self { bounds, topology, normals, tree, pieces, dipoles, name, budget, _held: held })
+        Ok(Self { bounds, topology, normals, tree, dipoles, name, budget, _held: held })
     }
 
     /// The smallest box around the triangles.
@@ -116,7 +112,7 @@ impl MeshIndex {
 
     /// The nearest point of the mesh, if it is no farther than `reach`: faster than [`MeshIndex::closest`] where most places are farther.
     pub fn closest_within(&self, p: Vector<3>, reach: f64) -> Option<Closest> {
-        let (found, looked) = self.nearest_within(p, reach * reach);
+        let (found, looked) = self.tree.nearest(p, reach * reach, |t| Some(self.distance2(t, p)));
         self.owe(looked);
         found.map(|(t, _)| self.on_triangle(t, p))
     }
@@ -302,15 +298,7 @@ impl MeshIndex {
 
     /// The nearest triangle with its squared distance, and what was looked at.
     fn nearest(&self, p: Vector<3>) -> (Option<(u32, f64)>, u64) {
-        self.nearest_within(p, f64::INFINITY)
-    }
-
-    /// The same, no farther than the root of `limit`.
-    fn nearest_within(&self, p: Vector<3>, limit: f64) -> (Option<(u32, f64)>, u64) {
-        match &self.pieces {
-            Some(pieces) => pieces.nearest(p, limit, |t| self.distance2(t, p)),
-            None => self.tree.nearest(p, limit, |t| Some(self.distance2(t, p))),
-        }
+        self.tree.nearest(p, f64::INFINITY, |t| Some(self.distance2(t, p)))
     }
 
     /// Counts what a single question looked at beyond what its loop pays for.

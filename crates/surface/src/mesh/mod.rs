@@ -2,7 +2,6 @@
 
 mod crossings;
 mod index;
-mod pieces;
 mod report;
 pub(crate) mod topology;
 mod triangle;

@@ -3,7 +3,7 @@
 use arabesque_core::Warning;
 use arabesque_io::raster::size::Picture;
 
-use super::Encoded;
+use super::made::Encoded;
 
 /// Most pixels of drafts, so that they are drawn within a tenth of a second: of the plane, and of what lies in space, whose light is worked
 /// out.

@@ -3,7 +3,8 @@
 use arabesque_core::{Budget, Error, PointSet, Result, StopReason, Unobserved, Warning};
 use arabesque_surface::{Reconstruction, SurfaceParams, reconstruct};
 
-use super::SURFACE;
+/// What is being done where points become a surface.
+pub(super) const SURFACE: &str = "making the surface";
 
 /// What became of points.
 #[derive(Debug)]

@@ -15,11 +15,9 @@ use crate::{
     solid::read::{cloud, indexed_mesh, raised},
 };
 
+use after::SURFACE;
 pub(crate) use after::{Surfaced, surfaced};
 pub(crate) use made::SurfaceMade;
-
-/// What is being done where points become a surface.
-pub(crate) const SURFACE: &str = "making the surface";
 
 /// Points, read.
 #[derive(Debug)]

@@ -2,6 +2,7 @@
 
 mod app;
 mod commands;
+mod drawing;
 mod duration;
 mod failure;
 mod guard;

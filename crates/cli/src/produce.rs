@@ -13,7 +13,7 @@ use arabesque::{
 use clap::Args;
 
 use crate::{
-    duration,
+    drawing, duration,
     failure::Failure,
     guard::{Guard, RecipeFile, WriteOptions},
     limits::LimitOptions,
@@ -212,7 +212,7 @@ fn make_all(
     if level == Level::Verbose {
         say::note(&prepared.understood());
     }
-    let run = Run { prepared: &prepared, output: &recipe.output, level };
+    let run = Run { prepared: &prepared, output: &recipe.output, threads: options.threads, level };
     let mut outputs = Vec::new();
     for plan in &plans {
         match run.make(plan) {
@@ -236,6 +236,7 @@ fn make_all(
 struct Run<'a> {
     prepared: &'a Prepared,
     output: &'a OutputOptions,
+    threads: Option<usize>,
     level: Level,
 }
 
@@ -265,14 +266,18 @@ impl Run<'_> {
     /// An artwork, and its file with what the user should know of both.
     fn run(&self, plan: &Plan, watch: &mut Watch) -> arabesque::Result<(Artwork, Encoded)> {
         let artwork = self.prepared.run(&self.prepared.request().with_seed(plan.seed), watch)?;
-        sentinel::enter(Phase::Encoding);
+        let has_draft = artwork.has_draft(self.output);
+        sentinel::enter(if has_draft { Phase::Drawing } else { Phase::Encoding });
         watch.finish();
         let path = Some(plan.path.clone()).filter(|_| plan.beside.is_some());
         let output = OutputOptions { path, ..self.output.clone() };
-        let mut encoded = match artwork.encode(&output) {
-            // The time was up, or somebody asked to stop, while what there is was encoded: it is wanted all the same. What was heard once
-            // is not heard again.
-            Err(Error::Stopped { .. }) => artwork.encode(&output)?,
+        let drawn = if has_draft { drawing::unless_asked(&artwork, &output, self.threads) } else { None };
+        let encode = if has_draft && sentinel::signal().is_some() { Artwork::encode_draft } else { Artwork::encode };
+        let mut encoded = match drawn.unwrap_or_else(|| encode(&artwork, &output)) {
+            // Somebody asked to stop just when this was begun: it is wanted all the same. What was heard once is not heard again.
+            Err(Error::Stopped { .. }) => encode(&artwork, &output)?,
+            // What was made is not lost because its picture is too much work.
+            Err(limit @ Error::Limit { .. }) if has_draft => artwork.encode_draft(&output).map_err(|_| limit)?,
             encoded => encoded?,
         };
         encoded.warnings.splice(0..0, artwork.warnings().iter().cloned());

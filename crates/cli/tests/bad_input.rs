@@ -163,3 +163,16 @@ fn numbers_out_of_range() {
     }
     assert!(folder.fails(3, "fill leaves.svg --size 80x80 --dpi 1e7 -o a.png").contains("limit"));
 }
+
+#[test]
+fn json_that_is_cut_off_is_called_so() {
+    let folder = Folder::new();
+    folder.write("cut.json", "{\"placements\": [1,\n 2");
+    for line in ["edit cut.json --list", "run cut.json -o again.json"] {
+        let message = folder.fails(3, line);
+        assert!(message.contains("cut.json: line 2, column 2: broken JSON: EOF"), "{line}: {message}");
+    }
+    folder.write("list.json", "[[1, 2], [3");
+    let message = folder.fails(3, "run list.json -o again.json");
+    assert!(message.contains("list.json: a JSON file, where a recipe or a result was expected"), "{message}");
+}

@@ -10,7 +10,7 @@ use std::{
     process::{Child, ChildStderr, Stdio},
 };
 
-use common::Folder;
+use common::{Folder, stderr};
 
 #[test]
 fn a_place_that_cannot_be_written_is_noticed_first() {
@@ -62,7 +62,7 @@ fn links_and_devices_keep_what_they_are() {
 #[cfg(unix)]
 fn long_run(folder: &Folder, more: &str) -> (Child, BufReader<ChildStderr>) {
     let mut child = folder
-        .command(&format!("fill points.csv --size 25x25 --iterations 1000 --set repeat=off -o out.csv -v {more}"))
+        .command(&format!("fill points.csv --size 25x25 --iterations 1000 --set repeat=off -v {more}"))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -86,7 +86,7 @@ fn interrupt(child: &Child) {
 #[test]
 fn a_signal_writes_the_best_so_far() {
     let folder = Folder::new();
-    let (child, _told) = long_run(&folder, "--json");
+    let (child, _told) = long_run(&folder, "-o out.csv --json");
     interrupt(&child);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(143));
@@ -101,10 +101,39 @@ fn a_signal_writes_the_best_so_far() {
 fn a_second_ctrl_c_ends_at_once_without_half_a_file() {
     let folder = Folder::new();
     let before = folder.names();
-    let (mut child, _told) = long_run(&folder, "");
+    let (mut child, _told) = long_run(&folder, "-o out.csv");
     interrupt(&child);
     interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(143));
     let after: Vec<_> = folder.names().into_iter().filter(|n| n != "out.csv").collect();
     assert_eq!(after, before);
+}
+
+/// Width and height of a PNG file.
+fn pixels(png: &[u8]) -> [u32; 2] {
+    [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().unwrap()))
+}
+
+#[cfg(unix)]
+#[test]
+fn whoever_asks_to_stop_gets_a_draft_of_the_picture() {
+    let folder = Folder::new();
+    let (child, mut told) = long_run(&folder, "-o out.png --pixels-per-unit 200");
+    interrupt(&child);
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut told, &mut said).unwrap();
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(143), "{said}");
+    assert!(said.contains("a draft of 632 x 632 pixels, where 5000 x 5000 were wanted"), "{said}");
+    assert_eq!(pixels(&folder.read("out.png")), [632, 632]);
+    let recipe = b"arabesque recipe";
+    assert!(folder.read("out.png").windows(recipe.len()).any(|part| part == recipe));
+}
+
+#[test]
+fn a_picture_that_is_too_much_work_is_a_draft() {
+    let folder = Folder::new();
+    let line = "fill points.csv --size 8x8 --pixels-per-unit 700 -o out.png --limit work-per-element=50";
+    let said = stderr(&folder.ok(&format!("{line} --limit work=500")));
+    assert!(said.contains("a draft of 632 x 632 pixels, where 5600 x 5600 were wanted"), "{said}");
+    assert_eq!(pixels(&folder.read("out.png")), [632, 632]);
 }

@@ -68,6 +68,8 @@ struct State<const D: usize> {
     matches: Vec<Vector<D>>,
     /// The layout of which these are the matches.
     layout: usize,
+    /// The level that was begun last; `None` before the first.
+    level: Option<usize>,
     /// Sites that may change; `None` for all.
     within: Option<Vec<bool>>,
     energy: Vec<EnergyPoint>,
@@ -143,7 +145,15 @@ pub(crate) fn finished<const D: usize>(
 
 impl<const D: usize> State<D> {
     fn of(output: Output<D>, matches: Vec<Vector<D>>) -> Self {
-        Self { output, matches, layout: 0, within: None, energy: Vec::new(), stopped: StopReason::Finished }
+        Self {
+            output,
+            matches,
+            layout: 0,
+            level: None,
+            within: None,
+            energy: Vec::new(),
+            stopped: StopReason::Finished,
+        }
     }
 }
 
@@ -243,6 +253,7 @@ impl<'a, const D: usize> Stage<'a, D> {
         let params = &self.prepared.params;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, params.shape);
         let tables = Tables::new(pattern, kernel, &self.prepared.fields, &self.budget)?;
+        state.level = Some(n);
         let level = self.seen_by(scale.layout, &tables);
         if n == 0 {
             self.start(&self.seen_by(0, &tables), state)?;
@@ -403,7 +414,9 @@ impl<'a, const D: usize> Stage<'a, D> {
     fn outcome(&self, state: State<D>) -> Result<StructureOutcome<D>> {
         // What is still to be done with the best so far has an account of its own.
         let budget = self.budget.fresh();
-        let last = self.scales.iter().rev().find(|s| s.layout == state.layout);
+        // That of the level at which it was stopped, whose tables are there: whoever asked to stop waits.
+        let last = state.level.map(|n| &self.scales[n]).filter(|s| s.layout == state.layout);
+        let last = last.or_else(|| self.scales.iter().rev().find(|s| s.layout == state.layout));
         let Some(&scale) = last else { return Err(Error::no_result("no level", "allow a window")) };
         let pattern = &*self.prepared.pattern;
         let kernel = Kernel::new(scale.sigma, scale.delta, pattern.base, self.prepared.params.shape);

@@ -27,6 +27,11 @@ pub(crate) trait Made: Debug + Send + Sync {
         })
     }
 
+    /// Whether a draft of its file takes less time than the file itself.
+    fn has_draft(&self, format: Format) -> bool {
+        format == Format::Png
+    }
+
     /// How much of what there is.
     fn summary(&self) -> Summary;
 
@@ -61,6 +66,15 @@ pub(crate) struct Sheet<'a> {
     /// The recipe that the file carries.
     pub(crate) recipe: Option<&'a str>,
     pub(crate) budget: &'a Budget,
+    /// Whether a picture is drawn coarsely, for somebody who waits.
+    pub(crate) is_draft: bool,
+}
+
+impl Sheet<'_> {
+    /// Most pixels of a picture of which a draft has so many.
+    pub(crate) fn most_pixels(&self, of_draft: usize) -> usize {
+        if self.is_draft { of_draft } else { usize::MAX }
+    }
 }
 
 /// A file, complete.

@@ -1,5 +1,6 @@
 //! Results, whatever the method that made them.
 
+pub(crate) mod draft;
 mod made;
 mod points;
 mod summary;
@@ -68,7 +69,7 @@ impl Artwork {
         recipe: Option<&'a str>,
         budget: &'a Budget,
     ) -> Sheet<'a> {
-        Sheet { format, output, ran: &self.origin.recipe.output, recipe, budget }
+        Sheet { format, output, ran: &self.origin.recipe.output, recipe, budget, is_draft: false }
     }
 
     /// The format of its file where nobody says which.
@@ -142,6 +143,24 @@ impl Artwork {
     /// [`arabesque_core::Error::Unsupported`] for a format that cannot hold what was made, [`arabesque_core::Error::Limit`] for a picture
     /// with too many pixels, [`arabesque_core::Error::Input`] when markup of the exemplar cannot be taken apart.
     pub fn encode(&self, output: &OutputOptions) -> Result<Encoded> {
+        self.encoded(output, false)
+    }
+
+    /// Whether [`Artwork::encode_draft`] takes less time than [`Artwork::encode`] where there is much to draw.
+    pub fn has_draft(&self, output: &OutputOptions) -> bool {
+        self.made.has_draft(output.format.unwrap_or_else(|| self.usual_format()))
+    }
+
+    /// As [`Artwork::encode`], for somebody who waits for the end: pictures, but for height fields, have at most a few hundred thousand
+    /// pixels, and a warning tells so. Their recipe repeats the run with all pixels.
+    ///
+    /// # Errors
+    /// As [`Artwork::encode`].
+    pub fn encode_draft(&self, output: &OutputOptions) -> Result<Encoded> {
+        self.encoded(output, true)
+    }
+
+    fn encoded(&self, output: &OutputOptions, is_draft: bool) -> Result<Encoded> {
         let format = output.format.unwrap_or_else(|| self.origin.recipe.usual_format());
         let recipe = self.recipe(&OutputOptions { format: Some(format), ..output.clone() }).to_toml()?;
         if format == Format::Toml {
@@ -150,30 +169,24 @@ impl Artwork {
         let recipe = (!output.bare).then_some(recipe.as_str());
         let budget = self.origin.budget.fresh().stage("encoding");
         if format == Format::Gltf {
-            let glb = self.encode_as(Format::Glb, output, recipe, &budget)?;
+            let glb = self.encode_as(&self.sheet(Format::Glb, output, recipe, &budget))?;
             return Ok(Encoded { bytes: gltf::as_text(&glb.bytes, &budget)?, ..glb });
         }
-        self.encode_as(format, output, recipe, &budget)
+        self.encode_as(&Sheet { is_draft, ..self.sheet(format, output, recipe, &budget) })
     }
 
-    /// The file in a format, with a recipe.
-    fn encode_as(
-        &self,
-        format: Format,
-        output: &OutputOptions,
-        recipe: Option<&str>,
-        budget: &Budget,
-    ) -> Result<Encoded> {
-        let sheet = self.sheet(format, output, recipe, budget);
-        let Some(edited) = &self.edited else { return self.made.encode(&sheet) };
+    /// The file, with the edits.
+    fn encode_as(&self, sheet: &Sheet<'_>) -> Result<Encoded> {
+        let (format, budget) = (sheet.format, sheet.budget);
+        let Some(edited) = &self.edited else { return self.made.encode(sheet) };
         let own = &self.origin.recipe;
         // A picture is drawn of a file that was edited.
         let base = self.made.drawn_from(format).filter(|_| !own.edits.iter().all(|edit| edit.on == Some(format)));
         let Some(base) = base else {
-            let encoded = self.made.encode(&sheet)?;
+            let encoded = self.made.encode(sheet)?;
             return Ok(Encoded { bytes: edited.apply(encoded.bytes, format, own, budget)?, ..encoded });
         };
-        let encoded = self.made.encode(&Sheet { format: base, recipe: None, ..sheet })?;
-        self.made.encode_edited(&edited.apply(encoded.bytes, base, own, budget)?, &sheet)
+        let encoded = self.made.encode(&Sheet { format: base, recipe: None, ..*sheet })?;
+        self.made.encode_edited(&edited.apply(encoded.bytes, base, own, budget)?, sheet)
     }
 }

@@ -3,7 +3,10 @@
 use arabesque_core::{Budget, Error, Result};
 use arabesque_io::{
     file,
-    json::placed::{self as json, JsonElements},
+    json::{
+        broken::flaw,
+        placed::{self as json, JsonElements},
+    },
     mesh::gltf::{GlbElements, GltfElements},
     placed::{Changes, Layout, PlacedFile},
     svg::SvgElements,
@@ -55,11 +58,13 @@ impl Elements {
                 match json::dimension(&text) {
                     Some(2) => Ok(Self::Plane(Box::new(JsonElements::open(name, text, is_tile, budget)?))),
                     Some(_) => Ok(Self::Space(Box::new(JsonElements::open(name, text, is_tile, budget)?))),
-                    None => Err(Error::input(
-                        name,
-                        "a JSON file without a page and placements on it",
-                        "edit a scene of meshes as GLB",
-                    )),
+                    None => Err(match flaw(&text) {
+                        Some(flaw) => Error::input(name, flaw, "give the whole file, as it was written"),
+                        None => {
+                            let problem = "a JSON file without a page and placements on it";
+                            Error::input(name, problem, "edit a scene of meshes as GLB")
+                        }
+                    }),
                 }
             }
             Format::Glb => Ok(Self::Space(Box::new(GlbElements::open(name, bytes, budget)?))),

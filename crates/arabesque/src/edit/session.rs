@@ -175,7 +175,14 @@ impl EditSession {
                 let recipe = recipe.as_ref().map(Recipe::to_toml).transpose()?;
                 let budget = self.budget.fresh().stage("drawing");
                 let recipe = recipe.as_deref();
-                let sheet = Sheet { format: Format::Png, output: &output, ran: &output, recipe, budget: &budget };
+                let sheet = Sheet {
+                    format: Format::Png,
+                    output: &output,
+                    ran: &output,
+                    recipe,
+                    budget: &budget,
+                    is_draft: false,
+                };
                 let svg = file::decode_text(&self.name, &bytes, &budget)?;
                 Ok(drawn(&svg, placed.layout().frame.size().0, &sheet)?.bytes)
             }

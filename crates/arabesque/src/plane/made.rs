@@ -7,7 +7,7 @@ use arabesque_core::{
 };
 use arabesque_io::{
     json,
-    raster::png::{RenderJob, write_png},
+    raster::png::{RenderJob, write_within},
     svg::{Sheet as SvgSheet, Style, Written, simplified, write_svg},
     table::csv,
 };
@@ -15,7 +15,7 @@ use arabesque_io::{
 use rayon::prelude::*;
 
 use crate::{
-    artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, points},
+    artwork::{Encoded, Geometry, Made, PlacedPoint, Sheet, Summary, draft, points},
     plane::{exemplar::PlaneExemplar, picture::resolution, place::Units, request::PlaneRequest},
     recipe::Format,
     spacing::spacing,
@@ -139,8 +139,9 @@ impl Made for PlaneMade {
             }
             Format::Png => {
                 let written = self.svg(Style::Linked, None, sheet.budget)?;
-                let warnings = written.warnings;
-                Ok(Encoded { warnings, ..drawn(&written.text, size.0, sheet)? })
+                let mut encoded = drawn(&written.text, size.0, sheet)?;
+                encoded.warnings.splice(0..0, written.warnings);
+                Ok(encoded)
             }
             Format::Json => {
                 let has_unit = self.exemplar.units() == Units::OfPage;
@@ -198,7 +199,7 @@ impl Made for PlaneMade {
 /// A drawing as a picture.
 pub(crate) fn drawn(svg: &str, units: [f64; 2], sheet: &Sheet<'_>) -> Result<Encoded> {
     let job = RenderJob { svg, units, resolution: resolution(sheet.output)?, recipe: sheet.recipe };
-    Ok(Encoded { bytes: write_png(&job, sheet.budget)?, warnings: Vec::new(), companion: None })
+    Ok(draft::told(write_within(&job, sheet.most_pixels(draft::FLAT), sheet.budget)?))
 }
 
 /// The geometry of an outcome.

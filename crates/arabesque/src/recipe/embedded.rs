@@ -56,6 +56,9 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
         if start.starts_with('<') && kind != file::HTML {
             (svg::recipe_of(&text), "a drawing")
         } else if start.starts_with('{') {
+            if let Some(flaw) = json::broken::flaw(&text) {
+                return Err(Error::input(name, flaw, "give the whole file, as it was written"));
+            }
             (json::recipe_of(&text).or_else(|| gltf::recipe_of(text.as_bytes())), "a JSON file")
         } else if ending == Some(Format::Csv) || start.starts_with("x,y,") {
             (csv::recipe_of(&text), "a file of points")
@@ -63,7 +66,7 @@ pub fn carried_recipe(name: &str, bytes: &[u8]) -> Result<(Recipe, Carrier)> {
             (csv::recipe_of(&text), "a USD file")
         } else if ending == Some(Format::Obj) || is_of_curves(start.as_bytes()) {
             (obj::recipe_of(&text), "a file of curves")
-        } else if kind != file::TOML && ending != Some(Format::Toml) {
+        } else if ending == Some(Format::Json) || (kind != file::TOML && ending != Some(Format::Toml)) {
             let problem = format!("{kind}, where a recipe or a result was expected");
             return Err(Error::input(name, problem, "give a recipe (TOML) or a result of arabesque"));
         } else {

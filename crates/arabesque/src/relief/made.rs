@@ -74,6 +74,11 @@ impl Made for ReliefMade {
         encode_points(points, Item::Points(points), sheet, Said { warnings, stopped: *stopped })
     }
 
+    fn has_draft(&self, format: Format) -> bool {
+        // The pixels of a height field are what was made.
+        format == Format::Png && self.grid.is_none()
+    }
+
     fn summary(&self) -> Summary {
         let reliefs = Some(summary(&self.outcome.statistics));
         Summary { points: self.outcome.points.len(), reliefs, ..Summary::default() }

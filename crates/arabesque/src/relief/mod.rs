@@ -6,9 +6,9 @@ mod read;
 
 use std::sync::Arc;
 
-use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Unobserved, Vector, Warning, Watch, rounded};
+use arabesque_core::{Bounds, Error, PointSet, Result, StopReason, Vector, Warning, Watch, rounded};
 use arabesque_reliefs::{Ground, Prepared as Engine, ReliefOutcome, ReliefRequest};
-use arabesque_surface::{DirectionField, Directions, MeshIndex, MeshReport, reconstruct};
+use arabesque_surface::{DirectionField, Directions, MeshIndex, MeshReport};
 
 use crate::{
     artwork::Artwork,
@@ -17,7 +17,7 @@ use crate::{
     recipe::{Job, Relief, Size},
     solid::read::indexed_mesh,
     structure::directions,
-    surface::SURFACE,
+    surface::{Surfaced, surfaced},
 };
 use heights::Grid;
 use made::{ReliefMade, ReliefMesh};
@@ -130,16 +130,14 @@ impl Ready for Texture {
         let Some(params) = surface else {
             return Ok(Artwork::new(origin, ReliefMade::new(outcome, grid)));
         };
-        // The surface of the best so far has an account of its own, as its file has.
-        let budget = context.budget();
-        let budget = if outcome.stopped == StopReason::Finished { budget.clone() } else { budget.fresh() };
-        let mut found = reconstruct(&outcome.points, &params, None, &budget.stage(SURFACE), &mut Unobserved)?;
-        let more = std::mem::take(&mut found.warnings);
-        found.warnings = outcome.warnings.iter().cloned().chain(more).collect();
-        if found.stopped == StopReason::Finished {
-            found.stopped = outcome.stopped;
-        }
-        Ok(Artwork::new(origin, ReliefMesh::new(found, outcome.statistics)))
+        let told = (outcome.warnings.clone(), outcome.stopped);
+        Ok(match surfaced(&outcome.points, told, &params, context.budget())? {
+            Surfaced::Mesh(found) => Artwork::new(origin, ReliefMesh::new(found, outcome.statistics)),
+            Surfaced::Left(warnings) => {
+                let outcome = ReliefOutcome { warnings, stopped: StopReason::Stopped, ..outcome };
+                Artwork::new(origin, ReliefMade::new(outcome, grid))
+            }
+        })
     }
 }
 

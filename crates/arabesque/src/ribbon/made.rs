@@ -266,6 +266,7 @@ impl Made for RibbonMade {
         let (recipe, budget) = (sheet.recipe, sheet.budget);
         budget.allow_elements(DRAWN * self.pieces() as f64);
         self.check_resolution(sheet)?;
+        let mut warnings = Vec::new();
         let bytes = match (sheet.format, &self.laid, &*self.track) {
             (Format::Json, ..) => self.json(recipe, budget)?.into_bytes(),
             (Format::Obj, ..) => {
@@ -278,10 +279,12 @@ impl Made for RibbonMade {
             }
             (Format::Png, Laid::Plane(ribbons), Track::Plane { request, page, .. }) => {
                 let avoid = request.avoid.as_ref();
-                match self.drawings() {
+                let picture = match self.drawings() {
                     Some(_) => picture::of_drawing(&self.svg(ribbons, page, None, budget)?, avoid, page, sheet)?,
                     None => picture::of_pieces(ribbons, self.exemplars(), avoid, page, sheet)?,
-                }
+                };
+                warnings = picture.warnings;
+                picture.bytes
             }
             (Format::Svg, Laid::Plane(ribbons), Track::Plane { page, .. }) => {
                 self.svg(ribbons, page, recipe, budget)?.into_bytes()
@@ -294,10 +297,11 @@ impl Made for RibbonMade {
                 return Err(Error::Unsupported { what, advice: format!("write {advice}") });
             }
         };
-        let expanded = sheet.output.expand.then(|| {
-            Warning::new("ribbons are always written in place: expand has no meaning for them", "leave it out")
-        });
-        Ok(Encoded { bytes, warnings: expanded.into_iter().collect(), companion: None })
+        if sheet.output.expand {
+            let message = "ribbons are always written in place: expand has no meaning for them";
+            warnings.push(Warning::new(message, "leave it out"));
+        }
+        Ok(Encoded { bytes, warnings, companion: None })
     }
 
     fn summary(&self) -> Summary {

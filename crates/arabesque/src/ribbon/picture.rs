@@ -2,14 +2,17 @@
 
 use arabesque_core::{Budget, Error, Result, Vector};
 use arabesque_io::{
-    raster::{png, size::checked_size},
+    raster::{
+        png,
+        size::{Picture, checked_size},
+    },
     svg::Page,
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
 use arabesque_ribbons::{Canvas, Mask, Ribbon, StripExemplar, render_rows};
 
 use crate::{
-    artwork::Sheet,
+    artwork::{Encoded, Sheet, draft},
     recipe::{OutputOptions, pixels_per_user},
 };
 
@@ -58,6 +61,14 @@ impl Pixels {
     }
 }
 
+/// The resolution that `sheet` asks for, or what a draft has of it, and width and height as wanted.
+fn scale_of(page: &Page, sheet: &Sheet<'_>) -> Result<(Pixels, [usize; 2])> {
+    let scale = resolution_of_canvas(sheet.output, Some(page))?;
+    let wanted = scale.pixels(page, sheet.budget)?;
+    let share = sheet.most_pixels(draft::FLAT) as f64 / wanted.map(|n| n as f64).iter().product::<f64>();
+    Ok((Pixels(scale.0 * share.sqrt().min(1.0)), wanted))
+}
+
 /// Pieces of pictures on their canvas, as PNG.
 pub(crate) fn of_pieces(
     ribbons: &[Ribbon<2>],
@@ -65,22 +76,26 @@ pub(crate) fn of_pieces(
     avoid: Option<&Mask>,
     page: &Page,
     sheet: &Sheet<'_>,
-) -> Result<Vec<u8>> {
-    let scale = resolution_of_canvas(sheet.output, Some(page))?;
+) -> Result<Encoded> {
+    let (scale, wanted) = scale_of(page, sheet)?;
     let canvas = scale.canvas(page, sheet.budget)?;
-    png::write_rows([canvas.width, canvas.height], scale.per_metre(page), sheet.recipe, sheet.budget, |write| {
+    let size = [canvas.width, canvas.height];
+    let bytes = png::write_rows(size, scale.per_metre(page), sheet.recipe, sheet.budget, |write| {
         render_rows((ribbons, exemplars), avoid, &canvas, sheet.budget, write)
-    })
+    })?;
+    Ok(draft::told(Picture { bytes, size, wanted }))
 }
 
 /// Ribbons of drawings, drawn as the vectors of `svg`, as PNG. Ink on what is to be avoided is left out, as pieces of pictures do.
-pub(crate) fn of_drawing(svg: &str, avoid: Option<&Mask>, page: &Page, sheet: &Sheet<'_>) -> Result<Vec<u8>> {
-    let scale = resolution_of_canvas(sheet.output, Some(page))?;
+pub(crate) fn of_drawing(svg: &str, avoid: Option<&Mask>, page: &Page, sheet: &Sheet<'_>) -> Result<Encoded> {
+    let (scale, wanted) = scale_of(page, sheet)?;
     let canvas = scale.canvas(page, sheet.budget)?;
     let hidden = |x: usize, y: usize| {
         let at = Vector::xy(x as f64 + 0.5, y as f64 + 0.5) * (1.0 / canvas.pixels_per_unit);
         avoid.is_some_and(|mask| mask.blocks(canvas.origin + at))
     };
     let drawing = (page.view.size().0, scale.0);
-    png::write_drawing(("the ribbon", svg), drawing, &hidden, (scale.per_metre(page), sheet.recipe), sheet.budget)
+    let note = (scale.per_metre(page), sheet.recipe);
+    let bytes = png::write_drawing(("the ribbon", svg), drawing, &hidden, note, sheet.budget)?;
+    Ok(draft::told(Picture { bytes, size: [canvas.width, canvas.height], wanted }))
 }

@@ -8,12 +8,12 @@ use arabesque_io::{
         obj,
         ply::{PlyFile, write_ply},
     },
-    render::{Item, Look, write_picture},
+    render::{Item, Look, write_picture_within},
     table::points,
 };
 
 use crate::{
-    artwork::{Encoded, Sheet},
+    artwork::{Encoded, Sheet, draft},
     recipe::Format,
 };
 
@@ -43,7 +43,7 @@ pub(crate) fn encode_mesh(mesh: &TriangleMesh, sheet: &Sheet<'_>, said: Said<'_>
         Format::Obj => obj::write_mesh(mesh, recipe, budget)?.into_bytes(),
         Format::Glb => gltf::write_scene(&Scene::of_mesh("surface", mesh), recipe, budget)?,
         Format::Json => json::write_mesh(mesh, &said.report(recipe), budget)?.into_bytes(),
-        Format::Png => picture(&[Item::Mesh(mesh)], sheet)?,
+        Format::Png => return picture(&[Item::Mesh(mesh)], sheet),
         Format::Svg | Format::Csv | Format::Gltf | Format::Usda | Format::Toml => {
             return Err(refused("a surface", sheet.format, "write ply, obj, glb, json or png"));
         }
@@ -79,7 +79,7 @@ pub(crate) fn encode_points<const D: usize>(
         }
         Format::Csv => points::write_table(points, recipe, budget)?.into_bytes(),
         Format::Json => json::write_cloud(points, &said.report(recipe), budget)?.into_bytes(),
-        Format::Png => picture(&[item], sheet)?,
+        Format::Png => return picture(&[item], sheet),
         Format::Svg | Format::Gltf | Format::Usda | Format::Toml => {
             return Err(refused("points with attributes", sheet.format, "write ply, csv, obj, glb, json or png"));
         }
@@ -88,13 +88,15 @@ pub(crate) fn encode_points<const D: usize>(
 }
 
 /// A shaded picture.
-pub(crate) fn picture(items: &[Item<'_>], sheet: &Sheet<'_>) -> Result<Vec<u8>> {
+pub(crate) fn picture(items: &[Item<'_>], sheet: &Sheet<'_>) -> Result<Encoded> {
     if sheet.output.dpi.is_some() || sheet.output.pixels_per_unit.is_some() {
         let what = "a resolution for a picture of what lies in space".into();
         return Err(Error::Unsupported { what, advice: "leave dpi and pixels-per-unit out".into() });
     }
     let view = sheet.output.view.as_deref().map(str::parse).transpose()?;
-    write_picture(items, &Look { view, ..Look::default() }, sheet.recipe, sheet.budget)
+    let look = Look { view, ..Look::default() };
+    let most = sheet.most_pixels(draft::SHADED);
+    Ok(draft::told(write_picture_within(items, &look, most, sheet.recipe, sheet.budget)?))
 }
 
 /// A format that cannot hold what was made.

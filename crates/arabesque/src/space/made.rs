@@ -134,7 +134,7 @@ impl VolumeMade {
                     .collect();
                 let shown = scene.meshes.iter().zip(&places).filter(|(_, places)| !places.is_empty());
                 let items: Vec<_> = shown.map(|(m, places)| Item::Placed(&m.mesh, places)).collect();
-                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new(), companion: None })
+                picture(&items, sheet)
             }
             _ => {
                 budget.within("triangles in all places", scene.triangles(), ("nodes", budget.limits().nodes))?;

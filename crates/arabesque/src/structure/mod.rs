@@ -8,17 +8,17 @@ mod shapes;
 
 use std::sync::Arc;
 
-use arabesque_core::{Error, PointSet, Result, StopReason, Unobserved, Warning, Watch};
+use arabesque_core::{Error, PointSet, Result, StopReason, Watch};
 use arabesque_io::geometry::Cloud;
 use arabesque_structures::{Prepared as Engine, Solid, StructureOutcome, StructureRequest};
-use arabesque_surface::{Reconstruction, SurfaceParams, reconstruct};
+use arabesque_surface::SurfaceParams;
 
 use crate::{
     artwork::{Artwork, Origin},
     method::{Preparation, Ready, RunContext, Show},
     plane::in_exemplar,
     recipe::{Job, Structures},
-    surface::{SURFACE, SurfaceMade},
+    surface::{SurfaceMade, Surfaced, surfaced},
 };
 use made::{PlanePoints, SpacePoints};
 pub(crate) use place::{directions, filled, lines, surface};
@@ -123,9 +123,14 @@ impl Ready for Structure {
                     _ if !shapes.is_empty() => in_places(outcome, shapes, surface.as_ref(), &context, &origin)?,
                     None => Artwork::new(origin, SpacePoints(outcome)),
                     Some(params) => {
-                        let StructureOutcome { points, warnings, stopped, .. } = outcome;
-                        let found = surfaced(&points, (warnings, stopped), &params, &context)?;
-                        Artwork::new(origin, SurfaceMade::new(found))
+                        let told = (std::mem::take(&mut outcome.warnings), outcome.stopped);
+                        match surfaced(&outcome.points, told, &params, context.budget())? {
+                            Surfaced::Mesh(found) => Artwork::new(origin, SurfaceMade::new(found)),
+                            Surfaced::Left(warnings) => {
+                                let stopped = StopReason::Stopped;
+                                Artwork::new(origin, SpacePoints(StructureOutcome { warnings, stopped, ..outcome }))
+                            }
+                        }
                     }
                 };
                 Ok(artwork)
@@ -147,30 +152,19 @@ fn in_places(
         None => None,
         Some(params) => {
             let told = (std::mem::take(&mut outcome.warnings), outcome.stopped);
-            let found = surfaced(&points, told, params, context)?;
-            (outcome.warnings, outcome.stopped) = (found.warnings, found.stopped);
-            Some(found.mesh)
+            match surfaced(&points, told, params, context.budget())? {
+                Surfaced::Mesh(found) => {
+                    (outcome.warnings, outcome.stopped) = (found.warnings, found.stopped);
+                    Some(found.mesh)
+                }
+                Surfaced::Left(warnings) => {
+                    (outcome.warnings, outcome.stopped) = (warnings, StopReason::Stopped);
+                    None
+                }
+            }
         }
     };
     Ok(Artwork::new(Arc::clone(origin), SceneMade::new(outcome, shapes, points, mesh.as_ref())))
-}
-
-/// The surface of points that were made, with what was told of them before.
-fn surfaced(
-    points: &PointSet<3>,
-    (warnings, stopped): (Vec<Warning>, StopReason),
-    params: &SurfaceParams,
-    context: &RunContext<'_>,
-) -> Result<Reconstruction> {
-    // The surface of the best so far has an account of its own, as its file has.
-    let budget = if stopped == StopReason::Finished { context.budget().clone() } else { context.budget().fresh() };
-    let mut found = reconstruct(points, params, None, &budget.stage(SURFACE), &mut Unobserved)?;
-    let own: Vec<Warning> = std::mem::take(&mut found.warnings);
-    found.warnings = warnings.into_iter().chain(own).collect();
-    if found.stopped == StopReason::Finished {
-        found.stopped = stopped;
-    }
-    Ok(found)
 }
 
 #[cfg(test)]

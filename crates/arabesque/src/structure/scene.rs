@@ -91,7 +91,7 @@ impl Made for SceneMade {
                     )
                     .collect();
                 items.extend((!points.is_empty()).then_some(Item::Points(points)));
-                Ok(Encoded { bytes: picture(&items, sheet)?, warnings: Vec::new(), companion: None })
+                picture(&items, sheet)
             }
             Format::Csv => encode_points(&self.outcome.points, Item::Points(&self.outcome.points), sheet, self.said()),
             _ => {

@@ -1,5 +1,6 @@
 //! Surfaces of points.
 
+mod after;
 mod made;
 
 use std::sync::Arc;
@@ -14,10 +15,9 @@ use crate::{
     solid::read::{cloud, indexed_mesh, raised},
 };
 
+use after::SURFACE;
+pub(crate) use after::{Surfaced, surfaced};
 pub(crate) use made::SurfaceMade;
-
-/// What is being done where points become a surface.
-pub(crate) const SURFACE: &str = "making the surface";
 
 /// Points, read.
 #[derive(Debug)]

@@ -1,7 +1,8 @@
 //! What ends the program early: signals, the time limit, a reader that went away, and the limit of memory.
 //!
 //! A thread of its own keeps watch, so that everything is heard at once, whatever the others are doing. While a run is going on, it asks
-//! the run to stop, and the best so far is written. While something is read or encoded there is nothing to be saved: it ends the program.
+//! the run to stop, and the best so far is written. A file that is encoded is finished, a picture that is drawn given up for a coarser one. While
+//! something is read there is nothing to be saved: it ends the program.
 
 use std::{
     process,
@@ -42,18 +43,21 @@ pub(crate) enum Phase {
     Reading = 0,
     /// A method is at work: it is asked to stop, and gives the best so far.
     Running = 1,
-    /// A result becomes a file in memory.
-    Encoding = 2,
+    /// A picture of a result is drawn: it is given up, and drawn with fewer pixels.
+    Drawing = 2,
+    /// A result becomes a file in memory: it is finished.
+    Encoding = 3,
     /// The file is written, which takes no time worth interrupting.
-    Writing = 3,
+    Writing = 4,
 }
 
 impl Phase {
     fn now() -> Self {
         match PHASE.load(Ordering::SeqCst) {
             1 => Self::Running,
-            2 => Self::Encoding,
-            3 => Self::Writing,
+            2 => Self::Drawing,
+            3 => Self::Encoding,
+            4 => Self::Writing,
             _ => Self::Reading,
         }
     }
@@ -62,6 +66,7 @@ impl Phase {
         match self {
             Self::Reading => "files were read and analysed and the run was prepared",
             Self::Running => "the pattern was made",
+            Self::Drawing => "the picture was drawn",
             Self::Encoding => "the result was encoded",
             Self::Writing => "the result was written",
         }
@@ -168,16 +173,23 @@ impl Sentinel {
         if let Some(first) = signal() {
             self.leave(first, &format!("stopped at once, as asked a second time; {}", written_in_words()));
         }
+        let phase = Phase::now();
+        // What is encoded is finished, and so is not told.
+        if phase != Phase::Encoding {
+            self.stopper.stop(Cause::Asked);
+        }
         SIGNAL.store(code, Ordering::SeqCst);
-        self.stopper.stop(Cause::Asked);
-        match Phase::now() {
+        match phase {
             // What was written before is still to be summed up.
             Phase::Reading if WRITTEN.load(Ordering::SeqCst) => {}
-            phase @ (Phase::Reading | Phase::Encoding) => {
+            Phase::Reading => {
                 self.leave(code, &format!("stopped while {}; {}", phase.in_words(), written_in_words()));
             }
-            Phase::Running if !self.orders.quiet => say::note("stopping with the best so far; once more ends at once"),
-            Phase::Running | Phase::Writing => {}
+            _ if self.orders.quiet => {}
+            Phase::Running => say::note("stopping with the best so far; once more ends at once"),
+            Phase::Drawing => say::note("stopping with a draft of the picture; once more ends at once"),
+            Phase::Encoding => say::note("stopping when the file is finished; once more ends at once"),
+            Phase::Writing => {}
         }
     }
 
@@ -186,7 +198,10 @@ impl Sentinel {
             let what = Phase::Reading.in_words();
             self.leave(NO_RESULT, &format!("the time was up while {what}; {}; give it more time", written_in_words()));
         }
-        self.stopper.stop(Cause::Time);
+        // What was made is drawn and encoded as it is wanted.
+        if matches!(Phase::now(), Phase::Reading | Phase::Running) {
+            self.stopper.stop(Cause::Time);
+        }
     }
 
     fn no_memory(&self) -> ! {

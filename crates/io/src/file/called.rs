@@ -68,12 +68,21 @@ pub(crate) fn text_called(text: &str) -> &'static str {
         "v" | "vn" | "vt" | "o" | "g" | "mtllib" => "an OBJ file",
         _ if text.starts_with("#usda") => "a USD file",
         _ if first.starts_with('{') => "a JSON file",
+        _ if first.starts_with('[') && !names_a_table(first) => "a JSON file",
         _ if first.starts_with('[') || sets_a_key(first) => TOML,
         _ if first.contains([',', ';', '\t']) || first.split_whitespace().all(|word| word.parse::<f64>().is_ok()) => {
             "a table (CSV, XYZ)"
         }
         _ => "plain text",
     }
+}
+
+/// Whether a line that begins with a bracket is the head of a table of TOML, and not a list of JSON.
+fn names_a_table(line: &str) -> bool {
+    let line = line.split('#').next().unwrap_or_default().trim();
+    let name = line.trim_start_matches('[').trim_end_matches(']').trim();
+    let begins = |c: char| c.is_alphabetic() || c == '_';
+    line.ends_with(']') && name.starts_with(begins) && !name.contains([',', '[', '{', ':'])
 }
 
 /// Whether a line gives a key of TOML a value.
@@ -101,6 +110,9 @@ mod tests {
             (b"#usda 1.0\n(\n", "a USD file"),
             (b"{\"a\": 1}", "a JSON file"),
             (b"seed = 1\n[exemplar]\n", "a recipe or another TOML file"),
+            (b"[[1, 2], [3, 4]]", "a JSON file"),
+            (b"[\n1, 2\n", "a JSON file"),
+            (b"[[edit]] # the first\n", "a recipe or another TOML file"),
             (b"[exemplar]\npath = 1\n", "a recipe or another TOML file"),
             (b"x,y\n1,2\n", "a table (CSV, XYZ)"),
             (b"1 2 3\n", "a table (CSV, XYZ)"),

@@ -1,5 +1,6 @@
 //! JSON: results with everything that is known of them, one document for each job.
 
+pub mod broken;
 pub mod fill;
 pub mod geometry;
 pub mod placed;

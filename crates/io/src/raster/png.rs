@@ -8,7 +8,7 @@ use crate::{
     raster::{
         drawn::Drawn,
         filtered::{Filtered, refused},
-        size::checked_size,
+        size::{Picture, checked_size, shrunk},
     },
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
@@ -60,6 +60,14 @@ pub struct RenderJob<'a> {
 /// [`arabesque_core::Error::Limit`] when it would have more than [`arabesque_core::Limits::pixels`] pixels, [`arabesque_core::Error::Input`] when the text cannot be
 /// drawn.
 pub fn write_png(job: &RenderJob<'_>, budget: &Budget) -> Result<Vec<u8>> {
+    write_within(job, usize::MAX, budget).map(|picture| picture.bytes)
+}
+
+/// As [`write_png`], but with `most` pixels, in the same proportion, where it would have more.
+///
+/// # Errors
+/// As [`write_png`].
+pub fn write_within(job: &RenderJob<'_>, most: usize, budget: &Budget) -> Result<Picture> {
     let drawn = Drawn::read("drawing the result", job.svg, budget)?;
     let page = drawn.page();
     let scale = match job.resolution {
@@ -67,11 +75,13 @@ pub fn write_png(job: &RenderJob<'_>, budget: &Budget) -> Result<Vec<u8>> {
         Resolution::PerUnit(n) => [n * job.units[0] / page[0], n * job.units[1] / page[1]],
     };
     // A clamp keeps NaN, which the limit below then refuses.
-    let size = [0, 1].map(|k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX));
+    let wanted = [0, 1].map(|k: usize| (page[k] * scale[k]).round().clamp(1.0, f64::MAX));
+    let size = shrunk(wanted, most);
     let advice = "ask for fewer pixels, or write SVG";
     let pixels = checked_size("size of the picture", size, budget, advice)?.map(|n| n as usize);
     let per_metre = size[0] / page[0] * PIXELS_PER_INCH * INCHES_PER_METRE;
-    write_rows(pixels, per_metre, job.recipe, budget, |write| drawn.rows(size, |_, row| write(row)))
+    let bytes = write_rows(pixels, per_metre, job.recipe, budget, |write| drawn.rows(size, |_, row| write(row)))?;
+    Ok(Picture { bytes, size: pixels, wanted: wanted.map(|n| n as usize) })
 }
 
 /// Draws an SVG text as PNG, `scale` pixels per user unit of a page of `units`, without what lies where `hidden` holds; errors call the
@@ -184,6 +194,19 @@ mod tests {
         assert_eq!(size(&picture(Resolution::PerUnit(3.0)).unwrap()), (60, 30));
         assert!(matches!(picture(Resolution::PerUnit(1e6)), Err(Error::Limit { .. })));
         assert!(matches!(picture(Resolution::PerUnit(f64::NAN)), Err(Error::Limit { .. })));
+    }
+
+    #[test]
+    fn pictures_are_coarser_where_they_would_have_too_many_pixels() {
+        let job = |most| {
+            let resolution = Resolution::PerUnit(30.0);
+            let job = RenderJob { svg: SQUARE, units: [20.0, 10.0], resolution, recipe: Some("a = 1") };
+            write_within(&job, most, &Budget::default()).unwrap()
+        };
+        let coarse = job(20_000);
+        assert_eq!((coarse.size, coarse.wanted, size(&coarse.bytes)), ([200, 100], [600, 300], (200, 100)));
+        assert_eq!(recipe_of(&coarse.bytes).unwrap(), "a = 1");
+        assert_eq!(job(200_000).size, [600, 300]);
     }
 
     #[test]

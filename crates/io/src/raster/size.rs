@@ -24,9 +24,34 @@ pub fn checked_size(what: &str, [width, height]: [f64; 2], budget: &Budget, advi
     })
 }
 
+/// A picture that may be smaller than it was wanted.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Its file.
+    pub bytes: Vec<u8>,
+    /// Width and height, in pixels.
+    pub size: [usize; 2],
+    /// The same as wanted.
+    pub wanted: [usize; 2],
+}
+
+/// Width and height, in the same proportion, of a picture of `most` pixels, where it would have more.
+pub fn shrunk(size: [f64; 2], most: usize) -> [f64; 2] {
+    let factor = (most as f64 / (size[0] * size[1])).sqrt();
+    if factor < 1.0 { size.map(|side| (side * factor).floor().max(1.0)) } else { size }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pictures_shrink_in_proportion() {
+        assert_eq!(shrunk([400.0, 100.0], 10_000), [200.0, 50.0]);
+        assert_eq!(shrunk([400.0, 100.0], 40_000), [400.0, 100.0]);
+        assert_eq!(shrunk([9000.0, 1.0], 90), [900.0, 1.0]);
+        assert!(shrunk([f64::NAN, 1.0], 90)[0].is_nan(), "which is refused later");
+    }
 
     #[test]
     fn too_many_too_long_and_nan_are_refused() {

@@ -19,6 +19,6 @@ mod tests;
 mod triangles;
 mod view;
 
-pub use picture::{Background, Extent, Look, draw, write_picture};
+pub use picture::{Background, Extent, Look, draw, write_picture, write_picture_within};
 pub use subject::Item;
 pub use view::View;

@@ -16,7 +16,10 @@ use super::{
     view::{Axes, View},
 };
 use crate::{
-    raster::{png, size::checked_size},
+    raster::{
+        png,
+        size::{Picture, checked_size, shrunk},
+    },
     text::unit::{INCHES_PER_METRE, PIXELS_PER_INCH},
 };
 
@@ -78,8 +81,23 @@ pub struct Look {
 /// # Errors
 /// As [`draw`].
 pub fn write_picture(items: &[Item<'_>], look: &Look, recipe: Option<&str>, budget: &Budget) -> Result<Vec<u8>> {
-    let image = draw(items, look, budget)?;
-    png::write_image(&image, PIXELS_PER_INCH * INCHES_PER_METRE, recipe, budget)
+    write_picture_within(items, look, usize::MAX, recipe, budget).map(|picture| picture.bytes)
+}
+
+/// As [`write_picture`], but with `most` pixels, in the same proportion, where it would have more.
+///
+/// # Errors
+/// As [`draw`].
+pub fn write_picture_within(
+    items: &[Item<'_>],
+    look: &Look,
+    most: usize,
+    recipe: Option<&str>,
+    budget: &Budget,
+) -> Result<Picture> {
+    let (image, wanted) = draw_within(items, look, most, budget)?;
+    let bytes = png::write_image(&image, PIXELS_PER_INCH * INCHES_PER_METRE, recipe, budget)?;
+    Ok(Picture { bytes, size: [image.width, image.height], wanted })
 }
 
 /// Draws things without perspective, so that they fill the picture but for a small border.
@@ -88,6 +106,11 @@ pub fn write_picture(items: &[Item<'_>], look: &Look, recipe: Option<&str>, budg
 /// [`Error::Input`] where there is nothing to draw; [`Error::Limit`] for more than [`arabesque_core::Limits::pixels`] pixels, or when the
 /// work or the memory is used up; [`Error::Stopped`] when somebody asked to stop.
 pub fn draw(items: &[Item<'_>], look: &Look, budget: &Budget) -> Result<Image> {
+    draw_within(items, look, usize::MAX, budget).map(|(image, _)| image)
+}
+
+/// The same with so many pixels at most, and the size that was wanted.
+fn draw_within(items: &[Item<'_>], look: &Look, most: usize, budget: &Budget) -> Result<(Image, [usize; 2])> {
     let budget = &budget.stage("drawing");
     let flat = items.iter().all(|item| matches!(item, Item::Plane(_)));
     let axes = Axes::of(look.view.unwrap_or(if flat { View::TOP } else { View::default() }));
@@ -96,7 +119,8 @@ pub fn draw(items: &[Item<'_>], look: &Look, budget: &Budget) -> Result<Image> {
     if seen.is_empty() {
         return Err(Error::input("picture", "nothing to draw", "give points or a mesh"));
     }
-    let size = size_of(look.extent, &seen, budget)?;
+    let wanted = size_of(look.extent, &seen, budget)?;
+    let size = shrunk(wanted.map(|n| n as f64), most).map(|n| n as usize);
     let mut frame = Frame::empty(size, budget)?;
     let projection = Projection::fitted(axes, &seen, size, BORDER);
     for item in items {
@@ -109,7 +133,7 @@ pub fn draw(items: &[Item<'_>], look: &Look, budget: &Budget) -> Result<Image> {
     for (cloud, radius) in &clouds {
         dabs::draw(cloud.positions.len(), dab_of(cloud, *radius, &projection), &mut frame, budget)?;
     }
-    shaded(&frame, &projection, look.background, budget)
+    Ok((shaded(&frame, &projection, look.background, budget)?, wanted))
 }
 
 /// The points among the items, with the radius of those that have none.

@@ -7,6 +7,8 @@ use super::{index::MeshIndex, triangle};
 
 /// Most neighbours that one triangle is compared with: where there are more, triangles lie in heaps.
 const MOST: usize = 400;
+/// Most boxes that are looked at for one triangle: where there are more, thousands of triangles meet in one corner.
+const LOOKED: usize = 4000;
 
 /// Triangles that cross another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,9 +26,10 @@ pub(crate) fn crossings(index: &MeshIndex, budget: &Budget) -> Result<Crossings>
     let one = |t: u32| {
         let corners = topology.corners(t);
         let bounds = Bounds::around(corners);
-        let (mut crossed, mut compared) = (false, 0);
+        let (mut crossed, mut compared, mut met) = (false, 0, 0);
         let own = topology.triangles[t as usize];
         let looked = index.meeting(&bounds, |other| {
+            met += 1;
             let theirs = topology.triangles[other as usize];
             if other != t && !theirs.iter().any(|v| own.contains(v)) {
                 let others = topology.corners(other);
@@ -35,9 +38,9 @@ pub(crate) fn crossings(index: &MeshIndex, budget: &Budget) -> Result<Crossings>
                     crossed = triangle::cross(&corners, &others);
                 }
             }
-            !crossed && compared < MOST
+            !crossed && compared < MOST && met < LOOKED
         });
-        (crossed, compared < MOST, looked * 8 + compared as u64 * 60)
+        (crossed, compared < MOST && met < LOOKED, looked * 8 + compared as u64 * 60)
     };
     let chunks: Result<Vec<Crossings>> = (0..topology.triangles.len().div_ceil(512))
         .into_par_iter()

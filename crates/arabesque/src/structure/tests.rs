@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use arabesque_core::{Progress, Vector};
+use arabesque_core::{Progress, Unobserved, Vector};
 
 use super::*;
 use crate::{Format, Geometry, Input, OutputOptions, Recipe, Resources, recipe_in};

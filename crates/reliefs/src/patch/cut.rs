@@ -54,9 +54,9 @@ mod tests {
             .map(|k| if k % width == valley(k / width) { 0.0 } else { 1.0 + (k * 7 % 5) as f32 })
             .collect();
         let sides = sides(&decided, &difference, width);
-        for k in 0..width * height {
+        for (k, side) in sides.into_iter().enumerate() {
             let (x, at) = (k % width, valley(k / width));
-            assert!(x == at || sides[k] == (x < at), "cell {x} of row {}", k / width);
+            assert!(x == at || side == (x < at), "cell {x} of row {}", k / width);
         }
     }
 }

@@ -52,10 +52,10 @@ fn thinned(nodes: &[[u32; 2]]) -> Vec<usize> {
     let mut some: Vec<usize> = (0..nodes.len()).collect();
     let mut step = 1;
     while some.len() > ENOUGH {
-        some.retain(|&k| (nodes[k][0] / step + nodes[k][1] / step) % 2 == 0);
+        some.retain(|&k| (nodes[k][0] / step + nodes[k][1] / step).is_multiple_of(2));
         if some.len() > ENOUGH {
             step *= 2;
-            some.retain(|&k| nodes[k].iter().all(|v| v % step == 0));
+            some.retain(|&k| nodes[k].iter().all(|v| v.is_multiple_of(step)));
         }
     }
     some

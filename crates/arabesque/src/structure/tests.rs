@@ -113,13 +113,14 @@ impl Watch<Artwork> for StopAt {
 }
 
 #[test]
-fn a_stop_with_a_mesh_keeps_the_surface_of_the_best_so_far() {
+fn a_stop_with_a_mesh_leaves_the_points_of_the_best_so_far() {
     let job = Structures { size: Some("1.2x1".parse().unwrap()), mesh: true, ..Structures::default() };
     let recipe = Recipe::new(Input::file("sheet.csv").embedding(sheet().as_bytes()), job);
     let prepared = recipe.prepare(&Resources::default()).unwrap();
     let artwork = prepared.run(&prepared.request(), &mut StopAt(2)).unwrap();
     assert_eq!(artwork.stopped(), StopReason::Stopped);
-    assert!(artwork.summary().triangles > 200, "{:?}", artwork.summary());
+    assert!(artwork.summary().points > 100 && artwork.summary().triangles == 0, "{:?}", artwork.summary());
+    assert!(artwork.warnings().iter().any(|w| w.message.contains("no time for the surface")));
     let options = OutputOptions { format: Some(Format::Glb), ..OutputOptions::default() };
     assert!(artwork.encode(&options).unwrap().bytes.starts_with(b"glTF"));
 }

@@ -8,7 +8,7 @@ use super::{index::MeshIndex, triangle};
 /// Most neighbours that one triangle is compared with: where there are more, triangles lie in heaps.
 const MOST: usize = 400;
 /// Most boxes that are looked at for one triangle: where there are more, thousands of triangles meet in one corner.
-const LOOKED: usize = 4000;
+const LOOKED: usize = 20_000;
 
 /// Triangles that cross another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -63,7 +63,7 @@ impl Case {
             .args(self.line.split_whitespace())
             .arg("--json")
             .args(["--limit", if self.line.contains("p.png") { "work=1500" } else { "work=500" }])
-            .args(["--limit", "work-per-element=1"])
+            .args(if self.line.contains("work-per-element") { &[][..] } else { &["--limit", "work-per-element=1"] })
             .current_dir(folder.path())
             .stdin(Stdio::null())
             .output()

@@ -24,8 +24,9 @@ use made::{ReliefMade, ReliefMesh};
 
 /// Edges of meshes are rounded by so many spacings at least.
 const BEND: f64 = 8.0;
-/// And by no more than this share of the shortest side of the box around the mesh.
-const THIN: f64 = 0.2;
+/// And by no more than this share of the shortest side of the box around the mesh; where that is less than the second share of what the relief
+/// needs, edges stay as they are, since both sides of what is so thin have the relief in one another anyway.
+const THIN: (f64, f64) = (0.2, 0.25);
 
 /// A relief, understood.
 #[derive(Debug)]
@@ -178,8 +179,11 @@ impl Texture {
         self.engine.foresee(&mesh, scale, &context.budget().stage("laying patches"))?;
         let [_, _, height] = self.engine.size();
         let thinnest = mesh.bounds().size().0.into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
-        let radius = ((0.5 * height).max(BEND * self.engine.spacing()) * scale).min(THIN * thinnest);
-        let Some(round) = mesh.with_round_edges(radius, context.budget())? else {
+        let wanted = (0.5 * height).max(BEND * self.engine.spacing()) * scale;
+        let radius = wanted.min(THIN.0 * thinnest);
+        let is_thin = radius < THIN.1 * wanted;
+        let round = if is_thin { None } else { mesh.with_round_edges(radius, context.budget())? };
+        let Some(round) = round else {
             let field = DirectionField::new(&mesh, directions, context.budget())?;
             return Ok((mesh, field));
         };

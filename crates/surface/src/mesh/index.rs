@@ -69,7 +69,7 @@ impl MeshIndex {
         let tree = Tree::new(&boxes, budget)?;
         let middle = |t| triangle::at(&topology.corners(t), [1.0 / 3.0; 3]);
         let dipoles = Dipoles::new(&tree, |t| (middle(t), topology.double_area(t) * 0.5));
-        let normals = vertex_normals(&topology);
+        let normals = vertex_normals(&topology.points, &topology.triangles);
         let (bounds, name, budget) = (tree.nodes[0].bounds, name.to_owned(), budget.clone());
         Ok(Self { bounds, topology, normals, tree, dipoles, name, budget, _held: held })
     }
@@ -401,11 +401,12 @@ pub(crate) fn shown(p: Vector<3>) -> String {
 }
 
 /// Normals at the vertices: those of the triangles around, weighted by their angles there.
-fn vertex_normals(topology: &Topology) -> Vec<Vector<3>> {
-    let mut sums = vec![Vector::ZERO; topology.points.len()];
-    for (t, corners) in topology.triangles.iter().enumerate() {
-        let places = topology.corners(t as u32);
-        let normal = topology.double_area(t as u32).unit_or_zero();
+pub(super) fn vertex_normals(points: &[Vector<3>], triangles: &[[u32; 3]]) -> Vec<Vector<3>> {
+    let mut sums = vec![Vector::ZERO; points.len()];
+    for corners in triangles {
+        let places = corners.map(|v| points[v as usize]);
+        let [a, b, c] = places;
+        let normal = (b - a).cross(c - a).unit_or_zero();
         for (k, &v) in corners.iter().enumerate() {
             sums[v as usize] += normal * triangle::angle(&places, k);
         }

@@ -9,7 +9,7 @@ use arabesque_core::{Bounds, Budget, Result, TriangleMesh, Vector};
 use rayon::prelude::*;
 
 use super::{
-    index::MeshIndex,
+    index::{MeshIndex, vertex_normals},
     refine::Triangles,
     topology::{NONE, Topology},
 };
@@ -26,14 +26,20 @@ const REACH: f64 = 1.4;
 /// Work units of a mass that a mean is made of.
 const MASS: u64 = 40;
 
+/// Work units of a place that is asked how far it is from edges.
+const PLACE: u64 = 400;
+
+/// The ends of an edge.
+type Ends = [Vector<3>; 2];
+
 /// Segments that are asked how far they are.
 struct Segments {
-    ends: Vec<[Vector<3>; 2]>,
+    ends: Vec<Ends>,
     tree: Tree,
 }
 
 impl Segments {
-    fn new(ends: Vec<[Vector<3>; 2]>, budget: &Budget) -> Result<Option<Self>> {
+    fn new(ends: Vec<Ends>, budget: &Budget) -> Result<Option<Self>> {
         if ends.is_empty() {
             return Ok(None);
         }
@@ -72,13 +78,14 @@ impl MeshIndex {
             2.0 * half > fine && sharp.distance((a + b) * 0.5, 3.0 * reach + half) < 3.0 * reach + half
         })?;
         let masses = Masses::new(&mesh, &sharp, reach, budget)?;
-        let normals = normals(&mesh);
+        let normals = vertex_normals(&mesh.points, &mesh.corners);
         let share = |p: Vector<3>| {
             let beside = 2.0 - sharp.distance(p, 2.0 * reach) / reach;
             let border = open.as_ref().map_or(1.0, |open| open.distance(p, reach) / reach);
             smooth(beside) * smooth(border)
         };
         let moved = |v: usize| -> Result<Vector<3>> {
+            budget.spend(PLACE)?;
             let p = mesh.points[v];
             let share = share(p);
             if share <= 0.0 {
@@ -88,7 +95,9 @@ impl MeshIndex {
             Ok(mean.map_or(p, |mean| p + (mean - p) * share))
         };
         let positions: Result<Vec<_>> = (0..mesh.points.len()).into_par_iter().map(moved).collect();
-        let round = TriangleMesh { positions: positions?, triangles: mesh.corners, ..TriangleMesh::default() };
+        let positions = positions?;
+        budget.spend(0)?;
+        let round = TriangleMesh { positions, triangles: mesh.corners, ..TriangleMesh::default() };
         Self::new(&round, self.name(), budget).map(Some)
     }
 }
@@ -100,8 +109,7 @@ fn smooth(x: f64) -> f64 {
 }
 
 /// The ends of sharp edges, and of those with a triangle on one side only.
-#[allow(clippy::type_complexity, reason = "two lists of the same kind")]
-fn edges(topology: &Topology, budget: &Budget) -> Result<(Vec<[Vector<3>; 2]>, Vec<[Vector<3>; 2]>)> {
+fn edges(topology: &Topology, budget: &Budget) -> Result<(Vec<Ends>, Vec<Ends>)> {
     budget.spend(topology.triangles.len() as u64 * 60)?;
     let (mut sharp, mut open) = (Vec::new(), Vec::new());
     for (t, across) in topology.across.iter().enumerate() {
@@ -124,21 +132,6 @@ fn edges(topology: &Topology, budget: &Budget) -> Result<(Vec<[Vector<3>; 2]>, V
     Ok((sharp, open))
 }
 
-/// Normals of the points, by area.
-fn normals(mesh: &Triangles) -> Vec<Vector<3>> {
-    let mut sums = vec![Vector::ZERO; mesh.points.len()];
-    for corners in &mesh.corners {
-        let [a, b, c] = corners.map(|v| mesh.points[v as usize]);
-        let around = [(b - a, c - a), (c - b, a - b), (a - c, b - c)];
-        for (v, (one, other)) in corners.iter().zip(around) {
-            let across = one.cross(other);
-            let angle = across.norm().atan2(one.dot(other));
-            sums[*v as usize] += across.unit_or_zero() * angle;
-        }
-    }
-    sums.into_iter().map(Vector::unit_or_zero).collect()
-}
-
 /// What is beside sharp edges: triangles that lie together and face one way count as one mass.
 struct Masses {
     points: OrientedPoints,
@@ -150,7 +143,7 @@ impl Masses {
         let mut cells: BTreeMap<([i64; 3], usize), (Vector<3>, Vector<3>, f64)> = BTreeMap::new();
         let mut meter = budget.meter();
         for corners in &mesh.corners {
-            meter.spend(300)?;
+            meter.spend(PLACE)?;
             let [a, b, c] = corners.map(|v| mesh.points[v as usize]);
             let (middle, across) = ((a + b + c) * (1.0 / 3.0), (b - a).cross(c - a) * 0.5);
             let area = across.norm();

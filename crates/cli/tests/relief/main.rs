@@ -229,3 +229,21 @@ fn what_cannot_be_is_refused_with_what_to_do() {
         assert!(!output.status.success() && message.contains(word), "{line}: {message}");
     }
 }
+
+/// A box that is `size` large, and half as much as that below and above 0.
+fn block(size: [f64; 3]) -> String {
+    let corner = |k: usize| [0, 1, 2].map(|i| if k >> i & 1 == 1 { 0.5 * size[i] } else { -0.5 * size[i] });
+    let corners: String = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    corners + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+}
+
+#[test]
+fn sharp_edges_of_meshes_are_rounded_but_for_those_of_foils() {
+    let folder = folder();
+    for (name, size, is_rounded) in [("cube", [6.0; 3], true), ("foil", [6.0, 6.0, 1e-3], false)] {
+        folder.write(&format!("{name}.obj"), block(size));
+        let run = folder.run(&format!("relief bumps.csv --on {name}.obj -o {name}.ply"));
+        let told = common::stderr(&run);
+        assert!(run.status.success() && told.contains("has sharp edges") == is_rounded, "{name}: {told}");
+    }
+}
